@@ -1,0 +1,207 @@
+//! How long a message takes from `publish` to the reader, on each way across,
+//! and beside it a bare Zenoh ping-pong.
+//!
+//! Two threads, each with a bus of its own, on one host. The reader spins, so
+//! the numbers are those of the way, not of a timer. In memory, where time is
+//! virtual, it is the cost of one publish and one read.
+
+use std::{
+    hint,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use ferntast_bus::{
+    Bus, DdsBus, DdsConfig, Depth, MemoryBus, SharedMemoryBus, SharedMemoryConfig, ZenohBus,
+    ZenohConfig, ZenohMode,
+};
+use ferntast_msgs::{
+    Time,
+    sample::JointSample,
+    topics::{Delivery, Topic},
+};
+use zenoh::Wait;
+
+const TOPIC: Topic<JointSample> = Topic::new("/bench/hop", Delivery::Stream);
+const HOPS: usize = 5_000;
+const PERIOD: Duration = Duration::from_micros(500);
+
+fn main() {
+    println!(
+        "{:<26} {:>12} {:>12} {:>8}",
+        "way", "p50 [us]", "p99 [us]", "hops"
+    );
+    memory();
+    let process = std::process::id();
+    let session = format!("bench_{process}");
+    hop("shared memory", || shared_memory(&session));
+    if let Err(error) = SharedMemoryBus::clean_up(&session) {
+        eprintln!("{error}");
+    }
+    hop("ROS 2 over DDS", || dds(1 + process % 99));
+    let router = ZenohBus::open(&ZenohConfig {
+        mode: ZenohMode::Router {
+            listen: endpoint(process),
+        },
+        domain_id: 0,
+        node_name: "router".into(),
+    });
+    match router {
+        Ok(_router) => hop("ROS 2 over Zenoh, routed", || connected(process)),
+        Err(error) => eprintln!("{error}"),
+    }
+    if let Err(error) = bare_zenoh(process) {
+        eprintln!("bare Zenoh: {error}");
+    }
+}
+
+fn endpoint(process: u32) -> String {
+    format!("tcp/127.0.0.1:{}", 20_000 + process % 10_000)
+}
+
+fn shared_memory(session: &str) -> Bus {
+    let config = SharedMemoryConfig {
+        session: session.into(),
+    };
+    Bus::SharedMemory(SharedMemoryBus::open(&config).expect("shared memory"))
+}
+
+fn dds(domain_id: u32) -> Bus {
+    let config = DdsConfig {
+        domain_id,
+        node_name: "hop".into(),
+        namespace: "/".into(),
+    };
+    Bus::Dds(DdsBus::open(&config).expect("DDS"))
+}
+
+fn connected(process: u32) -> Bus {
+    let config = ZenohConfig {
+        mode: ZenohMode::Connect {
+            endpoint: endpoint(process),
+        },
+        domain_id: 0,
+        node_name: "hop".into(),
+    };
+    Bus::Zenoh(ZenohBus::open(&config).expect("Zenoh"))
+}
+
+fn sample(number: u64) -> JointSample {
+    JointSample::zero(Time::from_nanos(number as i64 + 1))
+}
+
+fn print(way: &str, mut times: Vec<f64>) {
+    if times.is_empty() {
+        println!("{way:<26} {:>12} {:>12} {:>8}", "-", "-", 0);
+        return;
+    }
+    times.sort_by(f64::total_cmp);
+    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+    println!(
+        "{way:<26} {:>12.3} {:>12.3} {:>8}",
+        at(0.50),
+        at(0.99),
+        times.len()
+    );
+}
+
+/// Batches, as one publish and read is shorter than the clock can tell.
+fn memory() {
+    const BATCH: usize = 1000;
+    let bus = MemoryBus::new();
+    let mut publisher = bus.publisher(TOPIC).expect("memory");
+    let mut subscriber = bus.subscriber(TOPIC, Depth::Newest).expect("memory");
+    let mut times = Vec::new();
+    let mut now = 1;
+    for _ in 0..1000 {
+        let start = Instant::now();
+        for _ in 0..BATCH {
+            let message = sample(now as u64);
+            publisher
+                .publish(Time::from_nanos(now), &message)
+                .expect("memory");
+            now += 1;
+            hint::black_box(subscriber.newest(Time::from_nanos(now)));
+        }
+        times.push(start.elapsed().as_secs_f64() * 1e6 / BATCH as f64);
+    }
+    print("memory (publish + read)", times);
+}
+
+/// One publishes every half millisecond, the other spins for it.
+fn hop(way: &str, join: impl Fn() -> Bus) {
+    let start = Instant::now();
+    let sent = Arc::new(AtomicU64::new(0));
+    let done = Arc::new(AtomicBool::new(false));
+    let mut subscriber = join().subscriber(TOPIC, Depth::Newest).expect("subscriber");
+    let mut publisher = join().publisher(TOPIC).expect("publisher");
+    let reader = thread::spawn({
+        let (sent, done) = (sent.clone(), done.clone());
+        move || {
+            let mut times = Vec::with_capacity(HOPS);
+            while !done.load(Ordering::Acquire) {
+                let Some(received) = subscriber.newest(Time::from_nanos(1)) else {
+                    thread::yield_now();
+                    continue;
+                };
+                let arrived = start.elapsed().as_nanos() as u64;
+                // The stamp is when it was sent.
+                let stamped = received.message.stamp.nanos() as u64;
+                if sent.load(Ordering::Acquire) > 1000 {
+                    times.push((arrived.saturating_sub(stamped)) as f64 * 1e-3);
+                }
+            }
+            times
+        }
+    });
+    for number in 0..HOPS as u64 + 1000 {
+        sent.store(number, Ordering::Release);
+        let message = sample(start.elapsed().as_nanos() as u64);
+        publisher.publish(message.stamp, &message).expect("publish");
+        thread::sleep(PERIOD);
+    }
+    thread::sleep(Duration::from_millis(100));
+    done.store(true, Ordering::Release);
+    print(way, reader.join().expect("reader"));
+}
+
+/// Half a round trip between two sessions joined by TCP.
+fn bare_zenoh(process: u32) -> Result<(), zenoh::Error> {
+    let endpoint = format!("tcp/127.0.0.1:{}", 30_001 + process % 2_000);
+    let open = |key: &str| -> Result<zenoh::Session, zenoh::Error> {
+        let mut config = zenoh::Config::default();
+        config.insert_json5("scouting/multicast/enabled", "false")?;
+        config.insert_json5(key, &format!("[{endpoint:?}]"))?;
+        if key == "connect/endpoints" {
+            config.insert_json5("listen/endpoints", "[]")?;
+        }
+        zenoh::open(config).wait()
+    };
+    let here = open("listen/endpoints")?;
+    let there = open("connect/endpoints")?;
+    let echo = there.declare_publisher("bench/pong").express(true).wait()?;
+    let _answering = there
+        .declare_subscriber("bench/ping")
+        .callback(move |sample| {
+            // A ping that gets no answer is missed by the other side.
+            let _ = echo.put(sample.payload().clone()).wait();
+        })
+        .wait()?;
+    let pong = here.declare_subscriber("bench/pong").wait()?;
+    let ping = here.declare_publisher("bench/ping").express(true).wait()?;
+    thread::sleep(Duration::from_millis(500));
+    let mut times = Vec::with_capacity(HOPS);
+    for _ in 0..HOPS {
+        let start = Instant::now();
+        ping.put([0_u8; 64].as_slice()).wait()?;
+        if pong.recv_timeout(Duration::from_secs(1))?.is_some() {
+            times.push(start.elapsed().as_secs_f64() * 1e6 / 2.0);
+        }
+    }
+    print("bare Zenoh (half a ping)", times);
+    Ok(())
+}

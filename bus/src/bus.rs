@@ -1,0 +1,174 @@
+//! The one interface: enum dispatch over the ways across.
+
+use ferntast_msgs::{Message, Time, topics::Topic};
+
+use crate::{
+    dds::{DdsBus, DdsPublisher, DdsSubscriber},
+    error::{CreateError, PublishError},
+    mcap::{McapBus, McapPublisher, McapSubscriber},
+    memory::{MemoryBus, MemoryPublisher, MemorySubscriber},
+    shared_memory::{SharedMemoryBus, SharedMemoryPublisher, SharedMemorySubscriber},
+    types::{Depth, Received, SubscriberCounts},
+    zenoh_ros::{ZenohBus, ZenohPublisher, ZenohSubscriber},
+};
+
+/// A way across. A clone is another handle to the same bus.
+#[derive(Clone, Debug)]
+pub enum Bus {
+    /// Within this process, in virtual time: lockstep and tests.
+    Memory(MemoryBus),
+    /// Between processes of one host, over iceoryx2.
+    SharedMemory(SharedMemoryBus),
+    /// ROS 2 over DDS.
+    Dds(DdsBus),
+    /// ROS 2 over Zenoh, wire-compatible with rmw_zenoh.
+    Zenoh(ZenohBus),
+    /// A recording.
+    Mcap(McapBus),
+}
+
+impl Bus {
+    /// A publisher on `topic`, with the quality of service that the topic's delivery asks for.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError`]. A type that the topic does not carry is refused by
+    /// memory, shared memory and recordings; on ROS 2, where anyone may
+    /// offer anything under any name, endpoints of unlike types never meet.
+    pub fn publisher<M: Message>(&self, topic: Topic<M>) -> Result<Publisher<M>, CreateError> {
+        Ok(match self {
+            Bus::Memory(bus) => Publisher::Memory(bus.publisher(topic)?),
+            Bus::SharedMemory(bus) => Publisher::SharedMemory(bus.publisher(topic)?),
+            Bus::Dds(bus) => Publisher::Dds(Box::new(bus.publisher(topic)?)),
+            Bus::Zenoh(bus) => Publisher::Zenoh(Box::new(bus.publisher(topic)?)),
+            Bus::Mcap(bus) => Publisher::Mcap(bus.publisher(topic)?),
+        })
+    }
+
+    /// A subscriber on `topic` that keeps `depth` messages. On a
+    /// [`State`](ferntast_msgs::topics::Delivery::State) topic it begins with
+    /// the last message, on the others with the next one.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bus::publisher`].
+    pub fn subscriber<M: Message>(
+        &self,
+        topic: Topic<M>,
+        depth: Depth,
+    ) -> Result<Subscriber<M>, CreateError> {
+        Ok(match self {
+            Bus::Memory(bus) => Subscriber::Memory(bus.subscriber(topic, depth)?),
+            Bus::SharedMemory(bus) => Subscriber::SharedMemory(bus.subscriber(topic, depth)?),
+            Bus::Dds(bus) => Subscriber::Dds(Box::new(bus.subscriber(topic, depth)?)),
+            Bus::Zenoh(bus) => Subscriber::Zenoh(Box::new(bus.subscriber(topic, depth)?)),
+            Bus::Mcap(bus) => Subscriber::Mcap(bus.subscriber(topic, depth)?),
+        })
+    }
+}
+
+/// Sends messages on one topic.
+#[derive(Debug)]
+pub enum Publisher<M: Message> {
+    /// Within this process.
+    Memory(MemoryPublisher<M>),
+    /// Between processes of one host.
+    SharedMemory(SharedMemoryPublisher<M>),
+    /// ROS 2 over DDS.
+    Dds(Box<DdsPublisher<M>>),
+    /// ROS 2 over Zenoh.
+    Zenoh(Box<ZenohPublisher<M>>),
+    /// Into a recording.
+    Mcap(McapPublisher<M>),
+}
+
+impl<M: Message> Publisher<M> {
+    /// Publishes `message` at time `now`. Memory and shared memory wait for
+    /// nobody and may be used by control loops; memory does not allocate,
+    /// shared memory allocates one small block inside iceoryx2.
+    ///
+    /// # Errors
+    ///
+    /// [`PublishError`]; the publisher stays usable.
+    pub fn publish(&mut self, now: Time, message: &M) -> Result<(), PublishError> {
+        match self {
+            Publisher::Memory(publisher) => publisher.publish(now, message),
+            Publisher::SharedMemory(publisher) => publisher.publish(now, message),
+            Publisher::Dds(publisher) => publisher.publish(now, message),
+            Publisher::Zenoh(publisher) => publisher.publish(now, message),
+            Publisher::Mcap(publisher) => publisher.publish(now, message),
+        }
+    }
+}
+
+/// Receives messages of one topic. What [`Message::check`] refuses is counted and never handed out.
+#[derive(Debug)]
+pub enum Subscriber<M: Message> {
+    /// Within this process.
+    Memory(MemorySubscriber<M>),
+    /// Between processes of one host.
+    SharedMemory(SharedMemorySubscriber<M>),
+    /// ROS 2 over DDS.
+    Dds(Box<DdsSubscriber<M>>),
+    /// ROS 2 over Zenoh.
+    Zenoh(Box<ZenohSubscriber<M>>),
+    /// Out of a recording.
+    Mcap(McapSubscriber<M>),
+}
+
+impl<M: Message> Subscriber<M> {
+    /// The newest message visible at `now` that was not taken yet; older ones are dropped.
+    ///
+    /// Memory and recordings: visible is what was published before `now`.
+    /// The others: visible is what has arrived.
+    pub fn newest(&mut self, now: Time) -> Option<Received<M>> {
+        match self {
+            Subscriber::Memory(subscriber) => subscriber.newest(now),
+            Subscriber::SharedMemory(subscriber) => subscriber.newest(now),
+            Subscriber::Dds(subscriber) => subscriber.newest(now),
+            Subscriber::Zenoh(subscriber) => subscriber.newest(now),
+            Subscriber::Mcap(subscriber) => subscriber.newest(now),
+        }
+    }
+
+    /// The oldest message visible at `now` that was not taken yet.
+    pub fn next(&mut self, now: Time) -> Option<Received<M>> {
+        match self {
+            Subscriber::Memory(subscriber) => subscriber.next(now),
+            Subscriber::SharedMemory(subscriber) => subscriber.next(now),
+            Subscriber::Dds(subscriber) => subscriber.next(now),
+            Subscriber::Zenoh(subscriber) => subscriber.next(now),
+            Subscriber::Mcap(subscriber) => subscriber.next(now),
+        }
+    }
+
+    /// What was handed out, refused and dropped so far.
+    pub fn counts(&self) -> SubscriberCounts {
+        match self {
+            Subscriber::Memory(subscriber) => subscriber.counts(),
+            Subscriber::SharedMemory(subscriber) => subscriber.counts(),
+            Subscriber::Dds(subscriber) => subscriber.counts(),
+            Subscriber::Zenoh(subscriber) => subscriber.counts(),
+            Subscriber::Mcap(subscriber) => subscriber.counts(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ferntast_msgs::sample::JointSample;
+
+    use super::*;
+
+    /// Compiles only if so: a node may run its loop in any thread.
+    #[test]
+    fn ports_go_to_other_threads() {
+        fn sent<T: Send>() {}
+        fn shared<T: Send + Sync + Clone>() {}
+        shared::<Bus>();
+        sent::<Publisher<JointSample>>();
+        sent::<Subscriber<JointSample>>();
+        sent::<crate::frames::FrameSender>();
+        sent::<crate::frames::FrameReceiver>();
+    }
+}

@@ -1,0 +1,315 @@
+//! What can go wrong: one enum an operation.
+
+use ferntast_msgs::InvalidMessage;
+
+/// Why a bus cannot be opened.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum OpenError {
+    /// Something else listens on the port.
+    #[error(
+        "{endpoint} is taken: {reason}; stop what listens there (`ss -ltnp` names it) or choose another port"
+    )]
+    PortTaken {
+        /// The endpoint that was to be listened on, `tcp/HOST:PORT`.
+        endpoint: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// Nobody answers at the endpoint.
+    #[error(
+        "no Zenoh router answers at {endpoint} ({reason}); start one there (`ferntast session` does) or correct the endpoint"
+    )]
+    Unreachable {
+        /// The endpoint that was to be connected to, `tcp/HOST:PORT`.
+        endpoint: String,
+        /// What the library said.
+        reason: String,
+    },
+    /// An endpoint that Zenoh cannot read.
+    #[error(
+        "{endpoint:?} is no endpoint: {reason}; write tcp/HOST:PORT, for example tcp/127.0.0.1:7447"
+    )]
+    BadEndpoint {
+        /// What was given.
+        endpoint: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The ROS domain is outside 0 to 232.
+    #[error(
+        "ROS domain {domain_id} is outside 0..=232, where DDS has ports; set ROS_DOMAIN_ID to one of those"
+    )]
+    DomainOutOfRange {
+        /// The domain asked for.
+        domain_id: u32,
+    },
+    /// A name that the middleware does not take.
+    #[error("{what} {name:?} is not usable: {reason}")]
+    BadName {
+        /// What the name is for: session, node, namespace.
+        what: &'static str,
+        /// The name given.
+        name: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// No permission to use the directory or shared memory.
+    #[error(
+        "no permission for shared memory at {path} ({reason}); run as the user who started the session, or mend the directory's owner"
+    )]
+    NoPermission {
+        /// The directory or segment.
+        path: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// Shared memory or disk is full.
+    #[error(
+        "no room in shared memory at {path} ({reason}); see `df -h /dev/shm`, and `ferntast doctor` for segments of dead sessions"
+    )]
+    NoRoom {
+        /// The directory or segment.
+        path: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// What remains: the library's own words.
+    #[error("cannot open {transport}: {reason}")]
+    Middleware {
+        /// Which way across.
+        transport: &'static str,
+        /// What the library said.
+        reason: String,
+    },
+}
+
+/// Why a publisher or a subscriber cannot be created.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CreateError {
+    /// The topic exists with another type.
+    #[error("{topic} carries {found}, not {wanted}: use the topic's own type, or another name")]
+    WrongType {
+        /// The topic.
+        topic: String,
+        /// The type asked for.
+        wanted: String,
+        /// The type that the topic carries.
+        found: String,
+    },
+    /// All places on the topic are taken.
+    #[error(
+        "{topic} has no place left for another {what} (at most {limit}); stop one of them, or another session of that name"
+    )]
+    TooMany {
+        /// The topic.
+        topic: String,
+        /// Publisher, subscriber or node.
+        what: &'static str,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A queue without a place, or longer than the bus allows.
+    #[error("a queue of {depth} on {topic} is not possible: choose 1 to {limit}")]
+    BadDepth {
+        /// The topic.
+        topic: String,
+        /// The depth asked for.
+        depth: usize,
+        /// The longest queue.
+        limit: usize,
+    },
+    /// The recording has no such topic, or cannot take one.
+    #[error("{topic} cannot be used in the recording: {reason}")]
+    Recording {
+        /// The topic.
+        topic: String,
+        /// Why not.
+        reason: String,
+    },
+    /// No permission to use the topic's shared memory.
+    #[error(
+        "no permission for the shared memory of {topic} ({reason}); run as the user who started the session"
+    )]
+    NoPermission {
+        /// The topic.
+        topic: String,
+        /// What the library said.
+        reason: String,
+    },
+    /// Shared memory is full.
+    #[error(
+        "no room in shared memory for {topic} ({reason}); see `df -h /dev/shm`, and `ferntast doctor` for segments of dead sessions"
+    )]
+    NoRoom {
+        /// The topic.
+        topic: String,
+        /// What the library said.
+        reason: String,
+    },
+    /// What remains: the library's own words.
+    #[error("cannot create a {what} on {topic} over {transport}: {reason}")]
+    Middleware {
+        /// Which way across.
+        transport: &'static str,
+        /// The topic.
+        topic: String,
+        /// Publisher or subscriber.
+        what: &'static str,
+        /// What the library said.
+        reason: String,
+    },
+}
+
+/// Why a message was not published.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PublishError {
+    /// The message does not go into CDR.
+    #[error("{topic}: {source}")]
+    Encode {
+        /// The topic.
+        topic: &'static str,
+        /// What is wrong.
+        source: EncodeError,
+    },
+    /// No free place in shared memory at this moment.
+    #[error("{topic}: no free place in shared memory: {reason}")]
+    NoPlace {
+        /// The topic.
+        topic: &'static str,
+        /// What the library said.
+        reason: String,
+    },
+    /// The recording cannot be written.
+    #[error("{topic} cannot be recorded: {reason}")]
+    Recording {
+        /// The topic.
+        topic: &'static str,
+        /// What the system said.
+        reason: String,
+    },
+    /// What remains: the library's own words.
+    #[error("{topic} cannot be sent over {transport}: {reason}")]
+    Middleware {
+        /// Which way across.
+        transport: &'static str,
+        /// The topic.
+        topic: &'static str,
+        /// What the library said.
+        reason: String,
+    },
+}
+
+/// Why a message does not go into CDR.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EncodeError {
+    /// Longer than [`crate::cdr::MAX_LENGTH`].
+    #[error("{interface} takes {length} bytes in CDR, more than the {limit} allowed")]
+    TooLarge {
+        /// Interface name.
+        interface: &'static str,
+        /// Bytes needed.
+        length: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+    /// A field that CDR has no form for.
+    #[error("{interface} has no CDR form: {reason}")]
+    NotCdr {
+        /// Interface name.
+        interface: &'static str,
+        /// What the encoder said.
+        reason: String,
+    },
+}
+
+/// Why received bytes are no message.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DecodeError {
+    /// Longer than [`crate::cdr::MAX_LENGTH`].
+    #[error("{length} bytes are more than the {limit} allowed for a message")]
+    TooLarge {
+        /// Bytes received.
+        length: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+    /// Shorter than the header of four bytes.
+    #[error("{length} bytes are too short for a CDR header")]
+    NoHeader {
+        /// Bytes received.
+        length: usize,
+    },
+    /// An encoding other than plain CDR.
+    #[error("representation {identifier:#06x} is not plain CDR (0x0000 or 0x0001)")]
+    NotPlainCdr {
+        /// Representation identifier, the header's first two bytes.
+        identifier: u16,
+    },
+    /// The content does not fit the type.
+    #[error("not a {interface}: {reason}")]
+    NotThisType {
+        /// Interface name.
+        interface: &'static str,
+        /// What the decoder said.
+        reason: String,
+    },
+    /// Bytes are left over.
+    #[error("not a {interface}: {left} bytes are left over")]
+    LeftOver {
+        /// Interface name.
+        interface: &'static str,
+        /// Bytes left over.
+        left: usize,
+    },
+    /// Readable, but nothing that can be acted on.
+    #[error(transparent)]
+    Invalid(#[from] InvalidMessage),
+}
+
+/// Why what a dead session left in shared memory cannot be removed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CleanUpError {
+    /// The session is alive.
+    #[error(
+        "session {session:?} is in use by process {}; stop it first, or choose another session name",
+        processes.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+    )]
+    InUse {
+        /// The session.
+        session: String,
+        /// Its live processes.
+        processes: Vec<u32>,
+    },
+    /// A session name that cannot be used.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// The directory cannot be read or emptied.
+    #[error("cannot clean up {path}: {reason}")]
+    Directory {
+        /// Where.
+        path: String,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// Why a frame was not sent.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SendError {
+    /// Longer than [`crate::frames::MAX_FRAME`].
+    #[error("a frame of {length} bytes is longer than the {limit} allowed")]
+    TooLong {
+        /// Bytes given.
+        length: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+    /// What remains: the library's own words.
+    #[error("cannot send on {link}: {reason}")]
+    Middleware {
+        /// The link's key.
+        link: String,
+        /// What the library said.
+        reason: String,
+    },
+}

@@ -1,0 +1,219 @@
+//! The link between two hosts, over a Zenoh session of its own.
+//!
+//! One end listens on a TCP port, the other connects, and connects again by
+//! itself whenever the connection breaks. Nothing scouts, nothing is batched,
+//! and what does not get through is dropped.
+
+use std::{fmt, sync::Arc};
+
+use ferntast_msgs::Time;
+use zenoh::{
+    Session, Wait,
+    bytes::ZBytes,
+    pubsub::{Publisher, Subscriber},
+    qos::{CongestionControl, Priority},
+};
+
+use super::{FrameReceiver, FrameSender, MAX_FRAME, SenderKind, queue::Queue};
+use crate::{
+    endpoint,
+    error::{OpenError, SendError},
+};
+
+/// Tells the time of arrival; called where Zenoh receives.
+pub type Clock = Arc<dyn Fn() -> Time + Send + Sync>;
+
+/// Which way a frame goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkDirection {
+    /// From the operator to the arm: motion.
+    Forward,
+    /// From the arm to the operator: force.
+    Back,
+}
+
+impl LinkDirection {
+    /// The other way.
+    pub const fn opposite(self) -> LinkDirection {
+        match self {
+            LinkDirection::Forward => LinkDirection::Back,
+            LinkDirection::Back => LinkDirection::Forward,
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            LinkDirection::Forward => "forward",
+            LinkDirection::Back => "back",
+        }
+    }
+}
+
+/// What an end does to meet the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LinkEndpoint {
+    /// Listens on `tcp/HOST:PORT`.
+    Listen(String),
+    /// Connects to `tcp/HOST:PORT`, again and again until it succeeds.
+    Connect(String),
+}
+
+/// One end of a link.
+#[derive(Clone)]
+pub struct ZenohLinkConfig {
+    /// The session: 1 to 48 of a-z, A-Z, 0-9, `-` and `_`; the same at both ends.
+    pub session: String,
+    /// How to meet the other end.
+    pub endpoint: LinkEndpoint,
+    /// The way that this end sends.
+    pub sends: LinkDirection,
+    /// Tells the time of arrival.
+    pub clock: Clock,
+}
+
+/// One end of a link, open: its sender and its receiver.
+#[derive(Debug)]
+pub struct ZenohLink {
+    /// Sends the way that was configured.
+    pub sender: FrameSender,
+    /// Receives from the other way.
+    pub receiver: FrameReceiver,
+}
+
+impl ZenohLink {
+    /// Opens one end. The connecting end need not find the other; frames go
+    /// through as soon as it does. The link stays open as long as the sender lives.
+    ///
+    /// # Errors
+    ///
+    /// [`OpenError::PortTaken`], [`OpenError::BadEndpoint`],
+    /// [`OpenError::BadName`], [`OpenError::Middleware`].
+    pub fn open(config: ZenohLinkConfig) -> Result<ZenohLink, OpenError> {
+        check_session(&config.session)?;
+        let (LinkEndpoint::Listen(endpoint) | LinkEndpoint::Connect(endpoint)) = &config.endpoint;
+        endpoint::check(endpoint)?;
+        let settings = settings(&config.endpoint).map_err(middleware)?;
+        let session = zenoh::open(settings)
+            .wait()
+            .map_err(|error| endpoint::open_error(endpoint, "the link", &error))?;
+
+        let queue = Arc::new(Queue::new());
+        let (arrivals, clock) = (queue.clone(), config.clock.clone());
+        let subscriber = session
+            .declare_subscriber(key(&config.session, config.sends.opposite()))
+            .callback(move |sample| receive(&arrivals, clock(), sample.payload()))
+            .wait()
+            .map_err(middleware)?;
+        let key = key(&config.session, config.sends);
+        let publisher = session
+            .declare_publisher(key.clone())
+            .congestion_control(CongestionControl::Drop)
+            .priority(Priority::RealTime)
+            .express(true)
+            .wait()
+            .map_err(middleware)?;
+        Ok(ZenohLink {
+            sender: FrameSender(SenderKind::Zenoh(ZenohFrameSender {
+                key,
+                publisher,
+                _subscriber: subscriber,
+                _session: session,
+            })),
+            receiver: FrameReceiver {
+                queue,
+                in_virtual_time: false,
+            },
+        })
+    }
+}
+
+/// Sends frames over Zenoh.
+pub(super) struct ZenohFrameSender {
+    key: String,
+    publisher: Publisher<'static>,
+    _subscriber: Subscriber<()>,
+    _session: Session,
+}
+
+impl ZenohFrameSender {
+    pub(super) fn send(&mut self, frame: &[u8]) -> Result<(), SendError> {
+        self.publisher
+            .put(frame)
+            .wait()
+            .map_err(|error| SendError::Middleware {
+                link: self.key.clone(),
+                reason: error.to_string(),
+            })
+    }
+}
+
+impl fmt::Debug for ZenohFrameSender {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ZenohFrameSender")
+            .field("key", &self.key)
+            .finish_non_exhaustive()
+    }
+}
+
+fn receive(queue: &Queue, arrived: Time, payload: &ZBytes) {
+    let mut frame = [0; MAX_FRAME];
+    let mut length = 0;
+    // No more is looked at than a frame has, however long the payload is.
+    for slice in payload.slices() {
+        let taken = slice.len().min(MAX_FRAME - length);
+        frame[length..length + taken].copy_from_slice(&slice[..taken]);
+        length += taken;
+    }
+    queue.push(arrived, &frame[..length]);
+}
+
+fn key(session: &str, direction: LinkDirection) -> String {
+    format!("ferntast/{session}/link/{}", direction.name())
+}
+
+fn settings(endpoint: &LinkEndpoint) -> Result<zenoh::Config, zenoh::Error> {
+    let mut config = zenoh::Config::default();
+    let mut set = |key: &str, value: &str| config.insert_json5(key, value);
+    set("mode", r#""peer""#)?;
+    set("scouting/multicast/enabled", "false")?;
+    set("scouting/gossip/enabled", "false")?;
+    // A dead connection is given up, and a new one tried, after 2 s instead of 10 s.
+    set("transport/link/tx/lease", "2000")?;
+    match endpoint {
+        LinkEndpoint::Listen(endpoint) => {
+            set("listen/endpoints", &format!("[{endpoint:?}]"))?;
+            set("listen/exit_on_failure", "true")?;
+            set("listen/timeout_ms", "0")?;
+        }
+        LinkEndpoint::Connect(endpoint) => {
+            set("listen/endpoints", "[]")?;
+            set("connect/endpoints", &format!("[{endpoint:?}]"))?;
+            set("connect/exit_on_failure", "false")?;
+            set("connect/timeout_ms", "-1")?;
+            set(
+                "connect/retry",
+                "{ period_init_ms: 200, period_max_ms: 1000, period_increase_factor: 2 }",
+            )?;
+        }
+    }
+    Ok(config)
+}
+
+fn check_session(session: &str) -> Result<(), OpenError> {
+    let allowed = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
+    if session.is_empty() || session.len() > 48 || !session.bytes().all(allowed) {
+        return Err(OpenError::BadName {
+            what: "session",
+            name: session.into(),
+            reason: "use 1 to 48 of a-z, A-Z, 0-9, - and _".into(),
+        });
+    }
+    Ok(())
+}
+
+fn middleware(error: zenoh::Error) -> OpenError {
+    OpenError::Middleware {
+        transport: "the link",
+        reason: error.to_string(),
+    }
+}

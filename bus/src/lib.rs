@@ -1,0 +1,30 @@
+//! How a message gets across: memory, shared memory, ROS 2 over DDS or
+//! Zenoh, MCAP, behind one interface ([`Bus`]).
+//!
+//! Every way takes and gives the same samples; the ROS 2 form exists only
+//! inside the ways that need it. [`frames`] carries the short raw records of
+//! the teleoperation link, which have no ROS 2 form.
+
+mod bus;
+pub mod cdr;
+pub mod dds;
+mod endpoint;
+pub mod error;
+pub mod frames;
+mod gaps;
+pub mod mcap;
+pub mod memory;
+pub mod shared_memory;
+mod types;
+pub mod zenoh_ros;
+
+pub use self::mcap::McapBus;
+pub use bus::{Bus, Publisher, Subscriber};
+pub use dds::{DdsBus, DdsConfig};
+pub use error::{
+    CleanUpError, CreateError, DecodeError, EncodeError, OpenError, PublishError, SendError,
+};
+pub use memory::MemoryBus;
+pub use shared_memory::{SharedMemoryBus, SharedMemoryConfig};
+pub use types::{Depth, Received, SubscriberCounts};
+pub use zenoh_ros::{ZenohBus, ZenohConfig, ZenohMode};

@@ -1,0 +1,223 @@
+//! A recording as a way across.
+
+use std::{
+    path::Path,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicI64, Ordering},
+    },
+};
+
+use ferntast_msgs::{Message, Time, topics::Topic};
+
+use super::{
+    error::{CreateBagError, FinishBagError, OpenBagError, SelectTopicError, WriteBagError},
+    options::{BagOptions, BagSummary},
+    publisher::McapPublisher,
+    reader::BagReader,
+    subscriber::McapSubscriber,
+    writer::BagWriter,
+};
+use crate::{
+    error::CreateError,
+    types::{Depth, type_name},
+};
+
+/// Longest queue of a subscriber.
+pub(super) const MAX_QUEUE: usize = 1 << 20;
+
+/// A recording that is either written ([`McapBus::create`]: publishers) or
+/// read ([`McapBus::open`]: subscribers). A clone is another handle to it.
+///
+/// A message is logged and published at the time that it is published at, and
+/// visible to reads later than that, as in [`MemoryBus`](crate::MemoryBus).
+///
+/// The reading side's time is the latest that any of its subscribers was
+/// asked with. A subscriber made later than that is a late joiner: it begins
+/// with the next message, on a state topic with the last.
+#[derive(Clone, Debug)]
+pub struct McapBus {
+    side: Side,
+}
+
+#[derive(Clone, Debug)]
+enum Side {
+    Writing(SharedWriter),
+    Reading(Arc<Reading>),
+}
+
+/// A recording that several publishers write to; empty once closed.
+#[derive(Clone)]
+pub(super) struct SharedWriter(Arc<Mutex<Option<BagWriter>>>);
+
+impl SharedWriter {
+    /// A poisoned lock says that another publisher panicked; the recording
+    /// takes whole messages only.
+    pub(super) fn lock(&self) -> MutexGuard<'_, Option<BagWriter>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl std::fmt::Debug for SharedWriter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let guard = self.lock();
+        f.debug_tuple("SharedWriter")
+            .field(&guard.as_ref().map(BagWriter::directory))
+            .finish()
+    }
+}
+
+/// A recording that several subscribers read.
+#[derive(Debug)]
+pub(super) struct Reading {
+    pub(super) reader: BagReader,
+    clock: AtomicI64,
+}
+
+impl Reading {
+    pub(super) fn now(&self) -> Time {
+        Time::from_nanos(self.clock.load(Ordering::Relaxed))
+    }
+
+    pub(super) fn advance(&self, now: Time) {
+        self.clock.fetch_max(now.nanos(), Ordering::Relaxed);
+    }
+}
+
+impl McapBus {
+    /// A bus that records into the new rosbag2 directory `directory`.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateBagError`].
+    pub fn create(directory: &Path) -> Result<McapBus, CreateBagError> {
+        McapBus::create_with(directory, BagOptions::default())
+    }
+
+    /// The same with other than the usual options.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateBagError`].
+    pub fn create_with(directory: &Path, options: BagOptions) -> Result<McapBus, CreateBagError> {
+        let writer = BagWriter::create(directory, options)?;
+        Ok(McapBus {
+            side: Side::Writing(SharedWriter(Arc::new(Mutex::new(Some(writer))))),
+        })
+    }
+
+    /// A bus that plays the rosbag2 directory or MCAP file at `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`OpenBagError`].
+    pub fn open(path: &Path) -> Result<McapBus, OpenBagError> {
+        let reader = BagReader::open(path)?;
+        Ok(McapBus {
+            side: Side::Reading(Arc::new(Reading {
+                reader,
+                clock: AtomicI64::new(0),
+            })),
+        })
+    }
+
+    /// The recording that is read; `None` while one is written.
+    pub fn reader(&self) -> Option<&BagReader> {
+        match &self.side {
+            Side::Reading(reading) => Some(&reading.reader),
+            Side::Writing(_) => None,
+        }
+    }
+
+    /// Moves the reading side's time to `now`, as a read at `now` would.
+    pub fn advance(&self, now: Time) {
+        if let Side::Reading(reading) = &self.side {
+            reading.advance(now);
+        }
+    }
+
+    /// Closes the recording that is written: its publishers then refuse.
+    /// `None` when one is read, or when it is closed already. Without this
+    /// the last handle closes it, and does not say how that went.
+    ///
+    /// # Errors
+    ///
+    /// [`FinishBagError`].
+    pub fn finish(&self) -> Result<Option<BagSummary>, FinishBagError> {
+        match &self.side {
+            Side::Reading(_) => Ok(None),
+            Side::Writing(shared) => {
+                let writer = shared.lock().take();
+                writer.map(BagWriter::finish).transpose()
+            }
+        }
+    }
+
+    /// A publisher into the recording; a topic that is in it is continued.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError::WrongType`], [`CreateError::Recording`].
+    pub fn publisher<M: Message>(&self, topic: Topic<M>) -> Result<McapPublisher<M>, CreateError> {
+        let refused = |reason: String| CreateError::Recording {
+            topic: topic.name.to_owned(),
+            reason,
+        };
+        let Side::Writing(shared) = &self.side else {
+            return Err(refused(
+                "the recording is being read; publish into a new one".to_owned(),
+            ));
+        };
+        let mut guard = shared.lock();
+        let Some(writer) = guard.as_mut() else {
+            return Err(refused("the recording is closed".to_owned()));
+        };
+        let channel = writer.topic(topic).map_err(|error| match error {
+            WriteBagError::WrongType { found, .. } => CreateError::WrongType {
+                topic: topic.name.to_owned(),
+                wanted: type_name::<M>(),
+                found,
+            },
+            error => refused(error.to_string()),
+        })?;
+        Ok(McapPublisher::new(shared.clone(), topic, channel))
+    }
+
+    /// A subscriber to the recording.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError::WrongType`], [`CreateError::BadDepth`],
+    /// [`CreateError::Recording`] when it has no such topic or is being
+    /// written.
+    pub fn subscriber<M: Message>(
+        &self,
+        topic: Topic<M>,
+        depth: Depth,
+    ) -> Result<McapSubscriber<M>, CreateError> {
+        let refused = |reason: String| CreateError::Recording {
+            topic: topic.name.to_owned(),
+            reason,
+        };
+        if !(1..=MAX_QUEUE).contains(&depth.places()) {
+            return Err(CreateError::BadDepth {
+                topic: topic.name.to_owned(),
+                depth: depth.places(),
+                limit: MAX_QUEUE,
+            });
+        }
+        let Side::Reading(reading) = &self.side else {
+            return Err(refused(
+                "the recording is being written; close it and open it to subscribe".to_owned(),
+            ));
+        };
+        McapSubscriber::new(reading.clone(), topic, depth).map_err(|error| match error {
+            SelectTopicError::WrongType { found, .. } => CreateError::WrongType {
+                topic: topic.name.to_owned(),
+                wanted: type_name::<M>(),
+                found,
+            },
+            error => refused(error.to_string()),
+        })
+    }
+}

@@ -1,0 +1,327 @@
+//! `metadata.yaml` of a rosbag2 directory.
+
+use std::{collections::BTreeMap, fmt::Write};
+
+use serde::Deserialize;
+
+use super::qos::{QosProfile, to_yaml};
+
+/// The file's name in a rosbag2 directory.
+pub(super) const METADATA_FILE: &str = "metadata.yaml";
+
+/// rosbag2's format of the metadata that is written (Jazzy, Kilted).
+const VERSION: u32 = 9;
+
+/// The newest format that is read.
+pub(super) const NEWEST_VERSION: u32 = 9;
+
+/// What `metadata.yaml` says of a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct BagMetadata {
+    pub(super) files: Vec<FileEntry>,
+    pub(super) topics: Vec<TopicEntry>,
+    pub(super) custom_data: BTreeMap<String, String>,
+    pub(super) ros_distro: String,
+}
+
+/// One MCAP file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FileEntry {
+    /// Name, relative to the directory.
+    pub(super) name: String,
+    /// First and last log time; `None` without a message \[ns\].
+    pub(super) bounds: Option<(u64, u64)>,
+    pub(super) messages: u64,
+}
+
+/// One topic.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct TopicEntry {
+    pub(super) name: String,
+    pub(super) schema_name: String,
+    pub(super) message_encoding: String,
+    pub(super) qos: Vec<QosProfile>,
+    pub(super) type_hash: String,
+    pub(super) messages: u64,
+}
+
+/// First and last of several bounds.
+pub(super) fn join_bounds(
+    bounds: impl IntoIterator<Item = Option<(u64, u64)>>,
+) -> Option<(u64, u64)> {
+    bounds
+        .into_iter()
+        .flatten()
+        .reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
+}
+
+impl BagMetadata {
+    /// The content of `metadata.yaml`.
+    pub(super) fn to_file(&self) -> String {
+        let mut text = String::from("rosbag2_bagfile_information:\n");
+        for line in self.to_yaml().lines() {
+            let _ = writeln!(text, "  {line}");
+        }
+        text
+    }
+
+    /// The same without the outermost key, as in the MCAP record `rosbag2`.
+    pub(super) fn to_yaml(&self) -> String {
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        let _ = self.put(&mut text);
+        text
+    }
+
+    fn put(&self, text: &mut String) -> std::fmt::Result {
+        let messages: u64 = self.files.iter().map(|file| file.messages).sum();
+        writeln!(text, "version: {VERSION}")?;
+        writeln!(text, "storage_identifier: mcap")?;
+        put_bounds(
+            text,
+            join_bounds(self.files.iter().map(|file| file.bounds)),
+            0,
+            false,
+        )?;
+        writeln!(text, "message_count: {messages}")?;
+        put_list_head(text, "topics_with_message_count", self.topics.is_empty())?;
+        for topic in &self.topics {
+            writeln!(text, "  - topic_metadata:")?;
+            writeln!(text, "      name: {}", scalar(&topic.name))?;
+            writeln!(text, "      type: {}", scalar(&topic.schema_name))?;
+            writeln!(
+                text,
+                "      serialization_format: {}",
+                scalar(&topic.message_encoding)
+            )?;
+            if topic.qos.is_empty() {
+                writeln!(text, "      offered_qos_profiles: []")?;
+            } else {
+                writeln!(text, "      offered_qos_profiles:")?;
+                text.push_str(&to_yaml(&topic.qos, 8));
+            }
+            writeln!(
+                text,
+                "      type_description_hash: {}",
+                scalar(&topic.type_hash)
+            )?;
+            writeln!(text, "    message_count: {}", topic.messages)?;
+        }
+        writeln!(text, "compression_format: \"\"\ncompression_mode: \"\"")?;
+        put_list_head(text, "relative_file_paths", self.files.is_empty())?;
+        for file in &self.files {
+            writeln!(text, "  - {}", scalar(&file.name))?;
+        }
+        put_list_head(text, "files", self.files.is_empty())?;
+        for file in &self.files {
+            writeln!(text, "  - path: {}", scalar(&file.name))?;
+            put_bounds(text, file.bounds, 4, true)?;
+            writeln!(text, "    message_count: {}", file.messages)?;
+        }
+        if self.custom_data.is_empty() {
+            writeln!(text, "custom_data: ~")?;
+        } else {
+            writeln!(text, "custom_data:")?;
+            for (key, value) in &self.custom_data {
+                writeln!(text, "  {}: {}", quoted(key), quoted(value))?;
+            }
+        }
+        writeln!(text, "ros_distro: {}", scalar(&self.ros_distro))
+    }
+}
+
+fn put_list_head(text: &mut String, key: &str, empty: bool) -> std::fmt::Result {
+    writeln!(text, "{key}:{}", if empty { " []" } else { "" })
+}
+
+/// Duration and start; rosbag2 writes them in one order for the recording and
+/// in the other for its files, and the largest number as start of nothing.
+fn put_bounds(
+    text: &mut String,
+    bounds: Option<(u64, u64)>,
+    indent: usize,
+    start_first: bool,
+) -> std::fmt::Result {
+    let (start, duration) = match bounds {
+        Some((first, last)) => (first, last.saturating_sub(first)),
+        None => (i64::MAX as u64, 0),
+    };
+    let start = format!(
+        "{:indent$}starting_time:\n{:indent$}  nanoseconds_since_epoch: {start}\n",
+        "", ""
+    );
+    let duration = format!(
+        "{:indent$}duration:\n{:indent$}  nanoseconds: {duration}\n",
+        "", ""
+    );
+    if start_first {
+        write!(text, "{start}{duration}")
+    } else {
+        write!(text, "{duration}{start}")
+    }
+}
+
+/// Plain where YAML reads it as a text for sure, else quoted.
+fn scalar(text: &str) -> String {
+    let plain = text.starts_with(|c: char| c == '/' || c.is_ascii_alphabetic())
+        && text
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "/_.-".contains(c))
+        && !["true", "false", "yes", "no", "on", "off", "null", "y", "n"]
+            .contains(&text.to_ascii_lowercase().as_str());
+    if plain { text.to_owned() } else { quoted(text) }
+}
+
+/// In double quotes: JSON's escapes are YAML's.
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+/// What a reader needs of `metadata.yaml`.
+#[derive(Debug, Deserialize)]
+pub(super) struct FileList {
+    rosbag2_bagfile_information: Information,
+}
+
+#[derive(Debug, Deserialize)]
+struct Information {
+    version: u32,
+    storage_identifier: String,
+    #[serde(default)]
+    compression_mode: Option<String>,
+    relative_file_paths: Vec<String>,
+}
+
+impl FileList {
+    /// The names of the recording's files, in order.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the text, or what it asks for that is not
+    /// supported.
+    pub(super) fn parse(text: &str) -> Result<Vec<String>, String> {
+        let list: FileList = serde_saphyr::from_str(text).map_err(|error| error.to_string())?;
+        let information = list.rosbag2_bagfile_information;
+        if information.version > NEWEST_VERSION {
+            return Err(format!(
+                "version {} is newer than {NEWEST_VERSION}, the newest that is known",
+                information.version
+            ));
+        }
+        if information.storage_identifier != "mcap" {
+            return Err(format!(
+                "the storage is {:?}; convert the recording to mcap with `ros2 bag convert` or `rosbags-convert`",
+                information.storage_identifier
+            ));
+        }
+        let mode = information.compression_mode.unwrap_or_default();
+        if !mode.is_empty() && !mode.eq_ignore_ascii_case("none") {
+            return Err(format!(
+                "compression by {mode} is not supported (compression by chunk is); convert the recording with `ros2 bag convert`"
+            ));
+        }
+        if information.relative_file_paths.is_empty() {
+            return Err("relative_file_paths names no file".to_owned());
+        }
+        information
+            .relative_file_paths
+            .iter()
+            .map(|path| {
+                // As rosbag2 and rosbags do: the directory may have moved, and
+                // old formats repeat its name in front.
+                let name = path.rsplit('/').next().unwrap_or_default();
+                if name.is_empty() || name == ".." {
+                    return Err(format!(
+                        "relative_file_paths has {path:?}, which names no file"
+                    ));
+                }
+                Ok(name.to_owned())
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ferntast_msgs::topics::Delivery;
+
+    use super::*;
+
+    fn sample() -> BagMetadata {
+        BagMetadata {
+            files: vec![FileEntry {
+                name: "run_0.mcap".to_owned(),
+                bounds: Some((100, 350)),
+                messages: 3,
+            }],
+            topics: vec![TopicEntry {
+                name: "/link/status".to_owned(),
+                schema_name: "ferntast_msgs/msg/LinkStatus".to_owned(),
+                message_encoding: "cdr".to_owned(),
+                qos: vec![QosProfile::of(Delivery::Stream)],
+                type_hash: "RIHS01_00".to_owned(),
+                messages: 3,
+            }],
+            custom_data: BTreeMap::from([("a \"b\"".to_owned(), "1: x\n# y\n".to_owned())]),
+            ros_distro: "jazzy".to_owned(),
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_yaml_with_every_field_in_place() {
+        let value: serde_json::Value = serde_saphyr::from_str(&sample().to_file()).unwrap();
+        let bag = &value["rosbag2_bagfile_information"];
+        assert_eq!(bag["version"], 9);
+        assert_eq!(bag["duration"]["nanoseconds"], 250);
+        assert_eq!(bag["starting_time"]["nanoseconds_since_epoch"], 100);
+        assert_eq!(bag["message_count"], 3);
+        let topic = &bag["topics_with_message_count"][0];
+        assert_eq!(topic["message_count"], 3);
+        assert_eq!(
+            topic["topic_metadata"]["type"],
+            "ferntast_msgs/msg/LinkStatus"
+        );
+        let qos = &topic["topic_metadata"]["offered_qos_profiles"][0];
+        assert_eq!(qos["reliability"], "best_effort");
+        assert_eq!(qos["lifespan"]["nsec"], 854_775_807);
+        assert_eq!(bag["files"][0]["path"], "run_0.mcap");
+        assert_eq!(bag["files"][0]["duration"]["nanoseconds"], 250);
+        assert_eq!(bag["custom_data"]["a \"b\""], "1: x\n# y\n");
+    }
+
+    #[test]
+    fn the_file_list_is_read_back() {
+        assert_eq!(
+            FileList::parse(&sample().to_file()).unwrap(),
+            ["run_0.mcap"]
+        );
+    }
+
+    #[test]
+    fn a_recording_without_messages_is_yaml() {
+        let value: serde_json::Value =
+            serde_saphyr::from_str(&BagMetadata::default().to_file()).unwrap();
+        let bag = &value["rosbag2_bagfile_information"];
+        assert_eq!(bag["duration"]["nanoseconds"], 0);
+        assert_eq!(bag["topics_with_message_count"], serde_json::json!([]));
+    }
+
+    #[test]
+    fn what_cannot_be_read_says_why() {
+        let text = |storage: &str, version: u32, paths: &str| {
+            format!(
+                "rosbag2_bagfile_information:\n  version: {version}\n  storage_identifier: {storage}\n  relative_file_paths: {paths}\n"
+            )
+        };
+        let refused = |text: String| FileList::parse(&text).unwrap_err();
+        assert!(refused(text("sqlite3", 5, "[a.db3]")).contains("convert"));
+        assert!(refused(text("mcap", 99, "[a.mcap]")).contains("99"));
+        assert!(refused(text("mcap", 9, "[]")).contains("no file"));
+        assert!(refused(text("mcap", 9, "['..']")).contains("names no file"));
+        assert!(!refused("][".to_owned()).is_empty());
+        assert_eq!(
+            FileList::parse(&text("mcap", 2, "[old/a.mcap, /tmp/b.mcap]")).unwrap(),
+            ["a.mcap", "b.mcap"]
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! Recordings: rosbag2 directories with MCAP inside, and a bus over them.
+//!
+//! A recording is a directory `NAME/` with `NAME_0.mcap` and `metadata.yaml`,
+//! in the form that rosbag2 writes and reads: MCAP profile `ros2`, schemas as
+//! `ros2msg`, messages as CDR, `metadata.yaml` of version 9. rosbag2,
+//! Foxglove, PlotJuggler and the Python packages `rosbags` and
+//! `mcap-ros2-support` open it as it is.
+//!
+//! * [`BagWriter`] records; what it was given is on disk half a second of log
+//!   time later, also when the process is killed,
+//! * [`BagReader`] reads any rosbag2 directory or MCAP file, its own or not,
+//!   in the order of log time and a chunk at a time,
+//! * [`info`] says what a recording holds, [`repair`] mends one that was cut
+//!   off,
+//! * [`McapBus`] is a way across like the others: publish into a recording,
+//!   subscribe to one.
+//!
+//! The same messages give the same bytes: nothing in a recording comes from a
+//! clock, from chance or from the order of a hash table.
+
+mod block;
+mod bus;
+mod copy;
+mod cursor;
+mod directory;
+mod error;
+mod file_writer;
+mod info;
+mod layout;
+mod messages;
+mod metadata;
+mod options;
+mod publisher;
+mod qos;
+mod reader;
+mod records;
+mod repair;
+mod scan;
+mod sink;
+mod subscriber;
+mod writer;
+
+pub use bus::McapBus;
+pub use error::{
+    CreateBagError, FinishBagError, InfoError, OpenBagError, ReadMessageError, RepairError,
+    SelectTopicError, WriteBagError,
+};
+pub use info::{BagInfo, Break, FileInfo, Gap, TopicInfo, info};
+pub use messages::{Messages, RawMessage, RawMessages, TypedMessage};
+pub use options::{BagOptions, BagSummary, ChunkCompression, TopicCount};
+pub use publisher::McapPublisher;
+pub use qos::QosProfile;
+pub use reader::{BagReader, BagTopic};
+pub use repair::{RepairReport, RepairedFile, repair};
+pub use subscriber::McapSubscriber;
+pub use writer::{BagWriter, ChannelId};

@@ -1,0 +1,206 @@
+//! Within one process, in virtual time: lockstep and tests.
+//!
+//! A message published at time t is visible to reads at times later than t
+//! (logical execution time), so the order in which nodes run within a tick
+//! does not matter. Nothing here reads a clock, and nothing allocates once
+//! publishers and subscribers stand.
+
+mod ring;
+
+use std::{
+    any::Any,
+    collections::HashMap,
+    fmt,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+use ferntast_msgs::{
+    Message, Time,
+    topics::{Delivery, Topic},
+};
+
+use crate::{
+    error::{CreateError, PublishError},
+    types::{Depth, Received, SubscriberCounts, type_name},
+};
+use ring::Ring;
+
+/// Longest queue of a subscriber.
+pub const MAX_QUEUE: usize = 1 << 20;
+
+/// The bus in memory. A clone is another handle to the same topics.
+#[derive(Clone, Default)]
+pub struct MemoryBus {
+    topics: Arc<Mutex<HashMap<&'static str, Entry>>>,
+}
+
+/// A topic by name; the channel is an `Arc<Mutex<Ring<M>>>` of the type named.
+struct Entry {
+    type_name: String,
+    channel: Box<dyn Any + Send>,
+}
+
+impl MemoryBus {
+    /// A bus without topics; they come to be with their first publisher or subscriber.
+    pub fn new() -> MemoryBus {
+        MemoryBus::default()
+    }
+
+    /// A publisher on `topic`.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError::WrongType`].
+    pub fn publisher<M: Message>(
+        &self,
+        topic: Topic<M>,
+    ) -> Result<MemoryPublisher<M>, CreateError> {
+        Ok(MemoryPublisher {
+            channel: self.channel(topic)?,
+        })
+    }
+
+    /// A subscriber on `topic`.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError::WrongType`], [`CreateError::BadDepth`].
+    pub fn subscriber<M: Message>(
+        &self,
+        topic: Topic<M>,
+        depth: Depth,
+    ) -> Result<MemorySubscriber<M>, CreateError> {
+        if !(1..=MAX_QUEUE).contains(&depth.places()) {
+            return Err(CreateError::BadDepth {
+                topic: topic.name.into(),
+                depth: depth.places(),
+                limit: MAX_QUEUE,
+            });
+        }
+        let channel = self.channel(topic)?;
+        let next = {
+            let mut ring = lock(&channel);
+            ring.reserve(depth.places());
+            match topic.delivery {
+                Delivery::State => ring.last(),
+                Delivery::Stream | Delivery::Event => ring.end(),
+            }
+        };
+        Ok(MemorySubscriber {
+            channel,
+            next,
+            depth,
+            counts: SubscriberCounts::default(),
+        })
+    }
+
+    fn channel<M: Message>(&self, topic: Topic<M>) -> Result<Arc<Mutex<Ring<M>>>, CreateError> {
+        let mut topics = lock(&self.topics);
+        let entry = topics.entry(topic.name).or_insert_with(|| Entry {
+            type_name: type_name::<M>(),
+            channel: Box::new(Arc::new(Mutex::new(Ring::<M>::new()))),
+        });
+        match entry.channel.downcast_ref::<Arc<Mutex<Ring<M>>>>() {
+            Some(channel) => Ok(channel.clone()),
+            None => Err(CreateError::WrongType {
+                topic: topic.name.into(),
+                wanted: type_name::<M>(),
+                found: entry.type_name.clone(),
+            }),
+        }
+    }
+}
+
+impl fmt::Debug for MemoryBus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(lock(&self.topics).keys()).finish()
+    }
+}
+
+/// Sends on one topic in memory.
+#[derive(Debug)]
+pub struct MemoryPublisher<M: Message> {
+    channel: Arc<Mutex<Ring<M>>>,
+}
+
+impl<M: Message> MemoryPublisher<M> {
+    /// Publishes at `now`: visible to reads later than that.
+    ///
+    /// # Errors
+    ///
+    /// None; the signature is the same for all ways across.
+    pub fn publish(&mut self, now: Time, message: &M) -> Result<(), PublishError> {
+        lock(&self.channel).push(now, message);
+        Ok(())
+    }
+}
+
+/// Receives from one topic in memory.
+#[derive(Debug)]
+pub struct MemorySubscriber<M: Message> {
+    channel: Arc<Mutex<Ring<M>>>,
+    /// Number of the message to be taken next, counted since the topic began.
+    next: u64,
+    depth: Depth,
+    counts: SubscriberCounts,
+}
+
+impl<M: Message> MemorySubscriber<M> {
+    /// The newest message published before `now` and not taken yet.
+    pub fn newest(&mut self, now: Time) -> Option<Received<M>> {
+        let from = self.next;
+        let ring = lock(&self.channel);
+        let mut number = ring.newest_before(now, from, u64::MAX)?;
+        self.next = number + 1;
+        loop {
+            let &(published, message) = ring.get(number)?;
+            if self.counts.valid(&message) {
+                self.counts.delivered += 1;
+                return Some(received(published, message));
+            }
+            number = ring.newest_before(now, from, number)?;
+        }
+    }
+
+    /// The oldest message published before `now` and not taken yet.
+    pub fn next(&mut self, now: Time) -> Option<Received<M>> {
+        let ring = lock(&self.channel);
+        loop {
+            let newest = ring.newest_before(now, self.next, u64::MAX)?;
+            // Only `depth` messages wait: what is older was dropped.
+            let kept = (newest + 1).saturating_sub(self.depth.places() as u64);
+            let number = self.next.max(kept).max(ring.first());
+            if matches!(self.depth, Depth::Queue(_)) {
+                self.counts.overflowed += number - self.next;
+            }
+            self.next = number + 1;
+            let &(published, message) = ring.get(number)?;
+            if self.counts.valid(&message) {
+                self.counts.delivered += 1;
+                return Some(received(published, message));
+            }
+        }
+    }
+
+    /// What was handed out, refused and dropped so far.
+    pub fn counts(&self) -> SubscriberCounts {
+        self.counts
+    }
+}
+
+fn received<M>(published: Time, message: M) -> Received<M> {
+    Received {
+        message,
+        received: published,
+        source: 0,
+    }
+}
+
+/// A poisoned lock only says that another thread panicked between two
+/// plain copies; what it guards is whole.
+fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,117 @@
+//! ROS 2 over Zenoh, wire-compatible with rmw_zenoh (hiroz).
+//!
+//! Keys carry the true RIHS01 type hash, so that endpoints of unlike types
+//! never meet. One process of a session is the router that rmw_zenoh's nodes
+//! connect to; all others connect to it.
+
+mod publisher;
+mod qos;
+mod raw;
+mod session;
+mod subscriber;
+
+use std::{fmt, sync::Arc};
+
+use ferntast_msgs::{Message, topics::Topic};
+use hiroz::{context::ZContext, node::ZNode};
+
+pub use publisher::ZenohPublisher;
+pub use subscriber::ZenohSubscriber;
+
+use crate::{
+    error::{CreateError, OpenError},
+    types::Depth,
+};
+
+/// Longest queue of a subscriber.
+const MAX_QUEUE: usize = 1024;
+
+/// How a process takes part in Zenoh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ZenohMode {
+    /// As the router, inside this process.
+    Router {
+        /// Where to listen, `tcp/HOST:PORT`; rmw_zenoh looks at `tcp/localhost:7447`.
+        listen: String,
+    },
+    /// Connected to a router that runs.
+    Connect {
+        /// Where the router listens, `tcp/HOST:PORT`.
+        endpoint: String,
+    },
+}
+
+/// Where on ROS 2 to appear.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ZenohConfig {
+    /// Router or connected to one.
+    pub mode: ZenohMode,
+    /// ROS domain, 0 to 232 (as on DDS, so that a session can change over).
+    pub domain_id: u32,
+    /// Name of the node, without namespace.
+    pub node_name: String,
+}
+
+/// The bus on ROS 2 over Zenoh. A clone is another handle to the same node.
+#[derive(Clone)]
+pub struct ZenohBus {
+    node: Arc<ZNode>,
+    // Kept: the graph and the session.
+    _context: Arc<ZContext>,
+}
+
+impl ZenohBus {
+    /// Joins the domain as a node of that name.
+    ///
+    /// # Errors
+    ///
+    /// [`OpenError::PortTaken`], [`OpenError::Unreachable`] after 3 s,
+    /// [`OpenError::BadEndpoint`], [`OpenError::DomainOutOfRange`],
+    /// [`OpenError::BadName`], [`OpenError::Middleware`].
+    pub fn open(config: &ZenohConfig) -> Result<ZenohBus, OpenError> {
+        let (context, node) = session::open(config)?;
+        Ok(ZenohBus {
+            node: Arc::new(node),
+            _context: Arc::new(context),
+        })
+    }
+
+    /// A publisher on `topic`.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError::Middleware`].
+    pub fn publisher<M: Message>(&self, topic: Topic<M>) -> Result<ZenohPublisher<M>, CreateError> {
+        ZenohPublisher::create(self, topic)
+    }
+
+    /// A subscriber on `topic`.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError::BadDepth`], [`CreateError::Middleware`].
+    pub fn subscriber<M: Message>(
+        &self,
+        topic: Topic<M>,
+        depth: Depth,
+    ) -> Result<ZenohSubscriber<M>, CreateError> {
+        ZenohSubscriber::create(self, topic, depth)
+    }
+}
+
+impl fmt::Debug for ZenohBus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ZenohBus")
+            .field("node", &self.node.name())
+            .finish_non_exhaustive()
+    }
+}
+
+fn middleware(topic: &str, what: &'static str, reason: String) -> CreateError {
+    CreateError::Middleware {
+        transport: "Zenoh",
+        topic: topic.into(),
+        what,
+        reason,
+    }
+}

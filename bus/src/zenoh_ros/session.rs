@@ -1,0 +1,98 @@
+//! Opening Zenoh as rmw_zenoh does it.
+
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+use hiroz::{
+    Builder,
+    config::{RouterConfigBuilder, SessionConfigBuilder},
+    context::{ZContext, ZContextBuilder},
+    node::ZNode,
+};
+use zenoh::Wait;
+
+use super::{ZenohConfig, ZenohMode};
+use crate::{endpoint, error::OpenError};
+
+/// Highest ROS domain.
+const MAX_DOMAIN: u32 = 232;
+/// How long the router may take to answer.
+const ROUTER_WAIT: Duration = Duration::from_secs(3);
+
+pub(super) fn open(config: &ZenohConfig) -> Result<(ZContext, ZNode), OpenError> {
+    if config.domain_id > MAX_DOMAIN {
+        return Err(OpenError::DomainOutOfRange {
+            domain_id: config.domain_id,
+        });
+    }
+    check_name(&config.node_name)?;
+    let (endpoint, settings) = match &config.mode {
+        ZenohMode::Router { listen } => {
+            endpoint::check(listen)?;
+            let settings = RouterConfigBuilder::new()
+                .with_listen_endpoint(listen)
+                .build_config();
+            (listen, settings)
+        }
+        ZenohMode::Connect { endpoint } => {
+            endpoint::check(endpoint)?;
+            let settings = SessionConfigBuilder::new()
+                .with_router_endpoint(endpoint)
+                .build_config();
+            (endpoint, settings)
+        }
+    };
+    let middleware = |error: zenoh::Error| OpenError::Middleware {
+        transport: "Zenoh",
+        reason: error.to_string(),
+    };
+    let context = ZContextBuilder::default()
+        .with_zenoh_config(settings.map_err(middleware)?)
+        .with_domain_id(config.domain_id as usize)
+        .disable_multicast_scouting()
+        .build()
+        .map_err(|error| endpoint::open_error(endpoint, "Zenoh", &error))?;
+    let node = context
+        .create_node(&config.node_name)
+        .without_parameters()
+        .build()
+        .map_err(middleware)?;
+    if let ZenohMode::Connect { endpoint } = &config.mode {
+        wait_for_router(&node, endpoint)?;
+    }
+    Ok((context, node))
+}
+
+/// The session goes on trying for ever by itself; whoever starts a node wants
+/// to be told.
+fn wait_for_router(node: &ZNode, endpoint: &str) -> Result<(), OpenError> {
+    let start = Instant::now();
+    while node.session().info().routers_zid().wait().next().is_none() {
+        if start.elapsed() > ROUTER_WAIT {
+            return Err(OpenError::Unreachable {
+                endpoint: endpoint.into(),
+                reason: format!("waited for {} s", ROUTER_WAIT.as_secs()),
+            });
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    Ok(())
+}
+
+/// Node names as ROS 2 has them.
+fn check_name(name: &str) -> Result<(), OpenError> {
+    let allowed = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    if name.is_empty()
+        || name.starts_with(|c: char| c.is_ascii_digit())
+        || !name.bytes().all(allowed)
+    {
+        return Err(OpenError::BadName {
+            what: "node",
+            name: name.into(),
+            reason: "use letters, digits and _, not beginning with a digit".into(),
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,253 @@
+//! Messages of every type, and recordings made of them.
+
+#![allow(dead_code)] // Each test uses its part.
+
+use std::{any::Any, error::Error, path::Path};
+
+use ferntast_bus::mcap::{BagOptions, BagSummary, BagWriter};
+use ferntast_msgs::{
+    Message, Text, Time,
+    sample::{
+        AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, HealthSample, JointFields,
+        JointSample, Level, LinkEnd, LinkStatusSample, OperatingState, OperatingStateSample,
+        PoseSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
+        WrenchSample,
+    },
+    topics::{self, Topic, Visitor},
+};
+
+/// When the sample recordings begin: 2025-01-01 00:00:00 UTC.
+pub const START: Time = Time::from_nanos(1_735_689_600_000_000_000);
+
+/// The `k`-th message of any type of the table, all fields distinct.
+pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
+    let x = f64::from(k);
+    pick(joint(x, stamp))
+        .or_else(|| pick(pose(x, stamp)))
+        .or_else(|| pick(wrench(x, stamp)))
+        .or_else(|| pick(temperature(x, stamp)))
+        .or_else(|| pick(contact_state(x, stamp)))
+        .or_else(|| pick(operating_state(k, stamp)))
+        .or_else(|| pick(state_command(k, stamp)))
+        .or_else(|| pick(authority(k, stamp)))
+        .or_else(|| pick(link_status(k, stamp)))
+        .or_else(|| pick(health(k, stamp)))
+}
+
+fn pick<M: Message, T: Message>(value: T) -> Option<M> {
+    (&value as &dyn Any).downcast_ref::<M>().copied()
+}
+
+pub fn joint(x: f64, stamp: Time) -> JointSample {
+    JointSample {
+        stamp,
+        position: [0.25 + x, -0.5 - x],
+        velocity: [1.5 + x, -2.5 - x],
+        effort: [10.5 + x, -20.25 - x],
+        fields: JointFields::ALL,
+        reserved: 0,
+    }
+}
+
+fn pose(x: f64, stamp: Time) -> PoseSample {
+    PoseSample {
+        stamp,
+        position: [0.5 + x, 0.125, 0.0],
+        orientation: [0.0, 0.0, 0.0, 1.0],
+        source: 0,
+        frame: Frame::FOLLOWER_BASE,
+        reserved: 0,
+    }
+}
+
+fn wrench(x: f64, stamp: Time) -> WrenchSample {
+    WrenchSample {
+        stamp,
+        force: [3.5 + x, -4.5, 0.0],
+        torque: [0.0, 0.0, 0.75],
+        frame: Frame::CONTACT,
+        reserved: 0,
+    }
+}
+
+fn temperature(x: f64, stamp: Time) -> TemperatureSample {
+    TemperatureSample {
+        stamp,
+        temperature: 20.5 + x,
+        variance: 0.25,
+    }
+}
+
+fn contact_state(x: f64, stamp: Time) -> ContactStateSample {
+    ContactStateSample {
+        stamp,
+        normal_force: 7.5 + x,
+        tangential_force: 2.25,
+        friction_coefficient: 0.375,
+        friction_coefficient_error: 0.0625,
+        in_contact: 1,
+        valid: 1,
+        near_rest: 0,
+        edge: Edge::UNLUBRICATED,
+        reserved: [0; 4],
+    }
+}
+
+pub fn operating_state(k: u32, stamp: Time) -> OperatingStateSample {
+    OperatingStateSample {
+        stamp,
+        state: OperatingState((k % 4) as u8),
+        is_homed: 1,
+        is_busy: 0,
+        reserved: [0; 5],
+        // The CRTK type has no room for a reason.
+        reason: Text::EMPTY,
+    }
+}
+
+pub fn state_command(k: u32, stamp: Time) -> StateCommandSample {
+    StateCommandSample {
+        stamp,
+        command: StateCommand((k % 4 + 1) as u8),
+        reserved: [0; 7],
+    }
+}
+
+fn authority(k: u32, stamp: Time) -> AuthoritySample {
+    AuthoritySample {
+        stamp,
+        holder: 0x1234_5678_9ABC_DEF0,
+        refused: 42,
+        refused_count: u64::from(k),
+        reason: Text::new("another master holds the authority"),
+    }
+}
+
+fn link_status(k: u32, stamp: Time) -> LinkStatusSample {
+    let count = u64::from(k);
+    LinkStatusSample {
+        stamp,
+        round_trip: 0.020,
+        delay: 0.010,
+        jitter: 0.0005,
+        loss: 0.001,
+        age: 0.012,
+        energy_in: 1.5,
+        energy_out: 1.25,
+        energy_dissipated: 0.25,
+        sent: 1000 + count,
+        received: 998 + count,
+        lost: 1,
+        refused: RefusedFrames {
+            length: 1,
+            version: 2,
+            session: 3,
+            checksum: 4,
+            time: 5,
+            value: 6,
+            replayed: 7,
+            late: 8,
+        },
+        law: Text::new("position_force"),
+        session: 7,
+        end: LinkEnd::FOLLOWER,
+        connected: 1,
+        reserved: [0; 4],
+    }
+}
+
+fn health(k: u32, stamp: Time) -> HealthSample {
+    let mut faults = Faults::default();
+    faults.set(Fault::DeadlineMissed);
+    HealthSample {
+        stamp,
+        rate: 999.5,
+        lateness_p99: 0.000_02,
+        input_age: 0.001,
+        missed: u64::from(k),
+        refused: 2,
+        lost: 3,
+        faults,
+        node: Text::new("servo"),
+        message: Text::new("1 deadline missed"),
+        process: 4321,
+        level: Level::WARN,
+        reserved: [0; 3],
+    }
+}
+
+/// Options with all that can be said about a recording.
+pub fn options() -> BagOptions {
+    BagOptions {
+        custom: [(
+            "ferntast".to_owned(),
+            [
+                (
+                    "scenario".to_owned(),
+                    "seed = 1\n[arm]\nname = \"rokviss\"\n".to_owned(),
+                ),
+                ("version".to_owned(), "0.1.0".to_owned()),
+            ]
+            .into(),
+        )]
+        .into(),
+        ..BagOptions::default()
+    }
+}
+
+/// When the `k`-th message of every topic is logged: every 10 ms.
+pub fn log_time(k: u32) -> Time {
+    START.plus_nanos(i64::from(k) * 10_000_000)
+}
+
+struct Record<'a> {
+    writer: &'a mut BagWriter,
+    k: u32,
+    failed: Option<Box<dyn Error>>,
+}
+
+impl Record<'_> {
+    fn one<M: Message>(&mut self, topic: Topic<M>) -> Result<(), Box<dyn Error>> {
+        let now = log_time(self.k);
+        let message: M =
+            sample(self.k, now).ok_or_else(|| format!("no sample for {}", topic.name))?;
+        let channel = self.writer.topic(topic)?;
+        self.writer
+            .write(channel, now, now.plus_nanos(-1000), &message)?;
+        Ok(())
+    }
+}
+
+impl Visitor for Record<'_> {
+    fn topic<M: Message>(&mut self, topic: Topic<M>) {
+        if self.failed.is_none() {
+            self.failed = self.one(topic).err();
+        }
+    }
+}
+
+/// Writes `messages` messages on every topic of the table.
+pub fn record(
+    writer: &mut BagWriter,
+    messages: std::ops::Range<u32>,
+) -> Result<(), Box<dyn Error>> {
+    for k in messages {
+        let mut visitor = Record {
+            writer,
+            k,
+            failed: None,
+        };
+        topics::visit(&mut visitor);
+        if let Some(error) = visitor.failed {
+            return Err(error);
+        }
+    }
+    Ok(())
+}
+
+/// A closed recording with `messages` messages on every topic of the table.
+pub fn write_sample_bag(directory: &Path, messages: u32) -> Result<BagSummary, Box<dyn Error>> {
+    let mut writer = BagWriter::create(directory, options())?;
+    record(&mut writer, 0..messages)?;
+    Ok(writer.finish()?)
+}

@@ -1,0 +1,329 @@
+//! The haptic master: whose hand it is, whether to believe it, and what force
+//! it gets.
+//!
+//! Hand commands of any number of sources are [offered](Master::offer) as they
+//! come; one [step](Master::step) a period gives hand and force.
+//!
+//! A silent hand gets no force and is not passed on, but it does not latch the
+//! master: the arm's servo latches. Force comes back no faster than the rate
+//! limit allows.
+
+mod authority;
+mod config;
+mod force;
+
+pub use authority::{Authority, NotAuthorised};
+pub use config::MasterConfig;
+pub use force::{ForceLimiter, LimitedForce};
+
+use crate::delay::Motion;
+use crate::operating::{OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
+use crate::{nanoseconds, seconds};
+use ferntast_model::ParameterError;
+
+/// Position of a hand, as one source says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandCommand {
+    /// When it was measured \[ns since the UNIX epoch\]; zero is invalid.
+    pub stamp_ns: i64,
+    /// Who says so, as the middleware tells senders apart.
+    pub source: u64,
+    /// Position, leader base frame \[m\].
+    pub position: [f64; 3],
+}
+
+/// Why a hand command was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum HandRefusal {
+    /// The master is not enabled.
+    #[error("the master is {}; send enable or resume", .state.name())]
+    NotEnabled {
+        /// The state that it is in.
+        state: OperatingState,
+    },
+    /// The stamp is zero or negative.
+    #[error("the hand's stamp is zero; stamp poses with the time they were measured")]
+    StampZero,
+    /// Not newer than the last one.
+    #[error("the hand's stamp is {back:.6} s behind the one before; send stamps that increase")]
+    StampBackwards {
+        /// How far back \[s\].
+        back: f64,
+    },
+    /// Measured too long ago.
+    #[error("the hand's pose is {age:.3} s old, {limit} s at most; check clocks and delays")]
+    TooOld {
+        /// Its age \[s\].
+        age: f64,
+        /// Largest age \[s\].
+        limit: f64,
+    },
+    /// Measured in the future.
+    #[error("the hand's pose is stamped {ahead:.3} s in the future; check the clocks")]
+    FromFuture {
+        /// How far ahead \[s\].
+        ahead: f64,
+    },
+    /// NaN or infinite.
+    #[error("the hand's position is not finite; send numbers")]
+    NotFinite,
+    /// Outside the workspace.
+    #[error("the hand is at {value:.4} m on axis {axis}, outside ±{limit} m; stay inside")]
+    OutOfRange {
+        /// 0, 1, 2 for x, y, z.
+        axis: u8,
+        /// Where it is \[m\].
+        value: f64,
+        /// Where the workspace ends \[m\].
+        limit: f64,
+    },
+    /// Further from the last one than a hand can move.
+    #[error(
+        "the hand jumps {distance:.4} m, {speed:.2} m/s; come back to where it was, or pause and resume"
+    )]
+    Jump {
+        /// Distance from the last position acted on \[m\].
+        distance: f64,
+        /// Speed that it implies \[m/s\].
+        speed: f64,
+    },
+    /// Another source holds the authority.
+    #[error(transparent)]
+    NotAuthorised(#[from] NotAuthorised),
+}
+
+/// Hand commands refused since the start, by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HandRefusalCounts {
+    /// Not finite, or with a stamp that is zero or goes backwards.
+    pub invalid: u64,
+    /// Too old or from the future.
+    pub time: u64,
+    /// Outside the workspace.
+    pub out_of_range: u64,
+    /// Jumps.
+    pub jump: u64,
+    /// From a source without authority.
+    pub unauthorised: u64,
+    /// While the master was not enabled.
+    pub not_enabled: u64,
+}
+
+/// What a step of the master gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MasterOutput {
+    /// The hand, as far as it can be believed now; `None` while it is silent,
+    /// or the master is not enabled.
+    pub hand: Option<Motion>,
+    /// The hand moved on since the last step: pass it on.
+    pub fresh: bool,
+    /// Force on the hand \[N\].
+    pub force: [f64; 3],
+    /// Magnitude or rate of the force was limited.
+    pub force_limited: bool,
+    /// The operating state.
+    pub state: OperatingState,
+    /// Why it is in this state.
+    pub reason: Reason,
+    /// Time since the last valid hand command \[s\]; NaN before the first.
+    pub hand_age: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Hand {
+    stamp_ns: i64,
+    accepted_ns: i64,
+    motion: Motion,
+}
+
+/// The haptic master.
+#[derive(Clone, Debug)]
+pub struct Master {
+    config: MasterConfig,
+    machine: StateMachine,
+    authority: Authority,
+    limiter: ForceLimiter,
+    hand: Option<Hand>,
+    fresh: bool,
+    refusals: HandRefusalCounts,
+}
+
+/// Clocks may disagree by this much [s].
+const CLOCK_TOLERANCE: f64 = 0.050;
+
+impl Master {
+    /// A master that is disabled.
+    ///
+    /// # Errors
+    ///
+    /// The first value of `config` that is out of bounds.
+    pub fn new(config: &MasterConfig) -> Result<Master, ParameterError> {
+        config.validate()?;
+        Ok(Master {
+            config: config.clone(),
+            machine: StateMachine::default(),
+            authority: Authority::new(config.release_after),
+            limiter: ForceLimiter::new(config.force_limit, config.force_rate_limit),
+            hand: None,
+            fresh: false,
+            refusals: HandRefusalCounts::default(),
+        })
+    }
+
+    /// The operating state.
+    pub fn state(&self) -> OperatingState {
+        self.machine.state()
+    }
+
+    /// Who holds the authority, and who was refused.
+    pub fn authority(&self) -> &Authority {
+        &self.authority
+    }
+
+    /// Hand commands refused since the start.
+    pub fn refusals(&self) -> HandRefusalCounts {
+        self.refusals
+    }
+
+    /// Carries out a state command. `disable` releases the authority.
+    ///
+    /// # Errors
+    ///
+    /// [`StateRefusal`]; the state stays.
+    pub fn command(&mut self, command: StateCommand) -> Result<(), StateRefusal> {
+        self.machine.command(command, true)?;
+        if command == StateCommand::Disable {
+            self.authority.release();
+        }
+        if self.state() != OperatingState::Enabled || command == StateCommand::Resume {
+            self.hand = None;
+        }
+        Ok(())
+    }
+
+    /// Takes a hand command that was not offered before.
+    ///
+    /// # Errors
+    ///
+    /// [`HandRefusal`]; nothing is remembered of a refused command.
+    pub fn offer(&mut self, now_ns: i64, command: &HandCommand) -> Result<(), HandRefusal> {
+        let result = self.judge(now_ns, command);
+        if let Err(refusal) = &result {
+            let counts = &mut self.refusals;
+            *match refusal {
+                HandRefusal::NotEnabled { .. } => &mut counts.not_enabled,
+                HandRefusal::StampZero
+                | HandRefusal::StampBackwards { .. }
+                | HandRefusal::NotFinite => &mut counts.invalid,
+                HandRefusal::TooOld { .. } | HandRefusal::FromFuture { .. } => &mut counts.time,
+                HandRefusal::OutOfRange { .. } => &mut counts.out_of_range,
+                HandRefusal::Jump { .. } => &mut counts.jump,
+                HandRefusal::NotAuthorised(_) => &mut counts.unauthorised,
+            } += 1;
+        }
+        result
+    }
+
+    fn judge(&mut self, now_ns: i64, command: &HandCommand) -> Result<(), HandRefusal> {
+        if command.stamp_ns <= 0 {
+            return Err(HandRefusal::StampZero);
+        }
+        if !command.position.iter().all(|value| value.is_finite()) {
+            return Err(HandRefusal::NotFinite);
+        }
+        let age = seconds(now_ns.saturating_sub(command.stamp_ns));
+        if age > self.config.hand_age {
+            let limit = self.config.hand_age;
+            return Err(HandRefusal::TooOld { age, limit });
+        }
+        if age < -CLOCK_TOLERANCE {
+            return Err(HandRefusal::FromFuture { ahead: -age });
+        }
+        for (axis, (&value, &limit)) in command
+            .position
+            .iter()
+            .zip(&self.config.workspace)
+            .enumerate()
+        {
+            if value.abs() > limit {
+                let axis = axis as u8;
+                return Err(HandRefusal::OutOfRange { axis, value, limit });
+            }
+        }
+        let state = self.state();
+        if state != OperatingState::Enabled {
+            return Err(HandRefusal::NotEnabled { state });
+        }
+        self.authority.may(now_ns, command.source)?;
+        // The hand of another source starts anew.
+        let last = self
+            .hand
+            .filter(|_| self.authority.holder() == Some(command.source));
+        let velocity = match last {
+            Some(last) => self.step_from(&last, command)?,
+            None => [0.0; 3],
+        };
+        self.authority.take(now_ns, command.source);
+        self.hand = Some(Hand {
+            stamp_ns: command.stamp_ns,
+            accepted_ns: now_ns,
+            motion: Motion {
+                position: command.position,
+                velocity,
+            },
+        });
+        self.fresh = true;
+        Ok(())
+    }
+
+    /// Filtered velocity [m/s] over the step from `last`.
+    fn step_from(&self, last: &Hand, command: &HandCommand) -> Result<[f64; 3], HandRefusal> {
+        if command.stamp_ns <= last.stamp_ns {
+            let back = seconds(last.stamp_ns - command.stamp_ns);
+            return Err(HandRefusal::StampBackwards { back });
+        }
+        let passed = seconds(command.stamp_ns.saturating_sub(last.stamp_ns));
+        let way: [f64; 3] =
+            std::array::from_fn(|axis| command.position[axis] - last.motion.position[axis]);
+        let distance = way.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let counted = passed.min(self.config.silence);
+        if distance > self.config.jump_speed * counted + self.config.jump_slack {
+            let speed = distance / passed;
+            return Err(HandRefusal::Jump { distance, speed });
+        }
+        // First-order low pass, exact for a sample that stays.
+        let share = 1.0 - (-passed / self.config.velocity_filter).exp();
+        Ok(std::array::from_fn(|axis| {
+            let before = last.motion.velocity[axis];
+            before + share * (way[axis] / passed - before)
+        }))
+    }
+
+    /// One period of `dt` \[s\] at `now_ns`. `reflected` is the force that the
+    /// link wants on the hand \[N\]; `None` while there is none.
+    pub fn step(&mut self, now_ns: i64, dt: f64, reflected: Option<[f64; 3]>) -> MasterOutput {
+        self.authority.age(now_ns);
+        let enabled = self.state() == OperatingState::Enabled;
+        let age_ns = self
+            .hand
+            .map(|hand| now_ns.saturating_sub(hand.accepted_ns));
+        let live = enabled && age_ns.is_some_and(|age| age <= nanoseconds(self.config.silence));
+        let force = if live {
+            self.limiter.step(dt, reflected.unwrap_or([0.0; 3]))
+        } else {
+            self.limiter.stop()
+        };
+        MasterOutput {
+            hand: self.hand.filter(|_| live).map(|hand| hand.motion),
+            fresh: std::mem::take(&mut self.fresh) && live,
+            force: force.force,
+            force_limited: force.limited,
+            state: self.machine.state(),
+            reason: self.machine.reason(),
+            hand_age: age_ns.map_or(f64::NAN, seconds),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,24 @@
+//! Control laws: joint servo, force observer, haptic rendering, delay compensation.
+//!
+//! Everything here is a pure step: state, inputs and `dt` in, outputs out. No
+//! clock, no allocation, no lock and no panic in a step; what is refused or
+//! limited is a value in the output. Stamps are `i64` nanoseconds since the
+//! UNIX epoch (zero is invalid), durations `f64` seconds.
+
+pub mod delay;
+pub mod estimator;
+pub mod frame;
+pub mod haptics;
+pub mod meter;
+pub mod operating;
+pub mod servo;
+
+/// Nanoseconds as seconds.
+pub(crate) fn seconds(nanos: i64) -> f64 {
+    nanos as f64 / 1e9
+}
+
+/// Seconds as nanoseconds, rounded; saturates.
+pub(crate) fn nanoseconds(seconds: f64) -> i64 {
+    (seconds * 1e9).round() as i64
+}

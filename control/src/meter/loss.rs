@@ -1,0 +1,170 @@
+//! Loss over a sliding second, by sequence number.
+
+use super::behind;
+use crate::nanoseconds;
+
+/// Sequence numbers remembered: a second at 4 kHz. Power of two.
+const REMEMBERED: usize = 4096;
+/// Length of the window [s].
+const WINDOW: f64 = 1.0;
+
+/// What an arrival is, by its sequence number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// Newer than all before.
+    Newest,
+    /// Older than the newest, and not seen before as far as is remembered.
+    Late,
+    /// Seen before.
+    Replayed,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Slot {
+    /// When its fate became known: its arrival, or that of a newer one [ns].
+    known_ns: i64,
+    arrived: bool,
+}
+
+/// Which sequence numbers arrived. The fate of a frame is known once it or a
+/// newer one arrived; a late frame is not a lost one.
+#[derive(Clone, Debug)]
+pub struct LossWindow {
+    slots: Box<[Slot; REMEMBERED]>,
+    newest: Option<u32>,
+    /// When the newest arrived [ns].
+    newest_ns: i64,
+    /// How many numbers, counting back from the newest, are remembered.
+    remembered: u32,
+    /// How many of them are within the window.
+    inside: u32,
+    /// How many of those did not arrive.
+    missing: u32,
+    lost: u64,
+}
+
+impl Default for LossWindow {
+    fn default() -> Self {
+        LossWindow::new()
+    }
+}
+
+impl LossWindow {
+    /// A window that has seen nothing.
+    pub fn new() -> Self {
+        LossWindow {
+            slots: Box::new([Slot::default(); REMEMBERED]),
+            newest: None,
+            newest_ns: 0,
+            remembered: 0,
+            inside: 0,
+            missing: 0,
+            lost: 0,
+        }
+    }
+
+    /// The sender counts from anew; what was counted as lost stays so.
+    pub fn restart(&mut self) {
+        self.newest = None;
+        self.remembered = 0;
+        self.inside = 0;
+        self.missing = 0;
+    }
+
+    /// Frame `sequence` arrived at `now_ns`.
+    pub fn arrived(&mut self, sequence: u32, now_ns: i64) -> Fate {
+        match self.newest {
+            None => self.append(sequence, true, now_ns),
+            Some(newest) if behind(newest, sequence) => {
+                let gap = sequence.wrapping_sub(newest) - 1;
+                // Of a gap longer than the memory only the end is remembered.
+                let kept = gap.min(REMEMBERED as u32 - 1);
+                self.lost += u64::from(gap - kept);
+                for missing in (1..=kept).rev() {
+                    self.append(sequence.wrapping_sub(missing), false, now_ns);
+                }
+                self.append(sequence, true, now_ns);
+            }
+            Some(newest) => return self.arrived_behind(newest.wrapping_sub(sequence)),
+        }
+        self.newest_ns = now_ns;
+        self.forget(now_ns);
+        Fate::Newest
+    }
+
+    fn append(&mut self, sequence: u32, arrived: bool, known_ns: i64) {
+        if self.remembered == REMEMBERED as u32 {
+            // The slot is reused: it leaves the window now, if it was in it.
+            if self.inside == self.remembered {
+                self.leave(sequence);
+            }
+            self.remembered -= 1;
+        }
+        self.slots[index(sequence)] = Slot { known_ns, arrived };
+        self.newest = Some(sequence);
+        self.remembered += 1;
+        self.inside += 1;
+        if !arrived {
+            self.missing += 1;
+            self.lost += 1;
+        }
+    }
+
+    fn arrived_behind(&mut self, back: u32) -> Fate {
+        let Some(newest) = self.newest.filter(|_| back < self.remembered) else {
+            return Fate::Late;
+        };
+        let slot = &mut self.slots[index(newest.wrapping_sub(back))];
+        if slot.arrived {
+            return Fate::Replayed;
+        }
+        slot.arrived = true;
+        self.lost -= 1;
+        if back < self.inside {
+            self.missing -= 1;
+        }
+        Fate::Late
+    }
+
+    fn leave(&mut self, sequence: u32) {
+        self.inside -= 1;
+        if !self.slots[index(sequence)].arrived {
+            self.missing -= 1;
+        }
+    }
+
+    fn forget(&mut self, now_ns: i64) {
+        let limit = now_ns.saturating_sub(nanoseconds(WINDOW));
+        while let Some(newest) = self.newest
+            && self.inside > 0
+        {
+            let oldest = newest.wrapping_sub(self.inside - 1);
+            if self.slots[index(oldest)].known_ns > limit {
+                break;
+            }
+            self.leave(oldest);
+        }
+    }
+
+    /// Share that was lost in the second before `now_ns`, 0 … 1; 1 when
+    /// nothing arrived in it; NaN before the first arrival.
+    pub fn loss(&mut self, now_ns: i64) -> f64 {
+        if self.newest.is_none() {
+            return f64::NAN;
+        }
+        self.forget(now_ns);
+        if self.inside == 0 {
+            return 1.0;
+        }
+        f64::from(self.missing) / f64::from(self.inside)
+    }
+
+    /// Lost since the start.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+}
+
+fn index(sequence: u32) -> usize {
+    sequence as usize % REMEMBERED
+}

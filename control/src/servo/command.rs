@@ -1,0 +1,404 @@
+//! Which commands are acted on.
+
+use super::ServoConfig;
+use crate::{nanoseconds, seconds};
+use ferntast_model::kinematics::{Elbow, Kinematics};
+use ferntast_model::{JOINTS, Vector2};
+
+/// Where to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// Tip position x, y, z, base frame \[m\] (`servo_cp`). The arm works in
+    /// the plane z = 0: z must be finite and is not looked at any further.
+    Tip([f64; 3]),
+    /// Joint positions \[rad\] (`servo_jp`).
+    Joints([f64; JOINTS]),
+}
+
+/// A command with its stamp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Command {
+    /// When it was made \[ns since the UNIX epoch\]; zero is invalid.
+    pub stamp_ns: i64,
+    /// Where to go.
+    pub target: Target,
+}
+
+impl Command {
+    fn same_bits(&self, other: &Command) -> bool {
+        let bits = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+        self.stamp_ns == other.stamp_ns
+            && match (&self.target, &other.target) {
+                (Target::Tip(a), Target::Tip(b)) => bits(a, b),
+                (Target::Joints(a), Target::Joints(b)) => bits(a, b),
+                _ => false,
+            }
+    }
+}
+
+/// Why a command was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CommandRefusal {
+    /// The stamp is zero or negative.
+    #[error("the command's stamp is zero; stamp commands with the time they were made")]
+    StampZero,
+    /// Not newer than the command acted on last.
+    #[error("the command's stamp is {back:.6} s behind the one before; send stamps that increase")]
+    StampBackwards {
+        /// How far back \[s\].
+        back: f64,
+    },
+    /// Made too long ago.
+    #[error("the command is {age:.4} s old, {limit} s at most; check clocks and delays")]
+    TooOld {
+        /// Its age \[s\].
+        age: f64,
+        /// Largest age \[s\].
+        limit: f64,
+    },
+    /// Made in the future.
+    #[error("the command is stamped {ahead:.4} s in the future; check the clocks")]
+    FromFuture {
+        /// How far ahead \[s\].
+        ahead: f64,
+    },
+    /// NaN or infinite.
+    #[error("the command is not finite; send numbers")]
+    NotFinite,
+    /// Outside workspace, reach or joint limits.
+    #[error("the command is outside the {limit}; stay inside")]
+    OutOfRange {
+        /// Which limit.
+        limit: Range,
+    },
+    /// Further from the last command than a hand can move.
+    #[error(
+        "the command jumps {distance:.4} m, {speed:.2} m/s; come back to where it was, or pause and resume"
+    )]
+    Jump {
+        /// Distance of the tip from the last command acted on \[m\].
+        distance: f64,
+        /// Speed that it implies \[m/s\].
+        speed: f64,
+    },
+}
+
+/// The limit that a command is outside of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// The box that tip commands must be in.
+    Workspace,
+    /// What the links reach.
+    Reach,
+    /// Limits of joint 1 or 2.
+    Joint(u8),
+}
+
+impl std::fmt::Display for Range {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Range::Workspace => write!(formatter, "workspace"),
+            Range::Reach => write!(formatter, "arm's reach"),
+            Range::Joint(joint) => write!(formatter, "limits of joint {joint}"),
+        }
+    }
+}
+
+/// Clocks on one host may disagree by this much \[s\].
+const CLOCK_TOLERANCE: f64 = 0.005;
+
+#[derive(Clone, Copy, Debug)]
+struct Accepted {
+    stamp_ns: i64,
+    tip: Vector2<f64>,
+}
+
+/// Decides which commands are acted on, one at a time.
+#[derive(Clone, Debug)]
+pub struct CommandCheck {
+    kinematics: Kinematics,
+    lower: [f64; JOINTS],
+    upper: [f64; JOINTS],
+    workspace: [[f64; 2]; 2],
+    age: f64,
+    jump_speed: f64,
+    jump_slack: f64,
+    /// Longest time that counts towards a jump [ns]: longer silences pause.
+    horizon_ns: i64,
+    seen: Option<Command>,
+    /// Stamp of the newest command acted on, kept when re-armed.
+    newest_ns: i64,
+    last: Option<Accepted>,
+}
+
+impl CommandCheck {
+    /// Checks against joint limits `lower`, `upper` \[rad\] and `config`.
+    pub fn new(
+        kinematics: Kinematics,
+        lower: [f64; JOINTS],
+        upper: [f64; JOINTS],
+        config: &ServoConfig,
+    ) -> Self {
+        CommandCheck {
+            kinematics,
+            lower,
+            upper,
+            workspace: [config.workspace_lower, config.workspace_upper],
+            age: config.command_age,
+            jump_speed: config.jump_speed,
+            jump_slack: config.jump_slack,
+            horizon_ns: nanoseconds(config.command_watchdog),
+            seen: None,
+            newest_ns: 0,
+            last: None,
+        }
+    }
+
+    /// Forgets where the last command was: the next one may be anywhere in
+    /// the workspace (the servo approaches it on a ramp).
+    pub fn rearm(&mut self) {
+        self.last = None;
+    }
+
+    /// Whether `command` is another one than at the last call; it counts as
+    /// seen from now on. The newest sample of a stream is read many times.
+    pub fn is_new(&mut self, command: &Command) -> bool {
+        let new = !self
+            .seen
+            .as_ref()
+            .is_some_and(|seen| seen.same_bits(command));
+        self.seen = Some(*command);
+        new
+    }
+
+    /// Joint positions \[rad\] for a new `command` at `now_ns`, elbow bent as
+    /// in `elbow`.
+    ///
+    /// # Errors
+    ///
+    /// [`CommandRefusal`]; nothing is remembered of a refused command.
+    pub fn check(
+        &mut self,
+        command: &Command,
+        now_ns: i64,
+        elbow: Elbow,
+    ) -> Result<[f64; JOINTS], CommandRefusal> {
+        let stamp_ns = command.stamp_ns;
+        if stamp_ns <= 0 {
+            return Err(CommandRefusal::StampZero);
+        }
+        let finite = match &command.target {
+            Target::Tip(tip) => tip.iter().all(|value| value.is_finite()),
+            Target::Joints(joints) => joints.iter().all(|value| value.is_finite()),
+        };
+        if !finite {
+            return Err(CommandRefusal::NotFinite);
+        }
+        if stamp_ns <= self.newest_ns {
+            let back = seconds(self.newest_ns - stamp_ns);
+            return Err(CommandRefusal::StampBackwards { back });
+        }
+        let age = seconds(now_ns.saturating_sub(stamp_ns));
+        if age > self.age {
+            let limit = self.age;
+            return Err(CommandRefusal::TooOld { age, limit });
+        }
+        if age < -CLOCK_TOLERANCE {
+            return Err(CommandRefusal::FromFuture { ahead: -age });
+        }
+        let (joints, tip) = self.joints(&command.target, elbow)?;
+        if let Some(last) = self.last {
+            let passed_ns = (stamp_ns - last.stamp_ns).clamp(0, self.horizon_ns);
+            let distance = (tip - last.tip).norm();
+            if distance > self.jump_speed * seconds(passed_ns) + self.jump_slack {
+                let speed = distance / seconds(passed_ns).max(1e-9);
+                return Err(CommandRefusal::Jump { distance, speed });
+            }
+        }
+        self.newest_ns = stamp_ns;
+        self.last = Some(Accepted { stamp_ns, tip });
+        Ok(joints)
+    }
+
+    fn joints(
+        &self,
+        target: &Target,
+        elbow: Elbow,
+    ) -> Result<([f64; JOINTS], Vector2<f64>), CommandRefusal> {
+        let (joints, tip) = match target {
+            Target::Tip(tip) => {
+                let tip = Vector2::new(tip[0], tip[1]);
+                let limit = Range::Reach;
+                let joints = self
+                    .kinematics
+                    .inverse(&tip, elbow)
+                    .map_err(|_| CommandRefusal::OutOfRange { limit })?;
+                (joints, tip)
+            }
+            Target::Joints(joints) => {
+                let joints = Vector2::new(joints[0], joints[1]);
+                (joints, self.kinematics.forward(&joints))
+            }
+        };
+        let [lower, upper] = &self.workspace;
+        if (0..2).any(|axis| tip[axis] < lower[axis] || tip[axis] > upper[axis]) {
+            let limit = Range::Workspace;
+            return Err(CommandRefusal::OutOfRange { limit });
+        }
+        for joint in 0..JOINTS {
+            if joints[joint] < self.lower[joint] || joints[joint] > self.upper[joint] {
+                let limit = Range::Joint(joint as u8 + 1);
+                return Err(CommandRefusal::OutOfRange { limit });
+            }
+        }
+        Ok(([joints[0], joints[1]], tip))
+    }
+}
+
+/// Commands refused since the start, by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RefusalCounts {
+    /// Stamp of zero, or going backwards.
+    pub stamp: u64,
+    /// Too old or from the future.
+    pub time: u64,
+    /// Not finite.
+    pub not_finite: u64,
+    /// Outside workspace, reach or joint limits.
+    pub out_of_range: u64,
+    /// Jumps.
+    pub jump: u64,
+}
+
+impl RefusalCounts {
+    /// Counts `refusal`.
+    pub fn count(&mut self, refusal: &CommandRefusal) {
+        let counter = match refusal {
+            CommandRefusal::StampZero | CommandRefusal::StampBackwards { .. } => &mut self.stamp,
+            CommandRefusal::TooOld { .. } | CommandRefusal::FromFuture { .. } => &mut self.time,
+            CommandRefusal::NotFinite => &mut self.not_finite,
+            CommandRefusal::OutOfRange { .. } => &mut self.out_of_range,
+            CommandRefusal::Jump { .. } => &mut self.jump,
+        };
+        *counter += 1;
+    }
+
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.stamp + self.time + self.not_finite + self.out_of_range + self.jump
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const MS: i64 = 1_000_000;
+    const NOW: i64 = 1_700_000_000_000_000_000;
+
+    fn check() -> CommandCheck {
+        CommandCheck::new(
+            Kinematics::new([0.25, 0.25]),
+            [-1.5, 0.2],
+            [1.5, 2.5],
+            &ServoConfig::default(),
+        )
+    }
+
+    fn tip(stamp_ns: i64, x: f64, y: f64) -> Command {
+        let target = Target::Tip([x, y, 0.0]);
+        Command { stamp_ns, target }
+    }
+
+    fn at(check: &mut CommandCheck, command: Command) -> Result<[f64; 2], CommandRefusal> {
+        check.check(&command, NOW, Elbow::Positive)
+    }
+
+    #[test]
+    fn each_fault_has_its_own_reason() {
+        let mut check = check();
+        at(&mut check, tip(NOW - 4 * MS, 0.35, 0.0)).unwrap();
+        let refusals = [
+            (tip(0, 0.35, 0.0), "StampZero"),
+            (tip(-5, 0.35, 0.0), "StampZero"),
+            (tip(NOW, f64::NAN, 0.0), "NotFinite"),
+            (tip(NOW, 0.3, f64::INFINITY), "NotFinite"),
+            (tip(NOW - 4 * MS, 0.35, 0.0), "StampBackwards"),
+            (tip(NOW - 5 * MS, 0.35, 0.0), "StampBackwards"),
+            (tip(NOW + 6 * MS, 0.35, 0.0), "FromFuture"),
+            (tip(NOW, 0.6, 0.0), "OutOfRange { limit: Reach }"),
+            (tip(NOW, 0.4999, 0.0), "OutOfRange { limit: Joint(2) }"),
+            (tip(NOW, 0.40, 0.0), "Jump"),
+        ];
+        for (command, expected) in refusals {
+            let refusal = at(&mut check, command).unwrap_err();
+            assert!(format!("{refusal:?}").starts_with(expected), "{refusal:?}");
+        }
+        // Nothing of all that moved the reference.
+        at(&mut check, tip(NOW - 3 * MS, 0.351, 0.0)).unwrap();
+        let old = check.check(
+            &tip(NOW - 2 * MS, 0.351, 0.0),
+            NOW + 19 * MS,
+            Elbow::Positive,
+        );
+        assert!(matches!(old, Err(CommandRefusal::TooOld { .. })), "{old:?}");
+    }
+
+    #[test]
+    fn a_jump_stays_refused_until_it_comes_back_or_is_rearmed() {
+        let mut check = check();
+        let mut now = NOW;
+        let mut send = |check: &mut CommandCheck, x: f64| {
+            now += 2 * MS;
+            check.check(&tip(now, x, 0.0), now, Elbow::Positive)
+        };
+        send(&mut check, 0.30).unwrap();
+        for _ in 0..100 {
+            assert!(send(&mut check, 0.42).is_err());
+        }
+        send(&mut check, 0.301).unwrap();
+        assert!(send(&mut check, 0.42).is_err());
+        check.rearm();
+        send(&mut check, 0.42).unwrap();
+    }
+
+    #[test]
+    fn the_fastest_recorded_bursts_pass() {
+        // 3 m/s, sampled every millisecond.
+        let mut check = check();
+        for k in 0..30 {
+            let now = NOW + k * MS;
+            check
+                .check(&tip(now, 0.3 + 0.003 * k as f64, 0.0), now, Elbow::Positive)
+                .unwrap();
+        }
+    }
+
+    #[test]
+    fn the_same_sample_is_new_once_even_when_it_is_garbage() {
+        let mut check = check();
+        let garbage = tip(0, f64::NAN, 0.0);
+        assert!(check.is_new(&garbage));
+        assert!(!check.is_new(&garbage));
+        assert!(check.is_new(&tip(0, 1.0, 0.0)));
+    }
+
+    proptest! {
+        /// Whatever comes in, what comes out is within the joint limits.
+        #[test]
+        fn accepted_commands_are_within_limits(
+            commands in proptest::collection::vec((any::<i64>(), any::<f64>(), any::<f64>(), any::<bool>()), 1..20),
+            near in proptest::collection::vec((0..30i64, -0.6..0.6f64, -0.6..0.6f64), 1..20),
+        ) {
+            let mut check = check();
+            let near = near.into_iter().map(|(age, x, y)| (NOW - age * MS, x, y, false));
+            for (stamp_ns, x, y, joints) in commands.into_iter().chain(near) {
+                let target = if joints { Target::Joints([x, y]) } else { Target::Tip([x, y, 0.0]) };
+                if let Ok(q) = check.check(&Command { stamp_ns, target }, NOW, Elbow::Positive) {
+                    prop_assert!((-1.5..=1.5).contains(&q[0]) && (0.2..=2.5).contains(&q[1]));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Joint position law.
+//!
+//! τ_m = [k_P (q_d − q)] + k_D (q̇_d − q̇) + J q̈_d + c τ_F(q̇_d)
+//!
+//! with the bracket limited: a setpoint far behind a surface presses with that
+//! much torque and no more. All on the motor side of the elasticity, after equation (2): motor inertia and
+//! friction are fed forward from the *setpoint*, so that neither measurement
+//! noise nor stiction chatter gets in. Feedback from the motor alone keeps
+//! actuator and sensor collocated, and the loop passive towards the links and
+//! what they touch (Spong 1987; Albu-Schäffer, Ott, Hirzinger 2007).
+//!
+//! While paused it is k_P (q_0 − q) − k_D q̇: a spring to where the arm was and a
+//! damper. A sampled spring and damper inject no energy as long as
+//! b > K T/2 + |B| (Colgate and Schenkel 1997), with b the joint's own viscous
+//! friction: about 165 Nm·s/rad against 1000 · 0.001 / 2 + 40.
+
+use super::{ServoConfig, Setpoint};
+use ferntast_model::JOINTS;
+use ferntast_model::ParameterError;
+use ferntast_model::friction::{Friction, FrictionState};
+use ferntast_model::joint::JointParameters;
+
+/// Position law of one joint.
+#[derive(Clone, Debug)]
+pub struct PositionLaw {
+    friction: Friction,
+    inertia: f64,
+    stiffness: f64,
+    pressing_limit: f64,
+    damping: f64,
+    hold_stiffness: f64,
+    hold_damping: f64,
+    torque_limit: f64,
+    compensation: f64,
+    smoothing: f64,
+}
+
+/// A motor torque, and whether it was limited.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LimitedTorque {
+    /// τ_m, joint side \[Nm\].
+    pub torque: f64,
+    /// It would have been more.
+    pub limited: bool,
+}
+
+impl PositionLaw {
+    /// The law of joint number `index` (0 or 1).
+    ///
+    /// # Errors
+    ///
+    /// When the joint's friction is not what the model knows.
+    pub fn new(
+        joint: &JointParameters,
+        index: usize,
+        config: &ServoConfig,
+    ) -> Result<PositionLaw, ParameterError> {
+        let index = index.min(JOINTS - 1);
+        Ok(PositionLaw {
+            friction: Friction::new(&joint.friction).map_err(|error| error.within("friction"))?,
+            inertia: joint.motor_inertia,
+            stiffness: config.stiffness[index],
+            pressing_limit: config.pressing_limit[index],
+            damping: config.damping[index],
+            hold_stiffness: config.hold_stiffness[index],
+            hold_damping: config.hold_damping[index],
+            torque_limit: joint.motor_torque_limit,
+            compensation: config.friction_compensation,
+            smoothing: config.friction_smoothing,
+        })
+    }
+
+    /// Motor torque that follows `setpoint`, from motor position \[rad\],
+    /// velocity \[rad/s\] and joint torque \[Nm\] (0 when not known).
+    pub fn follow(
+        &self,
+        setpoint: &Setpoint,
+        position: f64,
+        velocity: f64,
+        load: f64,
+    ) -> LimitedTorque {
+        let pressing = self.stiffness * (setpoint.position - position);
+        let limited = pressing.abs() > self.pressing_limit;
+        let feedback = pressing.clamp(-self.pressing_limit, self.pressing_limit)
+            + self.damping * (setpoint.velocity - velocity);
+        let feed_forward =
+            self.inertia * setpoint.acceleration + self.friction(setpoint.velocity, load);
+        let torque = self.limit(feedback + feed_forward);
+        LimitedTorque {
+            limited: torque.limited || limited,
+            ..torque
+        }
+    }
+
+    /// Motor torque that holds passively at `hold` \[rad\].
+    pub fn hold(&self, hold: f64, position: f64, velocity: f64) -> LimitedTorque {
+        self.limit(self.hold_stiffness * (hold - position) - self.hold_damping * velocity)
+    }
+
+    /// c τ_F at the setpoint's velocity. Below the smoothing speed it goes
+    /// linearly through zero: no step when the setpoint turns.
+    fn friction(&self, velocity: f64, load: f64) -> f64 {
+        let speed = velocity.abs();
+        let state = FrictionState {
+            velocity: speed.max(self.smoothing).copysign(velocity),
+            load,
+            ..FrictionState::default()
+        };
+        let fade = (speed / self.smoothing).min(1.0);
+        self.compensation * fade * self.friction.torque_within_range(&state).torque
+    }
+
+    fn limit(&self, torque: f64) -> LimitedTorque {
+        // NaN would pass `clamp`: an undefined torque is no torque.
+        if !torque.is_finite() {
+            return LimitedTorque {
+                torque: 0.0,
+                limited: true,
+            };
+        }
+        LimitedTorque {
+            torque: torque.clamp(-self.torque_limit, self.torque_limit),
+            limited: torque.abs() > self.torque_limit,
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Physics of the arm, its joints and its contact: pure functions of state and parameters.
+//!
+//! This is what servo, estimator and identification *believe*. The simulated
+//! arm has a truth of its own.
+//!
+//! Joint quantities are on the joint side of the gear; base frame, joint
+//! angles and signs are those of `ARCHITECTURE.md`. [`ArmModel`] gathers the
+//! parameters of a whole arm.
+
+pub mod arm;
+pub mod contact;
+pub mod contour;
+pub mod friction;
+pub mod joint;
+pub mod kinematics;
+mod parameter;
+
+pub use nalgebra::{Matrix2, Vector2};
+pub use parameter::{Parameter, ParameterError, check};
+
+use serde::{Deserialize, Serialize};
+
+/// Number of joints of the arm.
+pub const JOINTS: usize = 2;
+
+/// Everything that is believed of one arm and the contour it works on:
+/// the sections `[arm]`, `[[joint]]` (two) and `[contour]` of a file in
+/// `config/arms/`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArmModel {
+    /// Links and gravity.
+    pub arm: arm::ArmParameters,
+    /// Joint 1 and joint 2.
+    pub joint: [joint::JointParameters; JOINTS],
+    /// Edges and springs, and the nominal tip point between them.
+    pub contour: contour::Contour,
+}
+
+impl ArmModel {
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds, with key, value, bounds, unit.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.arm.validate().map_err(|error| error.within("arm"))?;
+        for (index, joint) in self.joint.iter().enumerate() {
+            joint
+                .validate()
+                .map_err(|error| error.within(&format!("joint[{index}]")))?;
+        }
+        self.contour
+            .validate()
+            .map_err(|error| error.within("contour"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHIPPED: &str = include_str!("../../config/arms/rokviss.toml");
+
+    /// The sections of an arm's file that this crate knows.
+    fn parse(text: &str) -> Result<ArmModel, toml::de::Error> {
+        let mut file: toml::Table = toml::from_str(text)?;
+        file.retain(|section, _| ["arm", "joint", "contour"].contains(&section));
+        file.try_into()
+    }
+
+    #[test]
+    fn the_shipped_arm_is_valid() {
+        parse(SHIPPED).unwrap().validate().unwrap();
+    }
+
+    #[test]
+    fn unknown_keys_and_wrong_counts_are_refused() {
+        let misspelt = parse(&SHIPPED.replace("center_of_mass", "centre_of_mass"));
+        assert!(misspelt.unwrap_err().to_string().contains("centre_of_mass"));
+        let three = format!("{SHIPPED}\n[[joint]]\n");
+        assert!(parse(&three).is_err());
+    }
+
+    #[test]
+    fn a_value_out_of_bounds_is_named_with_its_place() {
+        let mut model = parse(SHIPPED).unwrap();
+        model.joint[1].stiffness = 0.0;
+        let error = model.validate().unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "joint[1].stiffness = 0 Nm/rad is outside 10 … 1000000 Nm/rad; set it within these bounds"
+        );
+    }
+}

@@ -1,0 +1,125 @@
+//! Interfaces by name: their `.msg` texts, schemas and RIHS01 type hashes.
+//!
+//! Those that ferntast speaks are built in ([`names`]); others may be read
+//! into a [`Library`].
+
+mod definition;
+mod error;
+mod hash;
+mod library;
+mod parse;
+mod value;
+
+#[cfg(test)]
+mod hash_tests;
+#[cfg(test)]
+mod parse_tests;
+
+pub use definition::{Base, Constant, Count, Definition, Field, Primitive, Type};
+pub use error::{InterfaceError, ParseError, Problem};
+pub use library::Library;
+pub use parse::parse;
+pub use value::Value;
+
+use serde::Serialize;
+
+macro_rules! texts {
+    ($($name:literal: $path:literal;)*) => {
+        /// Name and `.msg` text of every interface that is built in.
+        const TEXTS: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../", $path)))),*];
+    };
+}
+
+texts! {
+    "builtin_interfaces/msg/Time": "standard/builtin_interfaces/msg/Time.msg";
+    "std_msgs/msg/Header": "standard/std_msgs/msg/Header.msg";
+    "sensor_msgs/msg/JointState": "standard/sensor_msgs/msg/JointState.msg";
+    "sensor_msgs/msg/Temperature": "standard/sensor_msgs/msg/Temperature.msg";
+    "geometry_msgs/msg/Point": "standard/geometry_msgs/msg/Point.msg";
+    "geometry_msgs/msg/Quaternion": "standard/geometry_msgs/msg/Quaternion.msg";
+    "geometry_msgs/msg/Vector3": "standard/geometry_msgs/msg/Vector3.msg";
+    "geometry_msgs/msg/Pose": "standard/geometry_msgs/msg/Pose.msg";
+    "geometry_msgs/msg/PoseStamped": "standard/geometry_msgs/msg/PoseStamped.msg";
+    "geometry_msgs/msg/Wrench": "standard/geometry_msgs/msg/Wrench.msg";
+    "geometry_msgs/msg/WrenchStamped": "standard/geometry_msgs/msg/WrenchStamped.msg";
+    "diagnostic_msgs/msg/KeyValue": "standard/diagnostic_msgs/msg/KeyValue.msg";
+    "diagnostic_msgs/msg/DiagnosticStatus": "standard/diagnostic_msgs/msg/DiagnosticStatus.msg";
+    "diagnostic_msgs/msg/DiagnosticArray": "standard/diagnostic_msgs/msg/DiagnosticArray.msg";
+    "crtk_msgs/msg/OperatingState": "standard/crtk_msgs/msg/OperatingState.msg";
+    "crtk_msgs/msg/StringStamped": "standard/crtk_msgs/msg/StringStamped.msg";
+    "ferntast_msgs/msg/Authority": "msg/Authority.msg";
+    "ferntast_msgs/msg/ContactState": "msg/ContactState.msg";
+    "ferntast_msgs/msg/LinkStatus": "msg/LinkStatus.msg";
+}
+
+/// Full names (`package/msg/Type`) of the interfaces that are built in.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    TEXTS.iter().map(|&(name, _)| name)
+}
+
+/// The `.msg` text of a built-in interface.
+pub fn definition(name: &str) -> Option<&'static str> {
+    TEXTS
+        .iter()
+        .find(|&&(known, _)| known == name)
+        .map(|&(_, text)| text)
+}
+
+/// The built-in interfaces, read.
+///
+/// # Errors
+///
+/// None in practice: a test reads them all.
+pub fn library() -> Result<Library, InterfaceError> {
+    let mut library = Library::default();
+    for (name, text) in TEXTS {
+        library.insert(name, text)?;
+    }
+    Ok(library)
+}
+
+/// The `ros2msg` schema of a built-in interface; see [`Library::schema`].
+///
+/// # Errors
+///
+/// The name is none or not among [`names`].
+pub fn schema(name: &str) -> Result<String, InterfaceError> {
+    library()?.schema(name)
+}
+
+/// The RIHS01 type hash of a built-in interface; see [`Library::type_hash`].
+///
+/// # Errors
+///
+/// The name is none or not among [`names`].
+pub fn type_hash(name: &str) -> Result<String, InterfaceError> {
+    library()?.type_hash(name)
+}
+
+/// An interface with all that a stock ROS 2 compares.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Described {
+    /// Full name, `package/msg/Type`.
+    pub name: String,
+    /// RIHS01 type hash.
+    pub hash: String,
+    /// `ros2msg` schema.
+    pub schema: String,
+}
+
+/// Every built-in interface, for listing.
+///
+/// # Errors
+///
+/// None in practice: a test describes them all.
+pub fn describe() -> Result<Vec<Described>, InterfaceError> {
+    let library = library()?;
+    let described = |name: &str| {
+        Ok(Described {
+            name: name.to_owned(),
+            hash: library.type_hash(name)?,
+            schema: library.schema(name)?,
+        })
+    };
+    names().map(described).collect()
+}

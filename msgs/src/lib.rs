@@ -1,0 +1,26 @@
+//! The messages of ferntast.
+//!
+//! Two forms of every message stand side by side:
+//!
+//! * the **sample** ([`sample`]): `repr(C)`, fixed size, no pointers. Nodes
+//!   read and write samples; they cross shared memory as they are;
+//! * the **ROS 2 form** ([`ros`]): the standard type that a stock ROS 2 knows,
+//!   with strings and sequences. It exists on DDS, on Zenoh and in recordings.
+//!
+//! [`Message`] ties the two together. Names of topics are in [`topics`], the
+//! `.msg` texts, schemas and RIHS01 type hashes in [`interface`].
+//!
+//! This folder is at the same time the ROS 2 package `ferntast_msgs`
+//! (`package.xml`, `CMakeLists.txt`, `msg/`).
+
+pub mod interface;
+mod message;
+pub mod ros;
+pub mod sample;
+mod text;
+mod time;
+pub mod topics;
+
+pub use message::{InvalidMessage, Message, RosMessage};
+pub use text::Text;
+pub use time::Time;

@@ -1,0 +1,107 @@
+//! What every message can do.
+
+use serde::{Serialize, de::DeserializeOwned};
+
+use crate::Time;
+
+/// A message in its ROS 2 form: a serde struct whose fields follow the
+/// `.msg` definition in order, so that CDR comes out right.
+pub trait RosMessage:
+    Serialize + DeserializeOwned + Clone + PartialEq + Send + Sync + 'static
+{
+    /// Full interface name, `package/msg/Type`.
+    const INTERFACE: &'static str;
+}
+
+/// A message in its sample form.
+///
+/// # Safety
+///
+/// The type is `repr(C)`, holds no pointer, no `bool`, no `enum` and no other
+/// type with forbidden bit patterns: it is read from shared memory as found
+/// there, and every bit pattern must be a value (that [`Message::check`] may
+/// then refuse).
+pub unsafe trait Message:
+    Copy + std::fmt::Debug + PartialEq + Send + Sync + 'static
+{
+    /// The same message as ROS 2 knows it.
+    type Ros: RosMessage;
+
+    /// When the content was measured or commanded.
+    fn stamp(&self) -> Time;
+
+    /// The ROS 2 form. Allocates: not for the control path.
+    fn to_ros(&self) -> Self::Ros;
+
+    /// The sample in a ROS 2 message.
+    ///
+    /// # Errors
+    ///
+    /// What makes it no sample of ours: wrong number of joints, unknown
+    /// frame, and everything that [`Message::check`] refuses.
+    fn from_ros(ros: &Self::Ros) -> Result<Self, InvalidMessage>;
+
+    /// Whether the content can be acted on.
+    ///
+    /// # Errors
+    ///
+    /// A stamp that is zero or beyond ROS 2's, a number that is not finite, an
+    /// unknown code, an orientation that is none.
+    fn check(&self) -> Result<(), InvalidMessage>;
+}
+
+/// Why a message cannot be acted on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidMessage {
+    /// The stamp is zero or before 1970.
+    #[error("stamp is zero: set header.stamp to the time of the measurement")]
+    ZeroStamp,
+    /// The stamp is later than ROS 2 can say (32 bit seconds).
+    #[error(
+        "stamp is {nanos} ns since 1970, later than builtin_interfaces/Time can hold: is the clock set?"
+    )]
+    LateStamp {
+        /// What it held \[ns\].
+        nanos: i64,
+    },
+    /// A number is NaN or infinite.
+    #[error("{field} is {value}, not a finite number")]
+    NotFinite {
+        /// The field, as in the `.msg` file.
+        field: &'static str,
+        /// What it held.
+        value: f64,
+    },
+    /// A sequence has the wrong length.
+    #[error("{field} has {found} entries where {expected} are needed")]
+    WrongLength {
+        /// The field, as in the `.msg` file.
+        field: &'static str,
+        /// Entries found.
+        found: usize,
+        /// Entries needed.
+        expected: usize,
+    },
+    /// A joint is missing or named otherwise.
+    #[error("joint names {found:?} where joint_1 and joint_2 are needed, each once")]
+    WrongJoints {
+        /// The names found.
+        found: Vec<String>,
+    },
+    /// A word or code that this message does not know.
+    #[error("{field} is {found:?}; known are: {known}")]
+    Unknown {
+        /// The field, as in the `.msg` file.
+        field: &'static str,
+        /// What it held.
+        found: String,
+        /// What it may hold.
+        known: &'static str,
+    },
+    /// An orientation that is not a unit quaternion.
+    #[error("orientation has norm {norm}, not 1")]
+    NotUnit {
+        /// The norm found.
+        norm: f64,
+    },
+}

@@ -1,0 +1,5 @@
+//! `builtin_interfaces`.
+
+mod time;
+
+pub use time::Time;

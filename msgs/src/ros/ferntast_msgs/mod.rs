@@ -1,0 +1,9 @@
+//! `ferntast_msgs`: ferntast's own.
+
+mod authority;
+mod contact_state;
+mod link_status;
+
+pub use authority::Authority;
+pub use contact_state::ContactState;
+pub use link_status::LinkStatus;

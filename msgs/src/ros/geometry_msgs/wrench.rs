@@ -1,0 +1,20 @@
+//! `geometry_msgs/msg/Wrench`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::RosMessage;
+
+use super::Vector3;
+
+/// A force and torque.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Wrench {
+    /// Force \[N\].
+    pub force: Vector3,
+    /// Torque \[Nm\].
+    pub torque: Vector3,
+}
+
+impl RosMessage for Wrench {
+    const INTERFACE: &'static str = "geometry_msgs/msg/Wrench";
+}

@@ -1,0 +1,5 @@
+//! `std_msgs`.
+
+mod header;
+
+pub use header::Header;

@@ -1,0 +1,28 @@
+//! The messages as nodes read and write them: fixed size, `repr(C)`.
+
+mod authority;
+mod checks;
+mod contact_state;
+mod fault;
+mod frame;
+mod health;
+mod joint;
+mod link_status;
+mod operating_state;
+mod pose;
+mod state_command;
+mod temperature;
+mod wrench;
+
+pub use authority::AuthoritySample;
+pub use contact_state::{ContactStateSample, Edge};
+pub use fault::{Fault, Faults};
+pub use frame::Frame;
+pub use health::{HealthSample, Level};
+pub use joint::{JOINT_NAMES, JOINTS, JointFields, JointSample};
+pub use link_status::{LinkEnd, LinkStatusSample, RefusedFrames};
+pub use operating_state::{OperatingState, OperatingStateSample};
+pub use pose::PoseSample;
+pub use state_command::{StateCommand, StateCommandSample};
+pub use temperature::TemperatureSample;
+pub use wrench::WrenchSample;

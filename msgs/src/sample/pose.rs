@@ -1,0 +1,92 @@
+//! A position and orientation.
+
+use crate::{
+    InvalidMessage, Message, Time,
+    ros::geometry_msgs::{Pose, PoseStamped},
+};
+
+use super::{Frame, checks};
+
+/// How far the norm of an orientation may be from 1.
+const NORM_TOLERANCE: f64 = 1e-3;
+
+/// Pose of the tip or of the hand. `geometry_msgs/msg/PoseStamped` on the
+/// wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct PoseSample {
+    /// When it was measured or commanded.
+    pub stamp: Time,
+    /// Position x, y, z \[m\].
+    pub position: [f64; 3],
+    /// Orientation as unit quaternion x, y, z, w.
+    pub orientation: [f64; 4],
+    /// Who sent it, as the middleware tells senders apart; 0 for senders on
+    /// this host. Not on the wire of ROS 2: the gateway fills it in.
+    pub source: u64,
+    /// Frame that it is expressed in.
+    pub frame: Frame,
+    /// Keeps the layout free of implicit padding.
+    pub reserved: u32,
+}
+
+checks::no_padding!(PoseSample: Time, [f64; 3], [f64; 4], u64, Frame, u32);
+
+impl PoseSample {
+    /// A pose at `position` \[m\] in `frame`, not rotated, from this host.
+    pub const fn at(stamp: Time, frame: Frame, position: [f64; 3]) -> PoseSample {
+        PoseSample {
+            stamp,
+            position,
+            orientation: [0.0, 0.0, 0.0, 1.0],
+            source: 0,
+            frame,
+            reserved: 0,
+        }
+    }
+}
+
+// SAFETY: `repr(C)` of integers, floats and byte arrays, transparent types around them, no
+// pointer: every bit pattern is a value.
+unsafe impl Message for PoseSample {
+    type Ros = PoseStamped;
+
+    fn stamp(&self) -> Time {
+        self.stamp
+    }
+
+    fn to_ros(&self) -> PoseStamped {
+        PoseStamped {
+            header: self.frame.header(self.stamp),
+            pose: Pose {
+                position: self.position.into(),
+                orientation: self.orientation.into(),
+            },
+        }
+    }
+
+    /// The source comes out as 0: whoever received the message fills it in.
+    fn from_ros(ros: &PoseStamped) -> Result<PoseSample, InvalidMessage> {
+        let sample = PoseSample {
+            orientation: (&ros.pose.orientation).into(),
+            ..PoseSample::at(
+                ros.header.time(),
+                Frame::of(&ros.header)?,
+                (&ros.pose.position).into(),
+            )
+        };
+        sample.check()?;
+        Ok(sample)
+    }
+
+    fn check(&self) -> Result<(), InvalidMessage> {
+        checks::stamp(self.stamp)?;
+        checks::finite("pose.position", &self.position)?;
+        checks::finite("pose.orientation", &self.orientation)?;
+        let norm = self.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
+        if (norm - 1.0).abs() > NORM_TOLERANCE {
+            return Err(InvalidMessage::NotUnit { norm });
+        }
+        self.frame.check()
+    }
+}

@@ -1,0 +1,60 @@
+//! Short texts of fixed size.
+
+use std::fmt;
+
+/// A UTF-8 text of at most `N` bytes that lives in place, for samples that
+/// cross shared memory. Longer texts are cut at a character boundary; bytes
+/// that are not UTF-8 read as the valid part before them.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(transparent)]
+pub struct Text<const N: usize>([u8; N]);
+
+impl<const N: usize> Text<N> {
+    /// The empty text.
+    pub const EMPTY: Text<N> = Text([0; N]);
+
+    /// The first at most `N` bytes of `text`, up to a zero byte if there is one.
+    pub fn new(text: &str) -> Text<N> {
+        let zero = text.bytes().position(|byte| byte == 0);
+        let mut end = zero.unwrap_or(text.len()).min(N);
+        while !text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let mut bytes = [0; N];
+        bytes[..end].copy_from_slice(&text.as_bytes()[..end]);
+        Text(bytes)
+    }
+
+    /// The text; whatever follows the first zero byte or the first byte that
+    /// is not UTF-8 does not count.
+    pub fn as_str(&self) -> &str {
+        let end = self.0.iter().position(|&byte| byte == 0).unwrap_or(N);
+        match std::str::from_utf8(&self.0[..end]) {
+            Ok(text) => text,
+            Err(error) => std::str::from_utf8(&self.0[..error.valid_up_to()]).unwrap_or(""),
+        }
+    }
+
+    /// Whether there is no text.
+    pub fn is_empty(&self) -> bool {
+        self.as_str().is_empty()
+    }
+}
+
+impl<const N: usize> Default for Text<N> {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl<const N: usize> fmt::Debug for Text<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.as_str())
+    }
+}
+
+impl<const N: usize> fmt::Display for Text<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}

@@ -1,0 +1,123 @@
+//! Every topic by name, with the sample that it carries and how it is sent.
+
+use std::marker::PhantomData;
+
+use crate::{
+    Message,
+    sample::{
+        AuthoritySample, ContactStateSample, HealthSample, JointSample, LinkStatusSample,
+        OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample, WrenchSample,
+    },
+};
+
+/// How a topic is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delivery {
+    /// A servo stream: best effort, the newest wins, nothing for late joiners.
+    Stream,
+    /// A state: reliable, the newest wins, a late joiner gets the last one.
+    State,
+    /// An event or one of several publishers: reliable, none is skipped up to a queue of [`EVENT_QUEUE`].
+    Event,
+}
+
+/// How many events may wait for a reader.
+pub const EVENT_QUEUE: usize = 64;
+
+/// A topic: name, sample type, delivery.
+#[derive(Debug)]
+pub struct Topic<M: Message> {
+    /// Full ROS 2 name.
+    pub name: &'static str,
+    /// How it is sent.
+    pub delivery: Delivery,
+    sample: PhantomData<fn() -> M>,
+}
+
+impl<M: Message> Clone for Topic<M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: Message> Copy for Topic<M> {}
+
+impl<M: Message> Topic<M> {
+    /// A topic of that name. Names are absolute (`/follower/measured_js`).
+    pub const fn new(name: &'static str, delivery: Delivery) -> Topic<M> {
+        Topic {
+            name,
+            delivery,
+            sample: PhantomData,
+        }
+    }
+}
+
+macro_rules! topics {
+    ($($(#[$doc:meta])* $constant:ident: $sample:ty = $name:literal, $delivery:ident;)*) => {
+        $($(#[$doc])* pub const $constant: Topic<$sample> = Topic::new($name, Delivery::$delivery);)*
+
+        /// Something to be done with every topic, whatever its type: to list,
+        /// record, play or bridge them all.
+        pub trait Visitor {
+            /// Called once a topic, in the order of the table.
+            fn topic<M: Message>(&mut self, topic: Topic<M>);
+        }
+
+        /// Calls `visitor` for every topic of the table.
+        pub fn visit(visitor: &mut impl Visitor) {
+            $(visitor.topic($constant);)*
+        }
+    };
+}
+
+topics! {
+    /// Motor position on the joint side \[rad\], velocity \[rad/s\], joint torque sensor \[Nm\].
+    FOLLOWER_MEASURED_JS: JointSample = "/follower/measured_js", Stream;
+    /// Motor position \[rad\]; effort is the motor torque from the current, joint side \[Nm\].
+    FOLLOWER_MOTOR_JS: JointSample = "/follower/motor_js", Stream;
+    /// Mean of joint 1's sensors \[degC\].
+    FOLLOWER_JOINT_1_TEMPERATURE: TemperatureSample = "/follower/joint_1/temperature", Stream;
+    /// Mean of joint 2's sensors \[degC\].
+    FOLLOWER_JOINT_2_TEMPERATURE: TemperatureSample = "/follower/joint_2/temperature", Stream;
+    /// Where the servo wants the joints at this moment.
+    FOLLOWER_SETPOINT_JS: JointSample = "/follower/setpoint_js", Stream;
+    /// Command to the servo: pose of the tip.
+    FOLLOWER_SERVO_CP: PoseSample = "/follower/servo_cp", Stream;
+    /// Command to the servo: joint positions.
+    FOLLOWER_SERVO_JP: JointSample = "/follower/servo_jp", Stream;
+    /// Command to the drives: motor torques, joint side \[Nm\].
+    FOLLOWER_SERVO_JF: JointSample = "/follower/servo_jf", Stream;
+    /// Pose of the tip, from the link-side joint positions.
+    FOLLOWER_MEASURED_CP: PoseSample = "/follower/measured_cp", Stream;
+    /// Estimated contact force on the tip, base frame \[N\].
+    FOLLOWER_MEASURED_CF: WrenchSample = "/follower/measured_cf", Stream;
+    /// The same in the contact frame: x tangential, z normal \[N\].
+    FOLLOWER_CONTACT_CF: WrenchSample = "/follower/contact_cf", Stream;
+    /// Contact on or off, which edge, friction coefficient.
+    FOLLOWER_CONTACT_STATE: ContactStateSample = "/follower/contact_state", Stream;
+    /// CRTK state of the arm's servo.
+    FOLLOWER_OPERATING_STATE: OperatingStateSample = "/follower/operating_state", State;
+    /// CRTK command to the arm's servo.
+    FOLLOWER_STATE_COMMAND: StateCommandSample = "/follower/state_command", Event;
+    /// The hand as the device measures it.
+    LEADER_MEASURED_CP: PoseSample = "/leader/measured_cp", Stream;
+    /// The hand as accepted: valid, in range, from the source that holds the authority.
+    LEADER_SETPOINT_CP: PoseSample = "/leader/setpoint_cp", Stream;
+    /// The force that the delay law wants in the hand \[N\], before any limit.
+    LEADER_REFLECTED_CF: WrenchSample = "/leader/reflected_cf", Stream;
+    /// The force rendered to the hand \[N\].
+    LEADER_SERVO_CF: WrenchSample = "/leader/servo_cf", Stream;
+    /// Who holds the authority over the arm.
+    LEADER_AUTHORITY: AuthoritySample = "/leader/authority", State;
+    /// CRTK state of the master.
+    LEADER_OPERATING_STATE: OperatingStateSample = "/leader/operating_state", State;
+    /// CRTK command to the master.
+    LEADER_STATE_COMMAND: StateCommandSample = "/leader/state_command", Event;
+    /// The link as the operator's end measures it.
+    LINK_STATUS: LinkStatusSample = "/link/status", Stream;
+    /// The link as the arm's end measures it.
+    LINK_FOLLOWER_STATUS: LinkStatusSample = "/link/follower_status", Stream;
+    /// Rate, age and faults of every node.
+    DIAGNOSTICS: HealthSample = "/diagnostics", Event;
+}

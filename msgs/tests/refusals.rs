@@ -1,0 +1,347 @@
+//! What is refused, and with which words; what is taken though it looks odd.
+
+use ferntast_msgs::{
+    InvalidMessage, Message, Text, Time,
+    ros::diagnostic_msgs::KeyValue,
+    sample::*,
+    topics::{self, Topic, Visitor},
+};
+
+const STAMP: Time = Time::from_nanos(1_700_000_000_123_456_789);
+
+/// Field and content of something that is not known.
+fn known(result: Result<impl Message, InvalidMessage>) -> (&'static str, String) {
+    match result {
+        Err(InvalidMessage::Unknown { field, found, .. }) => (field, found),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn stamps_of_zero_before_1970_and_after_2038_are_refused() {
+    let check = |nanos| JointSample::zero(Time::from_nanos(nanos)).check();
+    assert_eq!(check(0), Err(InvalidMessage::ZeroStamp));
+    assert_eq!(check(-1), Err(InvalidMessage::ZeroStamp));
+    assert_eq!(check(1), Ok(()));
+    // 2^31 s: one more than an int32 holds.
+    let nanos = 2_147_483_648_000_000_000;
+    assert_eq!(check(nanos), Err(InvalidMessage::LateStamp { nanos }));
+    assert_eq!(check(nanos - 1), Ok(()));
+    let ros = JointSample::zero(Time::INVALID).to_ros();
+    assert_eq!(JointSample::from_ros(&ros), Err(InvalidMessage::ZeroStamp));
+}
+
+#[test]
+fn joints_may_come_in_the_other_order() {
+    let mut sample = JointSample::positions(STAMP, [0.1, 0.2]);
+    sample.effort = [3.0, 4.0];
+    sample.fields = sample.fields.with(JointFields::EFFORT);
+    let mut ros = sample.to_ros();
+    assert_eq!(ros.name, ["joint_1", "joint_2"]);
+    assert_eq!((ros.velocity.len(), &ros.effort), (0, &vec![3.0, 4.0]));
+    ros.name.reverse();
+    ros.position.reverse();
+    ros.effort.reverse();
+    assert_eq!(JointSample::from_ros(&ros), Ok(sample));
+}
+
+#[test]
+fn other_joints_and_lengths_are_refused() {
+    let ros = JointSample::zero(STAMP).to_ros();
+    for names in [
+        ["joint_1", "joint_1"],
+        ["joint_1", "joint_3"],
+        ["", "joint_2"],
+    ] {
+        let mut ros = ros.clone();
+        ros.name = names.map(String::from).to_vec();
+        let found = ros.name.clone();
+        let error = InvalidMessage::WrongJoints { found };
+        assert_eq!(JointSample::from_ros(&ros), Err(error));
+    }
+    let wrong = |field, found| {
+        Err(InvalidMessage::WrongLength {
+            field,
+            found,
+            expected: 2,
+        })
+    };
+    let mut names = ros.clone();
+    names.name.push("joint_3".to_owned());
+    assert_eq!(JointSample::from_ros(&names), wrong("name", 3));
+    let mut efforts = ros.clone();
+    efforts.effort.pop();
+    assert_eq!(JointSample::from_ros(&efforts), wrong("effort", 1));
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_refused_by_field() {
+    let refused = |result: Result<(), InvalidMessage>| match result {
+        Err(InvalidMessage::NotFinite { field, .. }) => field,
+        other => panic!("{other:?}"),
+    };
+    let mut joint = JointSample::zero(STAMP);
+    joint.velocity[1] = f64::NAN;
+    assert_eq!(refused(joint.check()), "velocity");
+    let pose = PoseSample::at(STAMP, Frame::NONE, [0.0, f64::INFINITY, 0.0]);
+    assert_eq!(refused(pose.check()), "pose.position");
+    let wrench = WrenchSample::force(STAMP, Frame::CONTACT, [f64::NAN; 3]);
+    assert_eq!(refused(wrench.check()), "wrench.force");
+    let temperature = TemperatureSample::new(STAMP, f64::NEG_INFINITY);
+    assert_eq!(refused(temperature.check()), "temperature");
+    let mut link = LinkStatusSample::idle(STAMP, LinkEnd::LEADER);
+    link.round_trip = f64::INFINITY;
+    assert_eq!(refused(link.check()), "round_trip");
+    let mut contact = ContactStateSample::unknown(STAMP);
+    contact.friction_coefficient_error = f64::NEG_INFINITY;
+    assert_eq!(refused(contact.check()), "friction_coefficient_error");
+    let mut health = HealthSample::new(STAMP, "servo");
+    health.input_age = f64::INFINITY;
+    assert_eq!(refused(health.check()), "input age [s]");
+}
+
+#[test]
+fn what_was_not_measured_yet_is_valid() {
+    let link = LinkStatusSample::idle(STAMP, LinkEnd::FOLLOWER);
+    assert!(link.round_trip.is_nan() && link.check().is_ok());
+    assert!(link.to_ros().delay.is_nan());
+    let contact = ContactStateSample::unknown(STAMP);
+    let ros = contact.to_ros();
+    assert!(ros.friction_coefficient.is_nan());
+    assert_eq!(ros.friction_coefficient_error, f64::INFINITY);
+    assert_eq!(ContactStateSample::from_ros(&ros), Ok(contact));
+    let health = HealthSample::new(STAMP, "servo");
+    assert!(health.input_age.is_nan() && health.check().is_ok());
+}
+
+#[test]
+fn orientations_have_norm_one() {
+    let pose = |w| PoseSample {
+        orientation: [0.0, 0.0, 0.0, w],
+        ..PoseSample::at(STAMP, Frame::LEADER_BASE, [0.0; 3])
+    };
+    assert_eq!(pose(1.0009).check(), Ok(()));
+    assert_eq!(pose(-0.9991).check(), Ok(()));
+    for w in [0.0, 0.9989, 1.0011] {
+        assert_eq!(pose(w).check(), Err(InvalidMessage::NotUnit { norm: w }));
+    }
+}
+
+#[test]
+fn the_source_of_a_pose_is_not_on_the_wire() {
+    let mut pose = PoseSample::at(STAMP, Frame::LEADER_BASE, [0.1, 0.2, 0.3]);
+    pose.source = 7;
+    let back = PoseSample::from_ros(&pose.to_ros()).unwrap();
+    assert_eq!(back, PoseSample { source: 0, ..pose });
+}
+
+#[test]
+fn the_reason_of_a_state_is_not_on_the_wire() {
+    let state = OperatingStateSample::new(STAMP, OperatingState::FAULT, "joint 1 too hot");
+    let back = OperatingStateSample::from_ros(&state.to_ros()).unwrap();
+    let reason = Text::EMPTY;
+    assert_eq!(back, OperatingStateSample { reason, ..state });
+}
+
+/// A sample with a code of 9 is refused, and so is what it is in ROS 2.
+fn refused<M: Message>(sample: M, field: &str) {
+    let checked = known(sample.check().map(|()| sample));
+    assert_eq!(checked, (field, "9".to_owned()));
+    assert_eq!(known(M::from_ros(&sample.to_ros())).0, field);
+}
+
+#[test]
+fn codes_without_a_name_are_refused_on_both_sides() {
+    refused(PoseSample::at(STAMP, Frame(9), [0.0; 3]), "header.frame_id");
+    refused(
+        WrenchSample::force(STAMP, Frame(9), [0.0; 3]),
+        "header.frame_id",
+    );
+    refused(
+        OperatingStateSample::new(STAMP, OperatingState(9), ""),
+        "state",
+    );
+    refused(StateCommandSample::new(STAMP, StateCommand(9)), "string");
+    refused(LinkStatusSample::idle(STAMP, LinkEnd(9)), "end");
+    let mut contact = ContactStateSample::unknown(STAMP);
+    contact.edge = Edge(9);
+    refused(contact, "edge");
+    let mut health = HealthSample::new(STAMP, "servo");
+    health.level = Level(9);
+    refused(health, "status.level");
+}
+
+#[test]
+fn flags_and_sets_have_no_other_bits() {
+    let mut state = OperatingStateSample::new(STAMP, OperatingState::ENABLED, "");
+    state.is_busy = 2;
+    let found = known(state.check().map(|()| state));
+    assert_eq!(found, ("is_busy", "2".to_owned()));
+    let mut joint = JointSample::zero(STAMP);
+    joint.fields.0 |= 8;
+    assert_eq!(known(joint.check().map(|()| joint)).0, "fields");
+    let mut health = HealthSample::new(STAMP, "servo");
+    health.faults.0 = 1 << 63;
+    assert_eq!(known(health.check().map(|()| health)).0, "fault");
+}
+
+#[test]
+fn words_in_another_case_are_refused() {
+    let mut command = StateCommandSample::new(STAMP, StateCommand::ENABLE).to_ros();
+    command.string = "Enable".to_owned();
+    let found = known(StateCommandSample::from_ros(&command));
+    assert_eq!(found, ("string", "Enable".to_owned()));
+}
+
+#[test]
+fn identities_are_hexadecimal() {
+    let mut sample = AuthoritySample::nobody(STAMP);
+    sample.holder = 0xab;
+    let mut ros = sample.to_ros();
+    assert_eq!(
+        (ros.holder.as_str(), ros.refused.as_str()),
+        ("00000000000000ab", "")
+    );
+    ros.holder = "AB".to_owned();
+    assert_eq!(AuthoritySample::from_ros(&ros), Ok(sample));
+    for holder in ["+ab", "-1", "0xab", "10000000000000000", " ab"] {
+        ros.holder = holder.to_owned();
+        let found = known(AuthoritySample::from_ros(&ros));
+        assert_eq!(found, ("holder", holder.to_owned()));
+    }
+}
+
+#[test]
+fn health_reads_as_people_write_it() {
+    let mut health = HealthSample::new(STAMP, "servo");
+    health.rate = 999.5;
+    health.level = Level::WARN;
+    health.faults = [Fault::TorqueSaturated, Fault::CommandSilent]
+        .into_iter()
+        .collect();
+    let ros = health.to_ros();
+    let status = &ros.status[0];
+    assert_eq!((status.level, status.name.as_str()), (1, "ferntast: servo"));
+    assert_eq!(status.hardware_id, "servo");
+    let values: Vec<(&str, &str)> = status
+        .values
+        .iter()
+        .map(|entry| (entry.key.as_str(), entry.value.as_str()))
+        .collect();
+    assert_eq!(
+        values,
+        [
+            ("rate [Hz]", "999.5"),
+            ("lateness p99 [s]", "0"),
+            ("input age [s]", "NaN"),
+            ("missed", "0"),
+            ("refused", "0"),
+            ("lost", "0"),
+            ("process", "0"),
+            ("fault", "command silent"),
+            ("fault", "torque saturated"),
+        ]
+    );
+}
+
+#[test]
+fn diagnostics_of_others_are_refused_and_new_keys_taken() {
+    let health = HealthSample {
+        input_age: 0.0,
+        ..HealthSample::new(STAMP, "servo")
+    };
+    let ros = health.to_ros();
+    let mut more = ros.clone();
+    more.status[0].values.push(KeyValue::new("new", "?"));
+    assert_eq!(HealthSample::from_ros(&more), Ok(health));
+    let mut fault = ros.clone();
+    fault.status[0]
+        .values
+        .push(KeyValue::new("fault", "hunger"));
+    let found = known(HealthSample::from_ros(&fault));
+    assert_eq!(found, ("fault", "hunger".to_owned()));
+    let mut other = ros.clone();
+    other.status[0].name = "camera".to_owned();
+    assert_eq!(known(HealthSample::from_ros(&other)).0, "status.name");
+    let mut missing = ros.clone();
+    missing.status[0].values.remove(3);
+    let found = known(HealthSample::from_ros(&missing));
+    assert_eq!(found, ("missed", "(missing)".to_owned()));
+    let mut two = ros.clone();
+    two.status.push(ros.status[0].clone());
+    assert!(matches!(
+        HealthSample::from_ros(&two),
+        Err(InvalidMessage::WrongLength { found: 2, .. })
+    ));
+}
+
+#[test]
+fn error_texts_list_every_name() {
+    fn list<T>(all: &[T], name: impl Fn(&T) -> &'static str) -> String {
+        all.iter().map(name).collect::<Vec<_>>().join(", ")
+    }
+    macro_rules! same {
+        ($($code:ident)*) => {
+            $(assert_eq!(list(&$code::ALL, |code| code.name().unwrap()), $code::KNOWN);)*
+        };
+    }
+    same!(Edge LinkEnd OperatingState StateCommand);
+    let frames = list(&Frame::ALL, |frame| frame.name().unwrap());
+    assert_eq!(format!("(empty){frames}"), Frame::KNOWN);
+    assert_eq!(list(&Fault::ALL, |fault| fault.name()), Fault::KNOWN);
+}
+
+#[test]
+fn every_fault_has_a_bit_and_a_name_of_its_own() {
+    for (index, fault) in Fault::ALL.into_iter().enumerate() {
+        assert_eq!(fault as usize, index);
+        assert_eq!(Fault::from_name(fault.name()), Some(fault));
+        let mut faults = Faults::default();
+        faults.set(fault);
+        assert_eq!(faults.iter().collect::<Vec<_>>(), [fault]);
+    }
+}
+
+#[test]
+fn every_topic_is_named_once_and_carries_a_known_interface() {
+    struct Names(Vec<(&'static str, &'static str)>);
+    impl Visitor for Names {
+        fn topic<M: Message>(&mut self, topic: Topic<M>) {
+            use ferntast_msgs::RosMessage;
+            self.0.push((topic.name, M::Ros::INTERFACE));
+        }
+    }
+    let mut names = Names(Vec::new());
+    topics::visit(&mut names);
+    for (index, (name, interface)) in names.0.iter().enumerate() {
+        assert!(name.starts_with('/'));
+        assert!(names.0[..index].iter().all(|(other, _)| other != name));
+        assert!(ferntast_msgs::interface::definition(interface).is_some());
+    }
+    assert!(
+        names
+            .0
+            .contains(&("/link/status", "ferntast_msgs/msg/LinkStatus"))
+    );
+}
+
+#[test]
+fn texts_are_cut_between_characters_and_at_a_zero_byte() {
+    assert_eq!(Text::<4>::new("abcdef").as_str(), "abcd");
+    assert_eq!(Text::<4>::new("abcé").as_str(), "abc");
+    assert_eq!(Text::<4>::new("ab\0c"), Text::<4>::new("ab"));
+    assert!(Text::<4>::new("").is_empty());
+}
+
+#[test]
+fn times_are_split_as_ros_2_splits_them() {
+    assert_eq!(
+        (STAMP.ros_sec(), STAMP.ros_nanosec()),
+        (1_700_000_000, 123_456_789)
+    );
+    // rclcpp: seconds round down, nanoseconds count up from there.
+    let before = Time::from_nanos(-1);
+    assert_eq!((before.ros_sec(), before.ros_nanosec()), (-1, 999_999_999));
+    assert_eq!(STAMP.plus_seconds(0.5).seconds_since(STAMP), 0.5);
+    assert_eq!(Time::from_nanos(i64::MAX).ros_sec(), i32::MAX);
+}

@@ -1,0 +1,106 @@
+//! Samples to ROS 2 and back, and everything that may come from outside.
+
+mod messages;
+mod samples;
+
+use ferntast_msgs::{InvalidMessage, Message, Time, sample::*};
+use proptest::prelude::*;
+
+/// Equality bit for bit: NaN stands for "not measured", and is equal to itself.
+fn bytes<M: Message>(sample: &M) -> Vec<u8> {
+    let data = std::ptr::from_ref(sample).cast::<u8>();
+    // SAFETY: the samples have no padding (asserted where they are defined),
+    // so every byte of one is set.
+    unsafe { std::slice::from_raw_parts(data, size_of::<M>()) }.to_vec()
+}
+
+/// A sample of any bytes, as shared memory may hold it.
+fn from_bytes<M: Message>(bytes: &[u8]) -> M {
+    assert!(bytes.len() >= size_of::<M>());
+    // SAFETY: long enough, and every bit pattern is a value of a message.
+    unsafe { bytes.as_ptr().cast::<M>().read_unaligned() }
+}
+
+fn there_and_back<M: Message>(sample: M) -> Result<(), TestCaseError> {
+    prop_assert_eq!(sample.check(), Ok(()));
+    let back = M::from_ros(&sample.to_ros());
+    prop_assert_eq!(
+        back.as_ref().map(bytes),
+        Ok(bytes(&sample)),
+        "{:?} came back as {:?}",
+        sample,
+        back
+    );
+    Ok(())
+}
+
+/// Holds, prints, checks and converts it; what passes the check passes the way there and back.
+fn any_bits<M: Message>(bits: &[u8]) -> Result<(), TestCaseError> {
+    let sample = from_bytes::<M>(bits);
+    let _ = format!("{sample:?}");
+    let back = M::from_ros(&sample.to_ros());
+    if sample.check().is_ok() {
+        prop_assert!(back.is_ok(), "{:?} of {:?}", back, sample);
+    } else if sample.stamp().is_valid() && sample.stamp().fits_ros() {
+        // A flag of 2 becomes true, an unknown fault bit is dropped; nothing
+        // else that is wrong may heal on the way.
+        prop_assert!(
+            back.is_err() || matches!(sample.check(), Err(InvalidMessage::Unknown { .. })),
+            "{:?} of {:?}",
+            back,
+            sample
+        );
+    }
+    Ok(())
+}
+
+/// Whatever comes in: an error, or a sample that passes the check.
+fn from_outside<M: Message>(ros: &M::Ros) -> Result<(), TestCaseError> {
+    if let Ok(sample) = M::from_ros(ros) {
+        prop_assert_eq!(sample.check(), Ok(()));
+    }
+    Ok(())
+}
+
+macro_rules! properties {
+    ($($name:ident: $sample:ty;)*) => {
+        proptest! {
+            $(#[test]
+            fn $name(
+                sample in samples::$name(),
+                outside in messages::$name(),
+                bits in prop::collection::vec(any::<u8>(), size_of::<$sample>()),
+            ) {
+                there_and_back(sample)?;
+                from_outside::<$sample>(&outside)?;
+                any_bits::<$sample>(&bits)?;
+                // Bits with a stamp that is one get further.
+                let mut bits = bits;
+                bits[..8].copy_from_slice(&1_700_000_000_000_000_000_i64.to_ne_bytes());
+                any_bits::<$sample>(&bits)?;
+            })*
+        }
+    };
+}
+
+properties! {
+    authority: AuthoritySample;
+    contact_state: ContactStateSample;
+    health: HealthSample;
+    joint: JointSample;
+    link_status: LinkStatusSample;
+    operating_state: OperatingStateSample;
+    pose: PoseSample;
+    state_command: StateCommandSample;
+    temperature: TemperatureSample;
+    wrench: WrenchSample;
+}
+
+proptest! {
+    #[test]
+    fn a_stamp_reads_back(nanos in any::<i64>()) {
+        let time = Time::from_nanos(nanos);
+        let back = Time::from_ros(time.ros_sec(), time.ros_nanosec());
+        prop_assert_eq!(back == time, time.fits_ros());
+    }
+}

@@ -1,0 +1,3 @@
+//! The `ferntast` command.
+
+fn main() {}

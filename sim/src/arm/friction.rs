@@ -1,0 +1,198 @@
+//! The gear's true friction, with real stiction.
+//!
+//! Equation (4) once more, written for integration and not for
+//! identification. It shares no code with the friction that servo, estimator
+//! and model lab believe in, so that a fault there cannot hide here.
+
+use ferntast_model::{ParameterError, check};
+use serde::{Deserialize, Serialize};
+
+/// True friction of one joint, equation (4), joint side.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrueFriction {
+    /// Coulomb friction b_0 \[Nm\].
+    pub b_0: f64,
+    /// Load-dependent Coulomb friction b_0T \[-\].
+    #[serde(rename = "b_0T")]
+    pub b_0t: f64,
+    /// Viscous b_1 \[Nm·s/rad\].
+    pub b_1: f64,
+    /// Quadratic viscous b_2 \[Nm·s²/rad²\].
+    pub b_2: f64,
+    /// Cubic viscous b_3 \[Nm·s³/rad³\].
+    pub b_3: f64,
+    /// Speed from which on the viscous part goes on straight, with the slope
+    /// it has there \[rad/s\].
+    pub linear_from: f64,
+    /// Change of the Coulomb part per kelvin above 20 °C, as a share of it
+    /// \[1/K\]; 0 switches it off.
+    pub coulomb_per_kelvin: f64,
+    /// Change of the viscous part per kelvin above 20 °C \[1/K\]; 0 switches it off.
+    pub viscous_per_kelvin: f64,
+}
+
+/// Temperature at which the parameters hold as they are \[degC\].
+const REFERENCE_TEMPERATURE: f64 = 20.0;
+
+impl TrueFriction {
+    /// Checks every value against its bounds, and that no speed gains energy.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        check("b_0", self.b_0, 0.0, 200.0, "Nm")?;
+        check("b_0T", self.b_0t, -1.0, 1.0, "-")?;
+        check("b_1", self.b_1, 0.0, 5000.0, "Nm·s/rad")?;
+        check("b_2", self.b_2, -1e4, 1e4, "Nm·s²/rad²")?;
+        check("b_3", self.b_3, -1e4, 1e4, "Nm·s³/rad³")?;
+        check("linear_from", self.linear_from, 0.01, 100.0, "rad/s")?;
+        check(
+            "coulomb_per_kelvin",
+            self.coulomb_per_kelvin,
+            -0.02,
+            0.02,
+            "1/K",
+        )?;
+        check(
+            "viscous_per_kelvin",
+            self.viscous_per_kelvin,
+            -0.02,
+            0.02,
+            "1/K",
+        )?;
+        let edge = self.linear_from;
+        let slope = self.b_1 + 2.0 * self.b_2 * edge + 3.0 * self.b_3 * edge * edge;
+        let gains = (0..=1000)
+            .map(|step| f64::from(step) * 1e-3 * edge)
+            .find(|&speed| self.viscosity(speed) < 0.0);
+        let (speed, what) = match gains {
+            Some(speed) => (speed, "viscous friction drives the joint"),
+            None if slope < 0.0 => (edge, "viscous friction falls without end"),
+            None => return Ok(()),
+        };
+        Err(ParameterError::Inconsistent {
+            key: "b_2".into(),
+            reason: format!(
+                "{what} at {speed:.3} rad/s with b_1 = {}, b_2 = {}, b_3 = {}; raise b_1 or b_3",
+                self.b_1, self.b_2, self.b_3
+            ),
+        })
+    }
+
+    /// Viscous torque divided by velocity, at `speed` = |θ̇| \[rad/s\]: \[Nm·s/rad\].
+    fn viscosity(&self, speed: f64) -> f64 {
+        let inside = speed.min(self.linear_from);
+        let polynomial = self.b_1 + (self.b_2 + self.b_3 * inside) * inside;
+        if speed <= self.linear_from {
+            return polynomial;
+        }
+        let slope = self.b_1 + (2.0 * self.b_2 + 3.0 * self.b_3 * inside) * inside;
+        (polynomial * inside + slope * (speed - inside)) / speed
+    }
+
+    /// Largest torque \[Nm\] that holds the motor at rest under joint torque `load` \[Nm\].
+    fn stiction(&self, load: f64) -> f64 {
+        (self.b_0 + self.b_0t * load.abs()).max(0.0)
+    }
+
+    /// Velocity \[rad/s\] after friction has acted for `dt` \[s\] on the motor of
+    /// `inertia` \[kg m²\], which would have `velocity` without it; joint torque
+    /// `load` \[Nm\], `temperature` \[degC\].
+    ///
+    /// Friction can stop the motor but never turn it round: where the impulse
+    /// of Coulomb friction suffices the velocity becomes exactly zero. The
+    /// viscous part is implicit, so it takes energy at any step size.
+    pub(super) fn brake(
+        &self,
+        velocity: f64,
+        inertia: f64,
+        dt: f64,
+        load: f64,
+        temperature: f64,
+    ) -> f64 {
+        let warmer = temperature - REFERENCE_TEMPERATURE;
+        let coulomb = self.stiction(load) * (1.0 + self.coulomb_per_kelvin * warmer).max(0.0);
+        let impulse = coulomb * dt / inertia;
+        if velocity.abs() <= impulse {
+            return 0.0;
+        }
+        let sliding = velocity - impulse.copysign(velocity);
+        let viscosity =
+            self.viscosity(sliding.abs()) * (1.0 + self.viscous_per_kelvin * warmer).max(0.0);
+        sliding / (1.0 + viscosity * dt / inertia)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Table 1, spring 2005-03-24.
+    pub(crate) const SPACE: TrueFriction = TrueFriction {
+        b_0: 12.372,
+        b_0t: 0.146,
+        b_1: 163.301,
+        b_2: -578.954,
+        b_3: 547.449,
+        linear_from: 0.698,
+        coulomb_per_kelvin: 0.0,
+        viscous_per_kelvin: 0.0,
+    };
+
+    /// Torque that `brake` takes away at `velocity`.
+    fn torque(friction: &TrueFriction, velocity: f64, load: f64, temperature: f64) -> f64 {
+        let (inertia, dt) = (0.5, 1e-9);
+        inertia * (velocity - friction.brake(velocity, inertia, dt, load, temperature)) / dt
+    }
+
+    #[test]
+    fn it_is_equation_4_with_table_1() {
+        let at = |degrees: f64, load| torque(&SPACE, degrees.to_radians(), load, 20.0);
+        assert!((at(1.0, 0.0) - 15.05).abs() < 0.005);
+        assert!((at(40.0, 0.0) - 30.5).abs() < 0.1, "{}", at(40.0, 0.0));
+        assert!((at(-1.0, 13.0) + 15.05 + 0.146 * 13.0).abs() < 0.005);
+    }
+
+    #[test]
+    fn beyond_the_identified_speeds_it_goes_on_straight() {
+        let at = |speed| torque(&SPACE, speed, 0.0, 20.0);
+        let slope = (at(1.6) - at(1.5)) / 0.1;
+        assert!(((at(0.75) - at(0.70)) / 0.05 - slope).abs() < 1e-3 * slope);
+        assert!(slope > 100.0);
+    }
+
+    #[test]
+    fn below_its_stiction_it_stands_exactly_still() {
+        let (inertia, dt) = (0.5, 1e-4);
+        let kick = |torque: f64| SPACE.brake(torque * dt / inertia, inertia, dt, 0.0, 20.0);
+        assert_eq!(kick(12.37), 0.0);
+        assert_eq!(kick(-12.37), 0.0);
+        assert!(kick(12.38) > 0.0);
+    }
+
+    #[test]
+    fn friction_that_drives_is_refused() {
+        let mut wrong = SPACE;
+        wrong.b_2 = -800.0;
+        assert_eq!(wrong.validate().unwrap_err().key(), "b_2");
+        SPACE.validate().unwrap();
+    }
+
+    /// Figs. 12 and 14: with temperature Coulomb friction falls, damping grows.
+    #[test]
+    fn temperature_acts_on_both_parts_when_switched_on() {
+        let warm = TrueFriction {
+            coulomb_per_kelvin: -0.016,
+            viscous_per_kelvin: 0.013,
+            ..SPACE
+        };
+        assert!(torque(&warm, 0.001, 0.0, 25.0) < torque(&warm, 0.001, 0.0, -5.0));
+        assert!(torque(&warm, 0.69, 0.0, 25.0) - torque(&SPACE, 0.69, 0.0, 25.0) < 2.0);
+        assert_eq!(
+            torque(&SPACE, 0.1, 0.0, 25.0),
+            torque(&SPACE, 0.1, 0.0, -5.0)
+        );
+    }
+}

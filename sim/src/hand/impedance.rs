@@ -1,0 +1,146 @@
+//! The impedance of a human hand about where it wants to be:
+//!
+//! M ẍ = K (x_t − x) + B (ẋ_t − ẋ) + F
+//!
+//! with target x_t and the force F on the hand. A linear mass, damper and
+//! spring describe small motions of arm and hand well (Hogan 1989,
+//! "Controlling impedance at the man/machine interface"). Measured at the hand
+//! of relaxed to tense people: M 0.5–2 kg, B 5–50 N·s/m, K 50–1000 N/m (Tsuji,
+//! Morasso, Goto, Ito 1995, "Human hand impedance characteristics during
+//! maintained posture"; Speich, Shao, Goldfarb 2005, "Modeling the human hand as it
+//! interacts with a telemanipulation system").
+
+use ferntast_model::{ParameterError, check};
+use serde::{Deserialize, Serialize};
+
+/// Impedance of hand and handle, the same along both axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ImpedanceParameters {
+    /// M \[kg\].
+    pub mass: f64,
+    /// B \[N·s/m\].
+    pub damping: f64,
+    /// K \[N/m\].
+    pub stiffness: f64,
+}
+
+impl Default for ImpedanceParameters {
+    /// A firm grip, as it is often taken in stability analyses of
+    /// teleoperators (Hashtrudi-Zaad and Salcudean 2001).
+    fn default() -> Self {
+        ImpedanceParameters {
+            mass: 0.5,
+            damping: 50.0,
+            stiffness: 1000.0,
+        }
+    }
+}
+
+impl ImpedanceParameters {
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        check("mass", self.mass, 0.01, 20.0, "kg")?;
+        check("damping", self.damping, 0.0, 1000.0, "N·s/m")?;
+        check("stiffness", self.stiffness, 1.0, 10_000.0, "N/m")
+    }
+}
+
+/// The hand as a mass on damper and spring.
+#[derive(Clone, Copy, Debug)]
+pub struct HandImpedance {
+    parameters: ImpedanceParameters,
+    position: [f64; 2],
+    velocity: [f64; 2],
+}
+
+impl HandImpedance {
+    /// At rest at `position` \[m\].
+    pub fn new(parameters: ImpedanceParameters, position: [f64; 2]) -> Self {
+        HandImpedance {
+            parameters,
+            position,
+            velocity: [0.0; 2],
+        }
+    }
+
+    /// Position \[m\].
+    pub fn position(&self) -> [f64; 2] {
+        self.position
+    }
+
+    /// Velocity \[m/s\].
+    pub fn velocity(&self) -> [f64; 2] {
+        self.velocity
+    }
+
+    /// Moves on by `dt` \[s\] towards `target` \[m\], which moves at
+    /// `target_velocity` \[m/s\], under `force` \[N\]. Implicit Euler: stable
+    /// for every `dt`. A force that is not finite counts as none.
+    pub fn step(&mut self, dt: f64, target: [f64; 2], target_velocity: [f64; 2], force: [f64; 2]) {
+        let ImpedanceParameters {
+            mass,
+            damping,
+            stiffness,
+        } = self.parameters;
+        for axis in 0..2 {
+            let force = if force[axis].is_finite() {
+                force[axis]
+            } else {
+                0.0
+            };
+            let pull = stiffness * (target[axis] - self.position[axis])
+                + damping * target_velocity[axis]
+                + force;
+            self.velocity[axis] = (mass * self.velocity[axis] + dt * pull)
+                / (mass + dt * damping + dt * dt * stiffness);
+            self.position[axis] += self.velocity[axis] * dt;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PARAMETERS: ImpedanceParameters = ImpedanceParameters {
+        mass: 1.0,
+        damping: 10.0,
+        stiffness: 400.0,
+    };
+
+    #[test]
+    fn under_a_force_it_gives_way_by_force_over_stiffness() {
+        let mut hand = HandImpedance::new(PARAMETERS, [0.0; 2]);
+        for _ in 0..5000 {
+            hand.step(1e-3, [0.01, 0.0], [0.0; 2], [-8.0, 2.0]);
+        }
+        assert!((hand.position()[0] - (0.01 - 0.02)).abs() < 1e-9);
+        assert!((hand.position()[1] - 0.005).abs() < 1e-9);
+    }
+
+    #[test]
+    fn let_go_it_swings_at_its_own_frequency() {
+        // ω_d = √(K/M − B²/4M²) = √(400 − 25) = 19.365 rad/s: 0.1622 s to the
+        // first minimum; it overshoots by exp(−δπ/ω_d), δ = 5.
+        let mut hand = HandImpedance::new(PARAMETERS, [0.02, 0.0]);
+        let (mut lowest, mut when) = (0.0, 0.0);
+        for k in 1..=4000 {
+            hand.step(1e-4, [0.0; 2], [0.0; 2], [0.0; 2]);
+            if hand.position()[0] < lowest {
+                (lowest, when) = (hand.position()[0], f64::from(k) * 1e-4);
+            }
+        }
+        let frequency = 375f64.sqrt();
+        assert!(
+            (when - std::f64::consts::PI / frequency).abs() < 1e-3,
+            "{when} s"
+        );
+        let overshoot = 0.02 * (-5.0 * std::f64::consts::PI / frequency).exp();
+        assert!((lowest / -overshoot - 1.0).abs() < 0.02, "{lowest} m");
+    }
+}

@@ -1,0 +1,350 @@
+//! The scripted operator: a hand with an impedance whose target follows a script.
+
+use super::{HandImpedance, HandState, ImpedanceParameters, Tremor, TremorParameters};
+use ferntast_model::{ParameterError, check};
+use serde::{Deserialize, Serialize};
+
+/// How the target moves in one phase. It starts where the phase before ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Motion {
+    /// As people reach: x_0 + (x_1 − x_0)(10 s³ − 15 s⁴ + 6 s⁵), s = t/T (Flash
+    /// and Hogan 1985, "The coordination of arm movements").
+    Reach {
+        /// x_1, leader base frame \[m\].
+        to: [f64; 2],
+    },
+    /// At constant speed: sliding along an edge.
+    Slide {
+        /// \[m\]
+        to: [f64; 2],
+    },
+    /// To and fro about where the phase began: amplitude · sin(2π f t). Whole
+    /// periods end where they began.
+    Sine {
+        /// \[m\]
+        amplitude: [f64; 2],
+        /// f \[Hz\].
+        frequency: f64,
+    },
+    /// The target stays.
+    // Not a unit variant: those let unknown keys pass.
+    Hold {},
+}
+
+/// One phase of a script.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Phase {
+    /// What it is, for people: reach, press, slide, retreat …
+    pub label: String,
+    /// T \[s\].
+    pub duration: f64,
+    /// How the target moves.
+    #[serde(flatten)]
+    pub motion: Motion,
+}
+
+/// Where the target goes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Script {
+    /// Where it starts, leader base frame \[m\].
+    #[serde(default)]
+    pub start: [f64; 2],
+    /// Whether it goes on with the first phase after the last.
+    #[serde(default)]
+    pub repeat: bool,
+    /// The phases, in order.
+    pub phase: Vec<Phase>,
+}
+
+impl Script {
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds, with key, value, bounds, unit.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        check("start[0]", self.start[0], -1.0, 1.0, "m")?;
+        check("start[1]", self.start[1], -1.0, 1.0, "m")?;
+        for (index, phase) in self.phase.iter().enumerate() {
+            let key = |name: &str| format!("phase[{index}].{name}");
+            check(&key("duration"), phase.duration, 0.01, 3600.0, "s")?;
+            let (name, point) = match phase.motion {
+                Motion::Reach { to } | Motion::Slide { to } => ("to", to),
+                Motion::Sine {
+                    amplitude,
+                    frequency,
+                } => {
+                    check(&key("frequency"), frequency, 0.0, 50.0, "Hz")?;
+                    ("amplitude", amplitude)
+                }
+                Motion::Hold {} => ("to", [0.0; 2]),
+            };
+            for (axis, value) in point.into_iter().enumerate() {
+                check(&key(&format!("{name}[{axis}]")), value, -1.0, 1.0, "m")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A scripted operator: the section `[hand]` of a scenario.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScriptedHandConfig {
+    /// Impedance of the hand.
+    #[serde(default)]
+    pub impedance: ImpedanceParameters,
+    /// Trembling; none when left out.
+    #[serde(default)]
+    pub tremor: Option<TremorParameters>,
+    /// Where it wants to be.
+    pub script: Script,
+}
+
+impl ScriptedHandConfig {
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds, with key, value, bounds, unit.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        self.impedance
+            .validate()
+            .map_err(|error| error.within("impedance"))?;
+        if let Some(tremor) = &self.tremor {
+            tremor.validate().map_err(|error| error.within("tremor"))?;
+        }
+        self.script
+            .validate()
+            .map_err(|error| error.within("script"))
+    }
+}
+
+/// The scripted operator.
+#[derive(Clone, Debug)]
+pub struct ScriptedHand {
+    script: Script,
+    impedance: HandImpedance,
+    tremor: Option<Tremor>,
+    phase: usize,
+    /// Time in this phase [s].
+    time: f64,
+    /// Where this phase started [m].
+    from: [f64; 2],
+}
+
+impl ScriptedHand {
+    /// At rest where the script starts.
+    ///
+    /// # Errors
+    ///
+    /// The first value of `config` that is out of bounds.
+    pub fn new(config: &ScriptedHandConfig, seed: u64) -> Result<ScriptedHand, ParameterError> {
+        config.validate()?;
+        Ok(ScriptedHand {
+            impedance: HandImpedance::new(config.impedance, config.script.start),
+            tremor: config.tremor.map(|own| Tremor::new(own, seed)),
+            from: config.script.start,
+            script: config.script.clone(),
+            phase: 0,
+            time: 0.0,
+        })
+    }
+
+    /// Label of the phase; `end` after the last.
+    pub fn label(&self) -> &str {
+        self.script
+            .phase
+            .get(self.phase)
+            .map_or("end", |phase| phase.label.as_str())
+    }
+
+    /// Where the hand wants to be \[m\].
+    pub fn target(&self) -> [f64; 2] {
+        self.target_and_rate().0
+    }
+
+    /// Moves on by `dt` \[s\] under `force` on the hand \[N\].
+    pub fn step(&mut self, dt: f64, force: [f64; 3]) -> HandState {
+        self.advance(dt);
+        let (mut target, mut rate) = self.target_and_rate();
+        if let Some(tremor) = &mut self.tremor {
+            let (displacement, speed) = tremor.step(dt);
+            for axis in 0..2 {
+                target[axis] += displacement[axis];
+                rate[axis] += speed[axis];
+            }
+        }
+        self.impedance.step(dt, target, rate, [force[0], force[1]]);
+        let ([x, y], [u, v]) = (self.impedance.position(), self.impedance.velocity());
+        HandState {
+            position: [x, y, 0.0],
+            velocity: [u, v, 0.0],
+            finished: self.phase >= self.script.phase.len(),
+        }
+    }
+
+    fn advance(&mut self, dt: f64) {
+        self.time += dt;
+        // Phases last 10 ms at least, so this ends.
+        while let Some(phase) = self.script.phase.get(self.phase) {
+            // Half a step of tolerance: sums of dt are not exact.
+            if self.time < phase.duration - 1e-9 {
+                return;
+            }
+            self.from = position(&phase.motion, self.from, phase.duration, phase.duration).0;
+            self.time = (self.time - phase.duration).max(0.0);
+            self.phase += 1;
+            if self.script.repeat && self.phase == self.script.phase.len() {
+                self.phase = 0;
+            }
+        }
+    }
+
+    fn target_and_rate(&self) -> ([f64; 2], [f64; 2]) {
+        match self.script.phase.get(self.phase) {
+            Some(phase) => position(&phase.motion, self.from, self.time, phase.duration),
+            None => (self.from, [0.0; 2]),
+        }
+    }
+}
+
+/// Position [m] and velocity [m/s] at `time` of a motion from `from`.
+fn position(motion: &Motion, from: [f64; 2], time: f64, duration: f64) -> ([f64; 2], [f64; 2]) {
+    let s = (time / duration).clamp(0.0, 1.0);
+    let (way, rate) = match *motion {
+        Motion::Hold {} => return (from, [0.0; 2]),
+        Motion::Sine {
+            amplitude,
+            frequency,
+        } => {
+            let omega = std::f64::consts::TAU * frequency;
+            let (sine, cosine) = (omega * time).sin_cos();
+            let moved = std::array::from_fn(|axis| from[axis] + amplitude[axis] * sine);
+            return (moved, amplitude.map(|own| own * omega * cosine));
+        }
+        Motion::Reach { .. } => (
+            s * s * s * (10.0 + s * (-15.0 + 6.0 * s)),
+            30.0 * s * s * (1.0 - s) * (1.0 - s) / duration,
+        ),
+        Motion::Slide { .. } => (s, 1.0 / duration),
+    };
+    let (Motion::Reach { to } | Motion::Slide { to }) = *motion else {
+        return (from, [0.0; 2]);
+    };
+    (
+        std::array::from_fn(|axis| from[axis] + way * (to[axis] - from[axis])),
+        std::array::from_fn(|axis| rate * (to[axis] - from[axis])),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn config(text: &str) -> ScriptedHandConfig {
+        toml::from_str(text).unwrap()
+    }
+
+    const PRESS: &str = r#"
+        [impedance]
+        mass = 1.0
+        damping = 25.0
+        stiffness = 400.0
+
+        [script]
+        start = [0.0, 0.0]
+        phase = [
+            { label = "reach", kind = "reach", to = [0.03, 0.0], duration = 1.0 },
+            { label = "press", kind = "hold", duration = 1.0 },
+            { label = "slide", kind = "slide", to = [0.03, 0.04], duration = 2.0 },
+            { label = "wave", kind = "sine", amplitude = [0.0, 0.01], frequency = 2.0, duration = 1.0 },
+            { label = "retreat", kind = "reach", to = [0.0, 0.0], duration = 1.0 },
+        ]
+    "#;
+
+    #[test]
+    fn it_goes_where_the_script_says() {
+        let mut hand = ScriptedHand::new(&config(PRESS), 0).unwrap();
+        let mut fastest = 0.0_f64;
+        let mut at = |hand: &mut ScriptedHand, steps: u32| {
+            let mut state = HandState::default();
+            for _ in 0..steps {
+                state = hand.step(1e-3, [0.0; 3]);
+                fastest = fastest.max(state.velocity[0]);
+            }
+            state
+        };
+        assert_eq!(hand.label(), "reach");
+        // Half way at half time.
+        at(&mut hand, 500);
+        assert!((hand.target()[0] - 0.015).abs() < 1e-9);
+        at(&mut hand, 1000);
+        assert_eq!(hand.label(), "press");
+        let state = at(&mut hand, 499);
+        assert!((state.position[0] - 0.03).abs() < 1e-4);
+        at(&mut hand, 1001);
+        assert_eq!(hand.label(), "slide");
+        let state = at(&mut hand, 500);
+        assert!((state.velocity[1] - 0.02).abs() < 1e-3);
+        at(&mut hand, 500);
+        assert_eq!(hand.label(), "wave");
+        at(&mut hand, 125);
+        assert!((hand.target()[1] - 0.05).abs() < 1e-6);
+        let state = at(&mut hand, 3000);
+        assert_eq!(hand.label(), "end");
+        assert!(state.finished && state.position[0].abs() < 1e-3);
+        // Peak speed of a minimum-jerk reach: 1.875 of its mean; the hand lags
+        // a little and stays below.
+        assert!(
+            (fastest / (1.875 * 0.03) - 1.0).abs() < 0.1,
+            "{fastest} m/s"
+        );
+    }
+
+    #[test]
+    fn a_wall_takes_the_force_that_the_stiffness_says() {
+        // Wall of 2000 N/m at 10 mm, target at 30 mm: F = 20 mm · 400·2000/2400.
+        let mut hand = ScriptedHand::new(&config(PRESS), 0).unwrap();
+        let mut force = 0.0;
+        for _ in 0..1990 {
+            let state = hand.step(1e-3, [force, 0.0, 0.0]);
+            force = -2000.0 * (state.position[0] - 0.01).max(0.0);
+        }
+        let expected = -0.02 * 400.0 * 2000.0 / 2400.0;
+        assert!(
+            (force / expected - 1.0).abs() < 0.01,
+            "{force} N, not {expected} N"
+        );
+    }
+
+    #[test]
+    fn it_repeats_and_trembles_from_its_seed() {
+        let mut own = config(PRESS);
+        own.script.repeat = true;
+        own.tremor = Some(TremorParameters { amplitude: 1e-4 });
+        let run = |seed| {
+            let mut hand = ScriptedHand::new(&own, seed).unwrap();
+            let states: Vec<_> = (0..6500).map(|_| hand.step(1e-3, [0.0; 3])).collect();
+            assert_eq!(hand.label(), "reach");
+            states
+        };
+        assert_eq!(run(1), run(1));
+        assert_ne!(run(1), run(2));
+        assert!(!run(1)[6499].finished);
+    }
+
+    #[test]
+    fn wrong_scripts_are_named() {
+        let mut own = config(PRESS);
+        own.script.phase[2].duration = 0.0;
+        let error = own.validate().unwrap_err().to_string();
+        assert!(error.contains("script.phase[2].duration = 0 s"), "{error}");
+        let unknown = PRESS.replace("stiffness", "stifness");
+        assert!(toml::from_str::<ScriptedHandConfig>(&unknown).is_err());
+        let unknown = PRESS.replace("kind = \"hold\"", "kind = \"hold\", to = [0.0, 0.0]");
+        assert!(toml::from_str::<ScriptedHandConfig>(&unknown).is_err());
+    }
+}

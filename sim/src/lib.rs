@@ -1,0 +1,7 @@
+//! Seeded stand-ins for what is not there: arm, hand, channel; the lockstep executor.
+
+pub mod arm;
+pub mod channel;
+pub mod hand;
+pub mod lockstep;
+mod random;

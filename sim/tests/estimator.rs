@@ -1,0 +1,267 @@
+//! The contact-force estimator against the simulated arm's truth, tick by tick.
+
+mod common;
+mod driver;
+
+use common::{TICK, rokviss};
+use driver::Driver;
+use ferntast_control::estimator::{ContactEstimate, ContactEstimator, JointMeasurement};
+use ferntast_model::contour::Surface;
+use ferntast_sim::arm::{Measurement, Truth};
+use std::f64::consts::TAU;
+
+fn seen(measurement: &Measurement) -> JointMeasurement {
+    JointMeasurement {
+        motor_position: measurement.motor_position,
+        joint_torque: measurement.joint_torque,
+    }
+}
+
+/// Runs `path` (time in s to offset in m); gives truth and estimate of every tick.
+fn run(seconds: f64, path: impl Fn(f64) -> [f64; 2]) -> Vec<(Truth, ContactEstimate)> {
+    let config = rokviss();
+    let mut driver = Driver::new(&config, 11);
+    let mut estimator = ContactEstimator::new(&config.model(), &config.estimator).expect("valid");
+    (0..(seconds / TICK) as usize)
+        .map(|tick| {
+            let measurement = driver.step(path(tick as f64 * TICK));
+            let estimate = estimator.step(TICK, &seen(&measurement));
+            (driver.arm.truth(), estimate)
+        })
+        .collect()
+}
+
+/// Goes to the edge in half a second, presses `depth` into it, then slides along it sinusoidally.
+fn slide(toward: [f64; 2], depth: f64, amplitude: f64, period: f64) -> impl Fn(f64) -> [f64; 2] {
+    move |time| {
+        let press = (time / 0.8).min(1.0) * (0.03 + depth);
+        let swing = amplitude * (TAU * (time - 1.0).max(0.0) / period).sin();
+        [
+            toward[0] * press + toward[1].abs() * swing,
+            toward[1] * press + toward[0].abs() * swing,
+        ]
+    }
+}
+
+struct Score {
+    normal_error: f64,
+    normal_peak: f64,
+    tangential_error: f64,
+    tangential_peak: f64,
+    samples: usize,
+}
+
+/// RMS errors while the tip slides, against the peaks of the truth.
+fn score(ticks: &[(Truth, ContactEstimate)]) -> Score {
+    let sliding: Vec<_> = ticks
+        .iter()
+        .filter(|(truth, estimate)| {
+            truth.normal_force > 0.0 && estimate.valid && !estimate.near_rest && estimate.in_contact
+        })
+        .collect();
+    let against = |truth: &Truth| -truth.tangential_force * truth.sliding_velocity.signum();
+    let rms = |error: &dyn Fn(&Truth, &ContactEstimate) -> f64| {
+        let sum: f64 = sliding.iter().map(|(t, e)| error(t, e).powi(2)).sum();
+        (sum / sliding.len() as f64).sqrt()
+    };
+    let peak = |value: &dyn Fn(&Truth) -> f64| {
+        sliding
+            .iter()
+            .map(|(t, _)| value(t).abs())
+            .fold(0.0, f64::max)
+    };
+    Score {
+        normal_error: rms(&|t, e| e.normal_force - t.normal_force),
+        normal_peak: peak(&|t| t.normal_force),
+        tangential_error: rms(&|t, e| e.tangential_force - against(t)),
+        tangential_peak: peak(&against),
+        samples: sliding.len(),
+    }
+}
+
+#[test]
+fn forces_in_sliding_are_within_five_percent_of_their_peak() {
+    for (surface, toward, coefficient) in [
+        (Surface::Unlubricated, [1.0, 0.0], 0.45),
+        (Surface::Lubricated, [0.0, -1.0], 0.15),
+    ] {
+        let ticks = run(7.0, slide(toward, 0.001, 0.012, 2.0));
+        let score = score(&ticks[1000..]);
+        println!(
+            "{surface:?}: F_N {:.3} of {:.1} N, F_T {:.3} of {:.1} N, {} ticks",
+            score.normal_error,
+            score.normal_peak,
+            score.tangential_error,
+            score.tangential_peak,
+            score.samples
+        );
+        assert!(score.samples > 3000);
+        assert!(score.normal_peak > 15.0);
+        assert!(score.normal_error < 0.05 * score.normal_peak);
+        assert!(score.tangential_error < 0.05 * score.tangential_peak);
+        let (_, last) = ticks.last().unwrap();
+        println!(
+            "b_0T {:.4} ± {:.4}",
+            last.friction.value, last.friction.error
+        );
+        assert_eq!(last.surface, Some(surface));
+        assert!((last.friction.value - coefficient).abs() < 0.03);
+        assert!(last.friction.error > 1e-5 && last.friction.error < 0.02);
+    }
+}
+
+#[test]
+fn contact_is_told_within_ten_milliseconds_and_not_before() {
+    for toward in [[1.0, 0.0], [0.0, -1.0]] {
+        for speed in [0.03, 0.08, 0.15] {
+            let ticks = run(2.0, |time| {
+                let way = (speed * time).min(0.033);
+                [toward[0] * way, toward[1] * way]
+            });
+            let first = |seen: &dyn Fn(&(Truth, ContactEstimate)) -> bool| {
+                ticks.iter().position(seen).expect("contact")
+            };
+            let on = rokviss().estimator.contact_on;
+            let truth = first(&|(truth, _)| truth.normal_force > on);
+            let told = first(&|(_, estimate)| estimate.in_contact);
+            println!("{toward:?} {speed} m/s: contact at {truth} ms, told at {told} ms");
+            assert!(told <= truth + 10, "{told} against {truth}");
+            assert!(told + 1 >= truth, "{told} against {truth}");
+        }
+    }
+}
+
+#[test]
+fn no_contact_is_told_where_there_is_none() {
+    let circle = |time: f64| {
+        let radius = 0.025 * (time / 2.0).min(1.0);
+        [
+            radius * (TAU * time / 2.0).cos(),
+            radius * (TAU * time / 2.0).sin(),
+        ]
+    };
+    let ticks = run(6.0, circle);
+    let noise = ticks[100..]
+        .iter()
+        .map(|(_, e)| e.force[0].hypot(e.force[1]))
+        .fold(0.0, f64::max);
+    println!("largest force without contact: {noise:.2} N");
+    assert!(
+        ticks
+            .iter()
+            .all(|(truth, e)| truth.surface.is_none() && !e.in_contact)
+    );
+    assert!(noise > 0.0);
+}
+
+#[test]
+fn the_tip_is_where_it_is() {
+    let ticks = run(4.0, slide([1.0, 0.0], 0.001, 0.012, 2.0));
+    let worst = ticks
+        .iter()
+        .map(|(truth, e)| (truth.tip[0] - e.tip[0]).hypot(truth.tip[1] - e.tip[1]))
+        .fold(0.0, f64::max);
+    println!("largest error of the tip: {:.1} µm", worst * 1e6);
+    assert!(worst < 2e-4 && worst > 0.0);
+}
+
+#[test]
+fn turning_points_are_masked() {
+    let ticks = run(5.0, slide([1.0, 0.0], 0.001, 0.012, 2.0));
+    let mut turns = 0;
+    for pair in ticks[1500..].windows(2) {
+        let ((before, _), (after, estimate)) = (&pair[0], &pair[1]);
+        let turned = before.sliding_velocity * after.sliding_velocity <= 0.0;
+        if turned && estimate.in_contact {
+            turns += 1;
+            assert!(estimate.near_rest, "{after:?}");
+        }
+    }
+    assert!(turns >= 3, "{turns}");
+}
+
+#[test]
+fn springs_are_told_with_their_force() {
+    let ticks = run(2.0, |time| [0.0, (0.05 * time).min(0.05)]);
+    let (truth, estimate) = ticks.last().unwrap();
+    assert_eq!(truth.surface, Some(Surface::Spring));
+    assert_eq!(estimate.surface, Some(Surface::Spring));
+    assert!(truth.normal_force > 10.0);
+    assert!((estimate.normal_force - truth.normal_force).abs() < 0.5);
+}
+
+#[test]
+fn broken_measurements_are_flagged_and_survived() {
+    let config = rokviss();
+    let mut driver = Driver::new(&config, 11);
+    let mut estimator = ContactEstimator::new(&config.model(), &config.estimator).unwrap();
+    let path = slide([1.0, 0.0], 0.001, 0.012, 2.0);
+    let mut before = ContactEstimate::UNKNOWN;
+    for tick in 0..3000 {
+        let mut measurement = seen(&driver.step(path(f64::from(tick) * TICK)));
+        let broken = tick % 100 == 50;
+        if broken {
+            measurement.joint_torque[tick as usize / 100 % 2] =
+                [f64::NAN, f64::INFINITY, 1e300][tick as usize / 100 % 3];
+        }
+        let estimate = estimator.step(TICK, &measurement);
+        assert_eq!(estimate.input_invalid, broken);
+        if broken {
+            assert!(!estimate.valid);
+            assert_eq!(estimate.force, before.force);
+        }
+        let numbers = [
+            estimate.normal_force,
+            estimate.tangential_force,
+            estimate.friction.value,
+            estimate.tip[0],
+            estimate.tip_velocity[1],
+            estimate.force[0],
+        ];
+        assert!(numbers.iter().all(|x| x.is_finite()));
+        before = estimate;
+    }
+    for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let estimate = estimator.step(dt, &JointMeasurement::default());
+        assert!(estimate.input_invalid && !estimate.valid);
+        assert_eq!(estimate.tip, before.tip);
+    }
+}
+
+#[test]
+fn singularity_saturation_and_gaps_are_flagged() {
+    let config = rokviss();
+    let new = || ContactEstimator::new(&config.model(), &config.estimator).unwrap();
+    let bent = JointMeasurement {
+        motor_position: [-0.785, 1.571],
+        joint_torque: [0.0, 0.0],
+    };
+    let mut estimator = new();
+    let settle = |estimator: &mut ContactEstimator, measurement: &JointMeasurement| {
+        (0..100)
+            .map(|_| estimator.step(TICK, measurement))
+            .last()
+            .unwrap()
+    };
+    assert!(settle(&mut estimator, &bent).valid);
+    // The end of the torque sensor's range, until the filter has forgotten it.
+    let loaded = JointMeasurement {
+        joint_torque: [40.0, 0.0],
+        ..bent
+    };
+    let estimate = estimator.step(TICK, &loaded);
+    assert!(estimate.saturated && !estimate.valid);
+    assert!(estimator.step(TICK, &bent).saturated);
+    assert!(settle(&mut estimator, &bent).valid);
+    // A gap of measurements: it starts anew and settles.
+    let estimate = estimator.step(0.2, &bent);
+    assert!(!estimate.valid && !estimate.input_invalid);
+    assert!(settle(&mut estimator, &bent).valid);
+    let stretched = JointMeasurement {
+        motor_position: [0.0, 0.01],
+        ..bent
+    };
+    let estimate = settle(&mut new(), &stretched);
+    assert!(estimate.singular && !estimate.valid);
+    assert_eq!(estimate.force, [0.0, 0.0]);
+}

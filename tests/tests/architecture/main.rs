@@ -1,0 +1,86 @@
+//! The layers of ARCHITECTURE.md hold: pure crates stay pure, arrows point downwards.
+
+mod arrows;
+mod dependencies;
+mod modules;
+mod source;
+mod table;
+
+use std::path::PathBuf;
+
+/// The crates that must not reach a clock, a file, a socket, a thread or the middleware.
+const PURE: [&str; 4] = ["model", "control", "msgs", "sim"];
+
+/// The folder of a crate of the workspace.
+fn folder(name: &str) -> PathBuf {
+    ferntast_tests::root().join(name)
+}
+
+/// Output of `cargo` with these arguments, offline, in the workspace.
+fn cargo(arguments: &[&str]) -> String {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = std::process::Command::new(cargo);
+    command
+        .args(arguments)
+        .args(["--offline", "--locked"])
+        .current_dir(ferntast_tests::root());
+    ferntast_tests::Process::spawn(command)
+        .wait(std::time::Duration::from_secs(120))
+        .success()
+        .stdout
+}
+
+#[test]
+fn pure_crates_reach_no_middleware() {
+    for name in PURE {
+        let tree = dependencies::tree(name);
+        assert!(
+            tree.contains(&format!("ferntast-{name}")),
+            "not the tree of {name}: {tree:?}"
+        );
+        let reached = dependencies::impure(&tree);
+        assert!(
+            reached.is_empty(),
+            "{name} is pure, yet reaches {reached:?}; `cargo tree -p ferntast-{name} -e normal` shows by which way"
+        );
+    }
+}
+
+#[test]
+fn the_bus_is_seen_to_reach_the_middleware() {
+    // The same look at a crate that does: else the test above could not fail.
+    let reached = dependencies::impure(&dependencies::tree("bus"));
+    for name in ["zenoh", "ros2-client", "iceoryx2", "mcap", "tokio", "hiroz"] {
+        assert!(reached.iter().any(|other| other == name), "{reached:?}");
+    }
+}
+
+#[test]
+fn pure_crates_name_no_clock_file_socket_or_thread() {
+    for name in PURE {
+        let sources = modules::sources(&folder(name).join("src"));
+        assert!(!sources.is_empty(), "no sources in {name}");
+        for (path, text) in sources {
+            let found = source::impurities(&text)
+                .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            let lines: Vec<String> = found
+                .iter()
+                .map(|impurity| format!("{}:{}: {}", path.display(), impurity.line, impurity.name))
+                .collect();
+            assert!(
+                lines.is_empty(),
+                "{name} is pure; take as an argument what these get by themselves:\n{}",
+                lines.join("\n")
+            );
+        }
+    }
+}
+
+#[test]
+fn arrows_between_crates_follow_the_table() {
+    let text = std::fs::read_to_string(folder("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let members = arrows::members(&cargo(&["metadata", "--no-deps", "--format-version", "1"]));
+    let table = table::allowed(&text, &members.keys().cloned().collect::<Vec<_>>());
+    let wrong = arrows::wrong(&members, &table);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
