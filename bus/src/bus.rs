@@ -28,6 +28,16 @@ pub enum Bus {
 }
 
 impl Bus {
+    /// The topics of others that discovery has found so far, each with its
+    /// type; always empty on the ways that know no discovery.
+    pub fn topics_seen(&self) -> Vec<(String, String)> {
+        match self {
+            Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) => Vec::new(),
+            Bus::Dds(bus) => bus.topics_seen(),
+            Bus::Zenoh(bus) => bus.topics_seen(),
+        }
+    }
+
     /// A publisher on `topic`, with the quality of service that the topic's delivery asks for.
     ///
     /// # Errors

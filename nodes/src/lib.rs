@@ -1,4 +1,24 @@
 //! The nodes, their supervisor and the ferntast command.
 
+pub mod arm;
+pub mod carry;
 pub mod clock;
+pub mod command;
+pub mod config;
 pub mod doctor;
+pub mod estimator;
+mod gateway;
+pub mod link;
+pub mod lockstep;
+pub mod master;
+pub mod node;
+pub mod node_name;
+mod pace;
+mod player;
+pub mod process;
+mod recorder;
+pub mod replay;
+mod say;
+pub mod servo;
+pub mod session;
+mod stop;

@@ -1,3 +1,5 @@
 //! The `ferntast` command.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    ferntast_nodes::command::main()
+}

@@ -108,6 +108,29 @@ impl DdsBus {
         DdsSubscriber::create(self, topic, depth)
     }
 
+    /// The topics of others that discovery has found so far, each with its
+    /// type as DDS names it.
+    pub fn topics_seen(&self) -> Vec<(String, String)> {
+        let writers = self.participant.discovered_writers().into_iter();
+        let readers = self.participant.discovered_readers().into_iter();
+        let written = writers.map(|own| {
+            let data = own.publication_topic_data;
+            (data.topic_name, data.type_name)
+        });
+        let read = readers.map(|own| {
+            let data = own.subscription_topic_data;
+            (data.topic_name().clone(), data.type_name().clone())
+        });
+        let mut topics: Vec<(String, String)> = written
+            .chain(read)
+            // ROS 2 marks its topics so; the rest are services and discovery.
+            .filter_map(|(name, kind)| Some((format!("/{}", name.strip_prefix("rt/")?), kind)))
+            .collect();
+        topics.sort();
+        topics.dedup();
+        topics
+    }
+
     fn node(&self) -> MutexGuard<'_, Node> {
         self.node.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -38,6 +38,7 @@ mod repair;
 mod scan;
 mod sink;
 mod subscriber;
+mod text;
 mod writer;
 
 pub use bus::McapBus;

@@ -56,8 +56,7 @@ pub struct ZenohConfig {
 #[derive(Clone)]
 pub struct ZenohBus {
     node: Arc<ZNode>,
-    // Kept: the graph and the session.
-    _context: Arc<ZContext>,
+    context: Arc<ZContext>,
 }
 
 impl ZenohBus {
@@ -72,8 +71,13 @@ impl ZenohBus {
         let (context, node) = session::open(config)?;
         Ok(ZenohBus {
             node: Arc::new(node),
-            _context: Arc::new(context),
+            context: Arc::new(context),
         })
+    }
+
+    /// The topics that discovery has found so far, each with its type.
+    pub fn topics_seen(&self) -> Vec<(String, String)> {
+        self.context.graph().get_topic_names_and_types()
     }
 
     /// A publisher on `topic`.

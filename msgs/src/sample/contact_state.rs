@@ -113,7 +113,7 @@ unsafe impl Message for ContactStateSample {
     }
 
     fn to_ros(&self) -> ContactState {
-        let identified = self.friction_coefficient_error.is_finite();
+        let identified = self.friction_coefficient_error != f64::INFINITY;
         ContactState {
             header: Header::new(self.stamp, ""),
             in_contact: self.in_contact != 0,
@@ -133,16 +133,19 @@ unsafe impl Message for ContactStateSample {
     fn from_ros(ros: &ContactState) -> Result<ContactStateSample, InvalidMessage> {
         let edge = Edge::from_name(&ros.edge)
             .ok_or_else(|| checks::unknown("edge", &ros.edge, Edge::KNOWN))?;
-        let (coefficient, error) = match ros.friction_coefficient.is_nan() {
-            true => (0.0, f64::INFINITY),
-            false => (ros.friction_coefficient, ros.friction_coefficient_error),
+        // Anything else that is not finite is refused by the check.
+        let unidentified = ros.friction_coefficient.is_nan()
+            && ros.friction_coefficient_error == f64::INFINITY;
+        let coefficient = match unidentified {
+            true => 0.0,
+            false => ros.friction_coefficient,
         };
         let sample = ContactStateSample {
             stamp: ros.header.time(),
             normal_force: ros.normal_force,
             tangential_force: ros.tangential_force,
             friction_coefficient: coefficient,
-            friction_coefficient_error: error,
+            friction_coefficient_error: ros.friction_coefficient_error,
             in_contact: ros.in_contact.into(),
             valid: ros.valid.into(),
             near_rest: ros.near_rest.into(),

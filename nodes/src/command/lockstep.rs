@@ -1,0 +1,108 @@
+//! `ferntast lockstep`.
+
+use std::{path::PathBuf, process::ExitCode, time::Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
+use crate::{
+    lockstep::LockstepSession,
+    session::{ContactSummary, LeaderSummary, LinkSummary, StateSummary},
+};
+
+/// Run a scenario in one process and virtual time.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "The same seed gives the same recording, byte for byte:\n  \
+    ferntast lockstep config/scenarios/rokviss.toml --record recordings/a\n  \
+    ferntast replay recordings/a")]
+pub struct Arguments {
+    /// Scenario: a shipped one or a file.
+    #[arg(value_name = "NAME|FILE")]
+    file: Option<String>,
+
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+
+    /// Virtual time to run (else that of the scenario) [s].
+    #[arg(long, value_name = "S")]
+    duration: Option<f64>,
+
+    /// Record into this folder (a rosbag2 directory; must not exist yet).
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+}
+
+#[derive(Debug, Serialize)]
+struct Result {
+    scenario: String,
+    seed: u64,
+    duration_s: f64,
+    wall_s: f64,
+    real_time_factor: f64,
+    link: LinkSummary,
+    contact: ContactSummary,
+    leader: LeaderSummary,
+    states: std::collections::BTreeMap<String, StateSummary>,
+    recording: Option<String>,
+}
+
+/// Runs it.
+pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode, Failure> {
+    if let Some(file) = arguments.file.take() {
+        arguments.scenario.scenario = file;
+    }
+    let loaded = arguments.scenario.load()?;
+    let duration = arguments.duration.unwrap_or(loaded.scenario.duration);
+    if !(duration.is_finite() && duration > 0.0) {
+        return Err(Failure::refused(format!(
+            "--duration {duration}: give a positive number of seconds"
+        )));
+    }
+    let mut session = LockstepSession::new(&loaded, arguments.record.as_deref())
+        .map_err(Failure::refused)?;
+    let bar = ProgressBar::new(duration.ceil() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} s of virtual time, {eta} left") {
+        bar.set_style(style);
+    }
+    let begun = Instant::now();
+    let mut done = 0.0;
+    while done < duration {
+        let slice = (duration - done).min(1.0);
+        session.run(slice);
+        done += slice;
+        bar.set_position(done as u64);
+    }
+    let wall = begun.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let monitor = session.monitor();
+    let result = Result {
+        scenario: loaded.scenario.name.clone(),
+        seed: loaded.scenario.seed,
+        duration_s: duration,
+        wall_s: wall,
+        real_time_factor: duration / wall,
+        link: monitor.link(),
+        contact: monitor.contact(),
+        leader: monitor.leader(),
+        states: monitor.states(),
+        recording: arguments.record.as_ref().map(|path| path.display().to_string()),
+    };
+    session.finish().map_err(Failure::failed)?;
+    if json {
+        print_json(&result)?;
+    } else {
+        println!(
+            "{} s of {} in {:.3} s: {:.0} times real time",
+            duration, result.scenario, wall, result.real_time_factor
+        );
+        println!(
+            "contact {:.1} s, peak normal force {:.1} N; hand at most {:.1} N; round trip {:.3} ms",
+            result.contact.time_s,
+            result.contact.peak_normal_force,
+            result.leader.peak_force,
+            result.link.rtt_ms.unwrap_or(f64::NAN)
+        );
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,86 @@
+//! The `ferntast` command.
+
+mod bag;
+mod doctor;
+mod interfaces;
+mod lockstep;
+mod node;
+mod output;
+mod play;
+mod replay;
+mod scenario_options;
+mod session;
+mod state;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use output::Failure;
+
+/// Force-reflecting telemanipulation: run sessions, record, play back.
+#[derive(Debug, Parser)]
+#[command(
+    name = "ferntast",
+    version,
+    about,
+    long_about = "Force-reflecting telemanipulation.\n\n\
+        An operator moves a haptic master; across a link with delay, jitter and loss a two-joint arm follows, \
+        touches a contour, and the contact force comes back into the hand.\n\n\
+        Begin with:  ferntast session --duration 20 --record recordings/first\n\
+        Then:        ferntast bag info recordings/first\n\
+        And:         ferntast doctor",
+    propagate_version = true
+)]
+pub struct Arguments {
+    /// Print one JSON value on stdout; everything else goes to stderr.
+    #[arg(long, global = true)]
+    json: bool,
+
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a session: arm, servo, estimator, master, link, ROS 2 gateway, recorder.
+    Session(session::Arguments),
+    /// Run one node alone, in this process.
+    Node(node::Arguments),
+    /// Run a scenario in one process and virtual time, faster than real time.
+    Lockstep(lockstep::Arguments),
+    /// Feed a lockstep recording again through servo and estimator and compare their outputs.
+    Replay(replay::Arguments),
+    /// Put a recording back on the topics.
+    Play(play::Arguments),
+    /// Look into recordings, mend them.
+    Bag(bag::Arguments),
+    /// Give a state command: enable, disable, pause, resume (re-arm).
+    State(state::Arguments),
+    /// Say what this machine offers and lacks, and how to mend it.
+    Doctor(doctor::Arguments),
+    /// List the topics' interfaces: type, RIHS01 hash, schema.
+    Interfaces(interfaces::Arguments),
+}
+
+/// Runs the command line; gives the process's exit code: 0 when all is well,
+/// 2 when the input was refused, 1 when something failed on the way.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let json = arguments.json;
+    let result = match arguments.command {
+        Command::Session(arguments) => session::run(arguments, json),
+        Command::Node(arguments) => node::run(arguments),
+        Command::Lockstep(arguments) => lockstep::run(arguments, json),
+        Command::Replay(arguments) => replay::run(arguments, json),
+        Command::Play(arguments) => play::run(arguments, json),
+        Command::Bag(arguments) => bag::run(arguments, json),
+        Command::State(arguments) => state::run(arguments, json),
+        Command::Doctor(arguments) => doctor::run(arguments, json),
+        Command::Interfaces(arguments) => interfaces::run(arguments, json),
+    };
+    match result {
+        Ok(code) => code,
+        Err(failure) => failure.report(),
+    }
+}

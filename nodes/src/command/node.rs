@@ -1,0 +1,73 @@
+//! `ferntast node`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use super::{Failure, scenario_options::ScenarioOptions};
+use crate::{
+    node_name::NodeName,
+    process::{self, ProcessError},
+    session::{PlayOptions, SessionContext},
+    stop,
+};
+
+/// Run one node alone, in this process.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "The node meets others of the same --session over shared memory. Three terminals make an arm that can be felt:\n  \
+    ferntast node arm\n  \
+    ferntast node servo\n  \
+    ferntast node estimator")]
+pub struct Arguments {
+    /// Which node.
+    node: NodeName,
+
+    /// Name of the session whose other nodes it shall meet.
+    #[arg(long, default_value = "default", value_name = "NAME")]
+    session: String,
+
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+
+    /// Folder that the recorder writes or the player plays.
+    #[arg(long, value_name = "DIR")]
+    bag: Option<PathBuf>,
+
+    /// Everything at once, as the supervisor wrote it.
+    #[arg(long, hide = true)]
+    session_file: Option<PathBuf>,
+
+    /// How often the supervisor started it before.
+    #[arg(long, default_value_t = 0, hide = true)]
+    generation: u32,
+}
+
+/// Runs it until Ctrl-C.
+pub fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
+    let supervised = arguments.session_file.is_some();
+    let context = match &arguments.session_file {
+        Some(path) => SessionContext::read(path).map_err(Failure::refused)?,
+        None => {
+            let loaded = arguments.scenario.load()?;
+            let mut context =
+                SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+            context.bag = arguments.bag;
+            context.play = PlayOptions::default();
+            context
+        }
+    };
+    let stop = stop::on_signals().map_err(Failure::failed)?;
+    if !supervised {
+        eprintln!(
+            "node {} of session {:?}; Ctrl-C ends it",
+            arguments.node, context.session
+        );
+    }
+    process::run(arguments.node, &context, arguments.generation, &stop)
+        .map(|()| ExitCode::SUCCESS)
+        .map_err(|error| {
+            let text = format!("node {}: {error}", arguments.node);
+            match error {
+                ProcessError::Broken(_) => Failure::failed(text),
+                _ => Failure::refused(text),
+            }
+        })
+}

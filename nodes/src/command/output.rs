@@ -1,0 +1,69 @@
+//! What a command leaves behind: JSON, messages, exit codes.
+
+use std::{
+    error::Error,
+    fmt,
+    io::{IsTerminal, Write},
+    process::ExitCode,
+};
+
+use serde::Serialize;
+
+/// Why a command failed: a message, and whose turn it is.
+#[derive(Debug)]
+pub struct Failure {
+    message: String,
+    code: u8,
+}
+
+impl Failure {
+    /// The input was refused: nothing was done (exit code 2).
+    pub fn refused(error: impl fmt::Display) -> Failure {
+        Failure {
+            message: error.to_string(),
+            code: 2,
+        }
+    }
+
+    /// Something failed on the way (exit code 1).
+    pub fn failed(error: impl fmt::Display) -> Failure {
+        Failure {
+            message: error.to_string(),
+            code: 1,
+        }
+    }
+
+    /// Says so on stderr.
+    pub fn report(&self) -> ExitCode {
+        let paint = std::io::stderr().is_terminal();
+        let (red, plain) = if paint { ("\x1b[1;31m", "\x1b[0m") } else { ("", "") };
+        eprintln!("{red}error:{plain} {}", self.message);
+        ExitCode::from(self.code)
+    }
+}
+
+/// `error` and what caused it, in one line.
+pub fn chain(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        let cause_text = cause.to_string();
+        if !text.contains(&cause_text) {
+            text.push_str(": ");
+            text.push_str(&cause_text);
+        }
+        source = cause.source();
+    }
+    text
+}
+
+/// Prints `value` as one JSON value on stdout.
+///
+/// # Errors
+///
+/// stdout is closed, or the value has no JSON form.
+pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    serde_json::to_writer_pretty(&mut stdout, value).map_err(Failure::failed)?;
+    writeln!(stdout).map_err(Failure::failed)
+}

@@ -1,0 +1,70 @@
+//! `ferntast play`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
+use crate::{
+    session::{self, PlayOptions, SessionContext},
+    stop,
+};
+
+/// Put a recording back on the topics of ROS 2, with its timing.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A rosbag2 directory or an .mcap file.
+    recording: PathBuf,
+
+    /// Speed relative to the recording.
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
+    rate: f64,
+
+    /// Begin again at the end, until Ctrl-C.
+    #[arg(long = "loop")]
+    repeat: bool,
+
+    /// Play into a live estimator: its forces are computed anew.
+    #[arg(long)]
+    estimate: bool,
+
+    /// Name of the session.
+    #[arg(long, default_value = "play", value_name = "NAME")]
+    session: String,
+
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+}
+
+/// Runs it.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if !(arguments.rate.is_finite() && (0.01..=100.0).contains(&arguments.rate)) {
+        return Err(Failure::refused(format!(
+            "--rate {}: give a factor of 0.01 to 100",
+            arguments.rate
+        )));
+    }
+    let info = ferntast_bus::mcap::info(&arguments.recording).map_err(Failure::refused)?;
+    let loaded = arguments.scenario.load()?;
+    let mut context =
+        SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    context.bag = Some(arguments.recording);
+    context.play = PlayOptions {
+        rate: arguments.rate,
+        repeat: arguments.repeat,
+        except: Vec::new(),
+    };
+    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let played = session::play(context, arguments.estimate, info.duration_s, &stop)
+        .map_err(|error| {
+            if error.is_refusal() {
+                Failure::refused(error)
+            } else {
+                Failure::failed(error)
+            }
+        })?;
+    if json {
+        print_json(&played)?;
+    } else {
+        println!("played {:.1} s", played.played_s);
+    }
+    Ok(ExitCode::SUCCESS)
+}

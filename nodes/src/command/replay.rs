@@ -1,0 +1,45 @@
+//! `ferntast replay`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{Failure, output::print_json};
+use crate::replay;
+
+/// Feed a lockstep recording again through servo and estimator.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A rosbag2 directory that `ferntast lockstep --record` made.
+    recording: PathBuf,
+}
+
+/// Runs it; exit code 1 when the outputs differ.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let bar = ProgressBar::new(100);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %") {
+        bar.set_style(style);
+    }
+    let result = replay::run(&arguments.recording, &mut |share| {
+        bar.set_position((share * 100.0) as u64);
+    })
+    .map_err(Failure::refused)?;
+    bar.finish_and_clear();
+    if json {
+        print_json(&result)?;
+    } else if result.equal {
+        println!("{} messages compared, all equal", result.compared);
+    } else {
+        println!(
+            "{} of {} messages differ; first: {}",
+            result.different,
+            result.compared,
+            result.first_difference.as_deref().unwrap_or("-")
+        );
+    }
+    Ok(if result.equal {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}

@@ -1,0 +1,74 @@
+//! `ferntast session`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
+use crate::{
+    session::{self, SessionContext, SessionOptions},
+    stop,
+};
+
+/// Run a session.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    ferntast session --duration 20 --record recordings/first\n  \
+    ferntast session --hand crtk               # your own CRTK master on ROS 2 drives it\n  \
+    ferntast session --hand hand.csv --link relay_600ms\n  \
+    ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n\n\
+    While it runs: `ros2 topic list`, `ferntast state follower resume` (re-arm after a hold). Ctrl-C ends it cleanly.")]
+pub struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+
+    /// End after that many seconds in which the arm was armed (else at Ctrl-C).
+    #[arg(long, value_name = "S")]
+    duration: Option<f64>,
+
+    /// Record into this folder (a rosbag2 directory; must not exist yet).
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+
+    /// Name of the session; two at once on one host need two names.
+    #[arg(long, default_value = "default", value_name = "NAME")]
+    session: String,
+
+    /// Do not arm at the start: wait for `ferntast state follower enable` or a CRTK client.
+    #[arg(long)]
+    no_enable: bool,
+}
+
+/// Runs it.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if let Some(duration) = arguments.duration
+        && !(duration.is_finite() && duration > 0.0)
+    {
+        return Err(Failure::refused(format!(
+            "--duration {duration}: give a positive number of seconds"
+        )));
+    }
+    let loaded = arguments.scenario.load()?;
+    let mut context =
+        SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    context.bag = arguments.record;
+    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let options = SessionOptions {
+        duration: arguments.duration,
+        enable: !arguments.no_enable,
+    };
+    let (summary, outcome) = session::run(context, &options, &stop).map_err(|error| {
+        if error.is_refusal() {
+            Failure::refused(error)
+        } else {
+            Failure::failed(error)
+        }
+    })?;
+    if json {
+        print_json(&summary)?;
+    } else {
+        println!("{summary}");
+    }
+    match outcome {
+        Ok(()) => Ok(ExitCode::SUCCESS),
+        Err(error) => Err(Failure::failed(error)),
+    }
+}

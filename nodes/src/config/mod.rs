@@ -1,0 +1,11 @@
+//! What a session is made of: scenarios, and the files that they name.
+
+mod load;
+mod scenario;
+mod shipped;
+
+pub use load::{ConfigError, Loaded, load_scenario, read_hand_recording};
+pub use scenario::{
+    GatewaySection, HandSection, HandSource, LinkSection, Middleware,
+    RecorderSection, Scenario,
+};

@@ -1,0 +1,185 @@
+//! A scenario: what a session is made of.
+
+use std::path::PathBuf;
+
+use ferntast_control::{delay::Law, haptics::MasterConfig, servo::ServoConfig};
+use ferntast_model::{ParameterError, check};
+use ferntast_sim::hand::{RecordedHandConfig, ScriptedHandConfig};
+use serde::{Deserialize, Serialize};
+
+/// A file of `config/scenarios/`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// Its name.
+    pub name: String,
+    /// What it is, in a sentence.
+    pub description: String,
+    /// The arm: a file of `config/arms/` or a path.
+    pub arm: String,
+    /// Seed of everything that is random.
+    pub seed: u64,
+    /// Length in lockstep, where no other is asked for \[s\].
+    pub duration: f64,
+    /// Where virtual time starts: seconds since the UNIX epoch \[s\].
+    pub start: i64,
+    /// The hand on the master.
+    pub hand: HandSection,
+    /// The link.
+    pub link: LinkSection,
+    /// The delay law.
+    pub law: Law,
+    /// The joint servo.
+    #[serde(default)]
+    pub servo: ServoConfig,
+    /// The haptic master bridge.
+    #[serde(default)]
+    pub master: MasterConfig,
+    /// ROS 2.
+    #[serde(default)]
+    pub gateway: GatewaySection,
+    /// Recordings.
+    #[serde(default)]
+    pub recorder: RecorderSection,
+}
+
+/// The hand on the master.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandSection {
+    /// Whose hand.
+    pub source: HandSource,
+    /// The scripted operator.
+    #[serde(default)]
+    pub scripted: Option<ScriptedHandConfig>,
+    /// File with recorded motion (t_s,x_m,y_m), relative to the scenario's folder.
+    #[serde(default)]
+    pub recording: Option<PathBuf>,
+    /// How a recorded motion is played.
+    #[serde(default)]
+    pub recorded: RecordedHandConfig,
+}
+
+/// Whose hand moves the master.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HandSource {
+    /// A script, with the impedance of a hand.
+    Scripted,
+    /// Recorded human motion.
+    Recorded,
+    /// A CRTK client on ROS 2.
+    Crtk,
+}
+
+/// The link.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinkSection {
+    /// The channel: a file of `config/links/` or a path.
+    pub channel: String,
+    /// Where the arm's end listens and the operator's end connects to.
+    #[serde(default = "link_endpoint")]
+    pub endpoint: String,
+}
+
+fn link_endpoint() -> String {
+    "tcp/127.0.0.1:7448".to_owned()
+}
+
+/// How ROS 2 is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Middleware {
+    /// DDS: works with any stock ROS 2.
+    Dds,
+    /// Zenoh, wire-compatible with rmw_zenoh; the session is its own router.
+    Zenoh,
+}
+
+/// ROS 2.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct GatewaySection {
+    /// How ROS 2 is reached.
+    pub middleware: Middleware,
+    /// ROS domain.
+    pub domain_id: u32,
+    /// Name of the node on ROS 2.
+    pub node_name: String,
+    /// Endpoint of our own Zenoh router.
+    pub router_endpoint: String,
+    /// Most messages a second on a servo stream of the follower \[Hz\].
+    pub stream_rate: f64,
+    /// Most messages a second on a servo stream of the leader \[Hz\].
+    pub leader_rate: f64,
+}
+
+impl Default for GatewaySection {
+    fn default() -> Self {
+        GatewaySection {
+            middleware: Middleware::Dds,
+            domain_id: 0,
+            node_name: "ferntast".to_owned(),
+            router_endpoint: "tcp/127.0.0.1:7447".to_owned(),
+            stream_rate: 250.0,
+            leader_rate: 500.0,
+        }
+    }
+}
+
+impl GatewaySection {
+    /// The endpoint at which the session is a Zenoh router, if it is one.
+    pub fn own_router(&self) -> Option<&str> {
+        (self.middleware == Middleware::Zenoh).then_some(self.router_endpoint.as_str())
+    }
+}
+
+/// Recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RecorderSection {
+    /// Messages of one topic that may wait for the recorder.
+    pub queue: usize,
+}
+
+impl Default for RecorderSection {
+    fn default() -> Self {
+        RecorderSection { queue: 64 }
+    }
+}
+
+impl Scenario {
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds, with key, value, bounds, unit.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        check("duration", self.duration, 0.01, 1e6, "s")?;
+        check("start", self.start as f64, 1.0, 2e9, "s")?;
+        if let Some(scripted) = &self.hand.scripted {
+            scripted
+                .validate()
+                .map_err(|error| error.within("hand.scripted"))?;
+        }
+        self.hand
+            .recorded
+            .validate()
+            .map_err(|error| error.within("hand.recorded"))?;
+        self.law.validate().map_err(|error| error.within("law"))?;
+        self.servo
+            .validate()
+            .map_err(|error| error.within("servo"))?;
+        self.master
+            .validate()
+            .map_err(|error| error.within("master"))?;
+        let gateway = &self.gateway;
+        let within = |error: ParameterError| error.within("gateway");
+        check("stream_rate", gateway.stream_rate, 1.0, 1000.0, "Hz").map_err(within)?;
+        check("leader_rate", gateway.leader_rate, 1.0, 1000.0, "Hz").map_err(within)?;
+        check("domain_id", f64::from(gateway.domain_id), 0.0, 232.0, "-").map_err(within)?;
+        check("queue", self.recorder.queue as f64, 1.0, 64.0, "messages")
+            .map_err(|error| error.within("recorder"))
+    }
+}

@@ -1,0 +1,129 @@
+//! The contact-force estimator as a node.
+
+use ferntast_control::estimator::{
+    ContactEstimate, ContactEstimator, EstimatorParameters, JointMeasurement,
+};
+use ferntast_model::{ArmModel, ParameterError, contour::Surface};
+use ferntast_msgs::{
+    Text, Time,
+    sample::{
+        ContactStateSample, Edge, Fault, Frame, JointSample, Level, PoseSample, WrenchSample,
+    },
+};
+
+use crate::node::{Node, ports};
+
+/// No measurement for this long \[s\] is a fault.
+const MEASUREMENT_WATCHDOG: f64 = 0.010;
+
+ports! {
+    /// The estimator's topics.
+    EstimatorPorts for EstimatorNode;
+    /// What the estimator takes.
+    input EstimatorInput { measured_js: Newest<JointSample> = FOLLOWER_MEASURED_JS, }
+    /// What the estimator gives.
+    output EstimatorOutput {
+        measured_cp: PoseSample = FOLLOWER_MEASURED_CP,
+        measured_cf: WrenchSample = FOLLOWER_MEASURED_CF,
+        contact_cf: WrenchSample = FOLLOWER_CONTACT_CF,
+        contact_state: ContactStateSample = FOLLOWER_CONTACT_STATE,
+    }
+}
+
+/// The contact-force estimator.
+pub struct EstimatorNode {
+    estimator: ContactEstimator,
+    last: Option<Time>,
+}
+
+impl EstimatorNode {
+    /// An estimator that believes in `model`.
+    ///
+    /// # Errors
+    ///
+    /// A parameter out of its bounds.
+    pub fn new(
+        model: &ArmModel,
+        parameters: &EstimatorParameters,
+    ) -> Result<EstimatorNode, ParameterError> {
+        Ok(EstimatorNode {
+            estimator: ContactEstimator::new(model, parameters)?,
+            last: None,
+        })
+    }
+}
+
+impl Node for EstimatorNode {
+    type Input = EstimatorInput;
+    type Output = EstimatorOutput;
+
+    fn step(&mut self, now: Time, input: &EstimatorInput, output: &mut EstimatorOutput) {
+        let silence = input.measured_js.silence(now);
+        output.health.input_age = if silence.is_finite() { silence } else { f64::NAN };
+        if silence > MEASUREMENT_WATCHDOG {
+            output.health.raise(Fault::MeasurementSilent, Level::WARN);
+            output.health.message = Text::new("no /follower/measured_js: is the arm running?");
+        }
+        let Some(measured) = input.measured_js.fresh() else {
+            return;
+        };
+        // Time passes by the stamps, so that playback at any speed gives the same.
+        let stamp = measured.stamp;
+        let passed = self.last.map(|last| stamp.seconds_since(last));
+        self.last = Some(stamp);
+        let Some(dt) = passed.filter(|&dt| dt > 0.0) else {
+            return;
+        };
+        let estimate = self.estimator.step(
+            dt,
+            &JointMeasurement {
+                motor_position: measured.position,
+                joint_torque: measured.effort,
+            },
+        );
+        let health = &mut output.health;
+        for (active, fault) in [
+            (estimate.singular, Fault::Singular),
+            (estimate.saturated, Fault::TorqueSaturated),
+            (estimate.input_invalid, Fault::MeasurementInvalid),
+        ] {
+            if active {
+                health.raise(fault, Level::WARN);
+            }
+        }
+        publish(stamp, &estimate, output);
+    }
+}
+
+fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput) {
+    let [x, y] = estimate.tip;
+    let half_angle = 0.5 * (estimate.position[0] + estimate.position[1]);
+    output.measured_cp = Some(PoseSample {
+        orientation: [0.0, 0.0, half_angle.sin(), half_angle.cos()],
+        ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, [x, y, 0.0])
+    });
+    let [fx, fy] = estimate.force;
+    output.measured_cf = Some(WrenchSample::force(stamp, Frame::FOLLOWER_BASE, [fx, fy, 0.0]));
+    let [tangential, normal] = estimate.contact_force;
+    output.contact_cf = Some(WrenchSample::force(
+        stamp,
+        Frame::CONTACT,
+        [tangential, 0.0, normal],
+    ));
+    output.contact_state = Some(ContactStateSample {
+        normal_force: estimate.normal_force,
+        tangential_force: estimate.tangential_force,
+        friction_coefficient: estimate.friction.value,
+        friction_coefficient_error: estimate.friction.error,
+        in_contact: u8::from(estimate.in_contact),
+        valid: u8::from(estimate.valid),
+        near_rest: u8::from(estimate.near_rest),
+        edge: match estimate.surface {
+            None => Edge::NONE,
+            Some(Surface::Lubricated) => Edge::LUBRICATED,
+            Some(Surface::Unlubricated) => Edge::UNLUBRICATED,
+            Some(Surface::Spring) => Edge::SPRING,
+        },
+        ..ContactStateSample::unknown(stamp)
+    });
+}

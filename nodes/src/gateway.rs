@@ -1,0 +1,121 @@
+//! The gateway: carries every topic out to ROS 2, and commands in.
+//!
+//! It is the only process that touches ROS 2, so that no 1 kHz loop shares a
+//! process with DDS or a Zenoh router.
+
+use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
+use ferntast_msgs::{
+    sample::{Faults, PoseSample},
+    topics::{self, Delivery},
+};
+
+use crate::{
+    carry::{Carrier, Carry, Stamp},
+    config::{GatewaySection, HandSource, Middleware},
+    node::NodeHealth,
+    pace,
+    process::{PERIOD_NANOS, ProcessError, Surroundings},
+};
+
+/// Opens the ROS 2 side.
+///
+/// # Errors
+///
+/// A domain out of range, a port that is taken.
+pub fn open_ros(section: &GatewaySection) -> Result<Bus, ferntast_bus::OpenError> {
+    Ok(match section.middleware {
+        Middleware::Dds => Bus::Dds(DdsBus::open(&DdsConfig {
+            domain_id: section.domain_id,
+            node_name: section.node_name.clone(),
+            namespace: "/".to_owned(),
+        })?),
+        Middleware::Zenoh => Bus::Zenoh(ZenohBus::open(&ZenohConfig {
+            mode: ZenohMode::Router {
+                listen: section.router_endpoint.clone(),
+            },
+            domain_id: section.domain_id,
+            node_name: section.node_name.clone(),
+        })?),
+    })
+}
+
+/// Topics that come in from ROS 2 and are not sent out.
+fn comes_in(topic: &str, crtk: bool) -> bool {
+    topic == topics::FOLLOWER_STATE_COMMAND.name
+        || topic == topics::LEADER_STATE_COMMAND.name
+        || topic == topics::FOLLOWER_SERVO_JP.name
+        || (crtk && topic == topics::LEADER_MEASURED_CP.name)
+}
+
+/// How a topic goes out.
+fn goes_out(topic: &str, delivery: Delivery, section: &GatewaySection) -> Carry {
+    match delivery {
+        Delivery::State => Carry::Newest { period_nanos: 0 },
+        Delivery::Event => Carry::Every { queue: 64 },
+        Delivery::Stream => {
+            let rate = if topic.starts_with("/leader/") {
+                section.leader_rate
+            } else {
+                section.stream_rate
+            };
+            Carry::Newest {
+                period_nanos: (1e9 / rate) as i64,
+            }
+        }
+    }
+}
+
+/// Runs the gateway until it is told to stop.
+///
+/// # Errors
+///
+/// ROS 2 or a topic that cannot be opened.
+pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
+    let scenario = &around.context.loaded.scenario;
+    let section = &scenario.gateway;
+    let crtk = scenario.hand.source == HandSource::Crtk;
+    let ros = open_ros(section)?;
+    let mut carrier = Carrier::default();
+    carrier.add_topics(&around.bus, &ros, Stamp::Round, |topic, delivery| {
+        if comes_in(topic, crtk) {
+            Carry::Not
+        } else {
+            goes_out(topic, delivery, section)
+        }
+    })?;
+    let every = Carry::Every { queue: 64 };
+    let (bus, stamp) = (&around.bus, Stamp::Round);
+    for topic in [topics::FOLLOWER_STATE_COMMAND, topics::LEADER_STATE_COMMAND] {
+        carrier.add(topic, &ros, bus, stamp, every, |_, _| {})?;
+    }
+    carrier.add(topics::FOLLOWER_SERVO_JP, &ros, bus, stamp, every, |_, _| {})?;
+    if crtk {
+        carrier.add(
+            topics::LEADER_MEASURED_CP,
+            &ros,
+            bus,
+            stamp,
+            every,
+            // The master tells hands apart by their sender.
+            |pose: &mut PoseSample, source| pose.source = source,
+        )?;
+    }
+
+    let mut meter = around.meter(PERIOD_NANOS, Faults::default());
+    let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;
+    let mut failed = 0;
+    pace::run(around.clock, PERIOD_NANOS, around.stop, |now, late, missed| {
+        failed += carrier.carry(now).failed;
+        let counts = carrier.counts();
+        let health = NodeHealth {
+            refused: counts.refused(),
+            lost: failed + counts.overflowed,
+            ..NodeHealth::default()
+        };
+        if let Some(sample) = meter.step(now, late, missed, &health) {
+            // What cannot be said now is said a tenth of a second later.
+            let _ = diagnostics.publish(now, &sample);
+        }
+    });
+    Ok(())
+}

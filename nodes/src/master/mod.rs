@@ -1,0 +1,200 @@
+//! The haptic master bridge as a node.
+
+use ferntast_control::{
+    haptics::{HandCommand, HandRefusal, Master, MasterConfig},
+    operating::OperatingState,
+};
+use ferntast_model::ParameterError;
+use ferntast_msgs::{
+    Text, Time,
+    sample::{
+        AuthoritySample, Fault, Frame, Level, OperatingStateSample, PoseSample,
+        StateCommandSample, WrenchSample,
+    },
+};
+use ferntast_sim::hand::Hand;
+
+use crate::{
+    node::{Node, NodeHealth, ports},
+    say::{StatePublisher, law_command, say},
+};
+
+/// A reflected force older than this \[s\] is not rendered.
+const FORCE_LIFE: f64 = 0.025;
+/// How often the authority is published though it did not change \[ns\].
+const AUTHORITY_PERIOD_NANOS: i64 = 500_000_000;
+/// How sources on this host are told from nobody.
+const THIS_HOST: u64 = 1;
+
+ports! {
+    /// The master's topics.
+    MasterPorts for MasterNode;
+    /// What the master takes.
+    input MasterInput {
+        measured_cp: Batch<PoseSample> = LEADER_MEASURED_CP,
+        reflected_cf: Newest<WrenchSample> = LEADER_REFLECTED_CF,
+        state_command: Batch<StateCommandSample> = LEADER_STATE_COMMAND,
+    }
+    /// What the master gives.
+    output MasterOutput {
+        own_hand: PoseSample = LEADER_MEASURED_CP,
+        setpoint_cp: PoseSample = LEADER_SETPOINT_CP,
+        servo_cf: WrenchSample = LEADER_SERVO_CF,
+        authority: AuthoritySample = LEADER_AUTHORITY,
+        operating_state: OperatingStateSample = LEADER_OPERATING_STATE,
+    }
+}
+
+/// The haptic master bridge: validates the hand, decides who holds the
+/// authority, renders the reflected force.
+pub struct MasterNode {
+    master: Master,
+    /// A hand of its own; without one, CRTK clients are the hand.
+    hand: Option<Hand>,
+    force: [f64; 3],
+    last: Option<Time>,
+    states: StatePublisher,
+    authority: Option<(u64, u64, u64)>,
+    authority_due: Time,
+    message: Text<96>,
+}
+
+impl MasterNode {
+    /// A master, disabled. `hand` is its own hand, if it has one.
+    ///
+    /// # Errors
+    ///
+    /// A parameter out of its bounds.
+    pub fn new(config: &MasterConfig, hand: Option<Hand>) -> Result<MasterNode, ParameterError> {
+        Ok(MasterNode {
+            master: Master::new(config)?,
+            hand,
+            force: [0.0; 3],
+            last: None,
+            states: StatePublisher::default(),
+            authority: None,
+            authority_due: Time::INVALID,
+            message: Text::EMPTY,
+        })
+    }
+
+    fn offer(&mut self, now: Time, pose: &PoseSample, health: &mut NodeHealth) {
+        if pose.frame != Frame::LEADER_BASE {
+            health.raise(Fault::CommandInvalid, Level::WARN);
+            self.message =
+                Text::new("/leader/measured_cp refused: header.frame_id must be leader_base");
+            return;
+        }
+        let command = HandCommand {
+            stamp_ns: pose.stamp.nanos(),
+            source: pose.source.max(THIS_HOST),
+            position: pose.position,
+        };
+        if let Err(refusal) = self.master.offer(now.nanos(), &command) {
+            let fault = match refusal {
+                // Before it is enabled, nothing is wrong with a hand that moves.
+                HandRefusal::NotEnabled { .. } => return,
+                HandRefusal::OutOfRange { .. } => Fault::CommandOutOfRange,
+                HandRefusal::Jump { .. } => Fault::CommandJumped,
+                HandRefusal::NotAuthorised(_) => Fault::CommandUnauthorised,
+                _ => Fault::CommandInvalid,
+            };
+            health.raise(fault, Level::WARN);
+            self.message = say(&refusal);
+        }
+    }
+
+    fn publish_authority(&mut self, now: Time) -> Option<AuthoritySample> {
+        let authority = self.master.authority();
+        let sample = AuthoritySample {
+            holder: authority.holder().unwrap_or(0),
+            refused: authority.refused().unwrap_or(0),
+            refused_count: authority.refused_count(),
+            ..AuthoritySample::nobody(now)
+        };
+        let (holder, refused) = (sample.holder, sample.refused);
+        let changed = self
+            .authority
+            .is_none_or(|(h, r, _)| (h, r) != (holder, refused));
+        if !changed && now < self.authority_due {
+            return None;
+        }
+        self.authority = Some((holder, refused, sample.refused_count));
+        self.authority_due = now.plus_nanos(AUTHORITY_PERIOD_NANOS);
+        let reason = match (holder, refused) {
+            (0, _) => "nobody: the first valid hand takes it",
+            (_, 0) => "held by the first valid hand",
+            _ => "another hand was refused; it is free when the holder is silent or the master disabled",
+        };
+        Some(AuthoritySample {
+            reason: Text::new(reason),
+            ..sample
+        })
+    }
+}
+
+impl Node for MasterNode {
+    type Input = MasterInput;
+    type Output = MasterOutput;
+
+    fn step(&mut self, now: Time, input: &MasterInput, output: &mut MasterOutput) {
+        for sample in input.state_command.iter() {
+            let Some(command) = law_command(sample.command) else {
+                continue;
+            };
+            if let Err(refusal) = self.master.command(command) {
+                output.health.raise(Fault::StateCommandRefused, Level::WARN);
+                self.message = say(&refusal);
+            }
+        }
+        let dt = self
+            .last
+            .map_or(0.0, |last| now.seconds_since(last).clamp(0.0, 0.02));
+        self.last = Some(now);
+
+        // The own hand moves only once the master is enabled: a script starts then.
+        let running = self.master.state() != OperatingState::Disabled;
+        if let Some(hand) = &mut self.hand {
+            let moved = hand.step(if running { dt } else { 0.0 }, self.force);
+            let pose = PoseSample::at(now, Frame::LEADER_BASE, moved.position);
+            self.offer(now, &pose, &mut output.health);
+            output.own_hand = Some(pose);
+        } else {
+            for pose in input.measured_cp.iter() {
+                self.offer(now, pose, &mut output.health);
+            }
+        }
+
+        let reflected = input
+            .reflected_cf
+            .message
+            .filter(|_| input.reflected_cf.silence(now) <= FORCE_LIFE)
+            .map(|wrench| wrench.force);
+        let step = self.master.step(now.nanos(), dt, reflected);
+        self.force = step.force;
+        if step.fresh
+            && let Some(hand) = step.hand
+        {
+            output.setpoint_cp = Some(PoseSample::at(now, Frame::LEADER_BASE, hand.position));
+        }
+        output.servo_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
+        output.authority = self.publish_authority(now);
+        output.operating_state = self.states.publish(now, step.state, step.reason, false);
+
+        let health = &mut output.health;
+        health.input_age = step.hand_age;
+        if step.force_limited {
+            health.raise(Fault::ForceLimited, Level::OK);
+        }
+        if step.state == OperatingState::Enabled && step.hand.is_none() && step.hand_age.is_finite() {
+            health.raise(Fault::CommandSilent, Level::WARN);
+        }
+        let counts = self.master.refusals();
+        health.refused = counts.invalid
+            + counts.time
+            + counts.out_of_range
+            + counts.jump
+            + counts.unauthorised;
+        health.message = self.message;
+    }
+}

@@ -1,0 +1,35 @@
+//! What a node is: a pure step, its ports, and the runner that joins them.
+
+mod health;
+mod input;
+mod ports;
+mod runner;
+
+pub use health::{HealthMeter, NodeHealth};
+pub use input::{BATCH, Batch, Newest};
+pub use ports::{Ports, Receiver, Sender, receiver};
+pub(crate) use ports::ports;
+pub use runner::Runner;
+
+use ferntast_msgs::Time;
+
+/// A node: a law with typed inputs and outputs.
+pub trait Node {
+    /// The newest messages of each input topic.
+    type Input: Default;
+    /// What to publish after the step.
+    type Output: Output;
+
+    /// One step at time `now`. Does not fail, allocate, block or read a clock;
+    /// what goes wrong is a value in `output`.
+    fn step(&mut self, now: Time, input: &Self::Input, output: &mut Self::Output);
+}
+
+/// What every node's output has beside its messages.
+pub trait Output: Default {
+    /// How the node is doing, for `/diagnostics`.
+    fn health(&mut self) -> &mut NodeHealth;
+
+    /// Forgets the messages of the last step.
+    fn clear(&mut self);
+}

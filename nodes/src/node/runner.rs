@@ -1,0 +1,65 @@
+//! Joins a node, its ports and its health.
+
+use ferntast_bus::{Bus, CreateError, Publisher};
+use ferntast_msgs::{Time, sample::HealthSample, topics};
+
+use super::{HealthMeter, Node, Output, Ports};
+
+/// A node that is connected to a bus: one [`Runner::tick`] reads, steps and
+/// publishes. The same runner serves a process of its own and lockstep.
+pub struct Runner<P: Ports> {
+    node: P::Node,
+    ports: P,
+    input: <P::Node as Node>::Input,
+    output: <P::Node as Node>::Output,
+    meter: HealthMeter,
+    diagnostics: Publisher<HealthSample>,
+    unsent: u64,
+}
+
+impl<P: Ports> Runner<P> {
+    /// Connects `node` with its `ports`; its health goes to `/diagnostics` of `bus`.
+    ///
+    /// # Errors
+    ///
+    /// `/diagnostics` cannot be opened.
+    pub fn new(
+        bus: &Bus,
+        node: P::Node,
+        ports: P,
+        meter: HealthMeter,
+    ) -> Result<Runner<P>, CreateError> {
+        Ok(Runner {
+            node,
+            ports,
+            input: Default::default(),
+            output: Default::default(),
+            meter,
+            diagnostics: bus.publisher(topics::DIAGNOSTICS)?,
+            unsent: 0,
+        })
+    }
+
+    /// One step at `now`, `late_nanos` \[ns\] after it was due, with `missed`
+    /// periods skipped before it.
+    pub fn tick(&mut self, now: Time, late_nanos: i64, missed: u64) {
+        self.ports.read(now, &mut self.input);
+        self.output.clear();
+        self.node.step(now, &self.input, &mut self.output);
+        self.unsent += self.ports.write(now, &self.output);
+        let counts = self.ports.counts();
+        let health = self.output.health();
+        health.refused += counts.refused();
+        health.lost += counts.overflowed + self.unsent;
+        if let Some(sample) = self.meter.step(now, late_nanos, missed, health)
+            && self.diagnostics.publish(now, &sample).is_err()
+        {
+            self.unsent += 1;
+        }
+    }
+
+    /// The node.
+    pub fn node(&self) -> &P::Node {
+        &self.node
+    }
+}

@@ -1,0 +1,161 @@
+//! The follower's joint servo as a node.
+
+use ferntast_control::{
+    operating,
+    servo::{
+        Command, CommandRefusal, Measurement, Servo, ServoConfig, ServoInput as LawInput,
+        ServoOutput as LawOutput, Target,
+    },
+};
+use ferntast_model::{ArmModel, ParameterError};
+use ferntast_msgs::{
+    Text, Time,
+    sample::{
+        Fault, JointFields, JointSample, Level, OperatingStateSample, PoseSample, StateCommandSample,
+    },
+};
+
+use crate::{
+    node::{Node, ports},
+    say::{StatePublisher, law_command, say},
+};
+
+ports! {
+    /// The servo's topics.
+    ServoPorts for ServoNode;
+    /// What the servo takes.
+    input ServoInput {
+        measured_js: Newest<JointSample> = FOLLOWER_MEASURED_JS,
+        servo_cp: Newest<PoseSample> = FOLLOWER_SERVO_CP,
+        servo_jp: Newest<JointSample> = FOLLOWER_SERVO_JP,
+        state_command: Batch<StateCommandSample> = FOLLOWER_STATE_COMMAND,
+    }
+    /// What the servo gives.
+    output ServoOutput {
+        torque: JointSample = FOLLOWER_SERVO_JF,
+        setpoint_js: JointSample = FOLLOWER_SETPOINT_JS,
+        operating_state: OperatingStateSample = FOLLOWER_OPERATING_STATE,
+    }
+}
+
+/// The joint servo.
+pub struct ServoNode {
+    servo: Servo,
+    states: StatePublisher,
+    message: Text<96>,
+}
+
+impl ServoNode {
+    /// A servo, disabled, for the arm as it is believed.
+    ///
+    /// # Errors
+    ///
+    /// A parameter out of its bounds.
+    pub fn new(model: &ArmModel, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
+        Ok(ServoNode {
+            servo: Servo::new(&model.arm, &model.joint, config)?,
+            states: StatePublisher::default(),
+            message: Text::EMPTY,
+        })
+    }
+}
+
+/// The newest command of either kind.
+fn command(input: &ServoInput) -> Option<Command> {
+    let tip = input.servo_cp.message.map(|pose| Command {
+        stamp_ns: pose.stamp.nanos(),
+        target: Target::Tip(pose.position),
+    });
+    let joints = input
+        .servo_jp
+        .message
+        .filter(|sample| sample.fields.has(JointFields::POSITION))
+        .map(|sample| Command {
+            stamp_ns: sample.stamp.nanos(),
+            target: Target::Joints(sample.position),
+        });
+    match (tip, joints) {
+        (Some(tip), Some(joints)) if joints.stamp_ns > tip.stamp_ns => Some(joints),
+        (Some(tip), _) => Some(tip),
+        (None, joints) => joints,
+    }
+}
+
+impl Node for ServoNode {
+    type Input = ServoInput;
+    type Output = ServoOutput;
+
+    fn step(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
+        let law_input = LawInput {
+            measurement: input.measured_js.message.map(|sample| Measurement {
+                stamp_ns: sample.stamp.nanos(),
+                position: sample.position,
+                velocity: sample.velocity,
+                torque: sample.effort,
+            }),
+            command: command(input),
+            // One a step; a second in the same millisecond is the newer wish.
+            state_command: input
+                .state_command
+                .iter()
+                .last()
+                .and_then(|sample| law_command(sample.command)),
+        };
+        let law = self.servo.step(now.nanos(), &law_input);
+        self.report(&law, output);
+        output.torque = Some(JointSample {
+            effort: law.torque,
+            fields: JointFields::EFFORT,
+            ..JointSample::zero(now)
+        });
+        output.setpoint_js = Some(JointSample {
+            position: law.setpoint.map(|setpoint| setpoint.position),
+            velocity: law.setpoint.map(|setpoint| setpoint.velocity),
+            effort: law.torque,
+            fields: JointFields::ALL,
+            ..JointSample::zero(now)
+        });
+        output.operating_state =
+            self.states
+                .publish(now, law.state, law.reason, law.approaching);
+    }
+}
+
+impl ServoNode {
+    fn report(&mut self, law: &LawOutput, output: &mut ServoOutput) {
+        let health = &mut output.health;
+        health.input_age = law.measurement_age;
+        health.refused = law.refusals.total();
+        if let Some(refusal) = &law.refused {
+            let fault = match refusal {
+                CommandRefusal::OutOfRange { .. } => Fault::CommandOutOfRange,
+                CommandRefusal::Jump { .. } => Fault::CommandJumped,
+                _ => Fault::CommandInvalid,
+            };
+            health.raise(fault, Level::WARN);
+            self.message = say(refusal);
+        }
+        if let Some(refusal) = &law.state_refused {
+            health.raise(Fault::StateCommandRefused, Level::WARN);
+            self.message = say(refusal);
+        }
+        if law.effort_limited {
+            health.raise(Fault::EffortLimited, Level::OK);
+        }
+        if law.velocity_limited {
+            health.raise(Fault::VelocityLimited, Level::OK);
+        }
+        if let operating::Reason::Event(event) = law.reason {
+            let (fault, level) = match event {
+                operating::Event::CommandSilent => (Fault::CommandSilent, Level::WARN),
+                operating::Event::MeasurementSilent => (Fault::MeasurementSilent, Level::ERROR),
+                operating::Event::MeasurementInvalid => (Fault::MeasurementInvalid, Level::ERROR),
+                operating::Event::JointLimit(_) => (Fault::JointLimit, Level::ERROR),
+                operating::Event::Overspeed(_) => (Fault::JointOverspeed, Level::ERROR),
+            };
+            health.raise(fault, level);
+            self.message = say(&law.reason);
+        }
+        health.message = self.message;
+    }
+}

@@ -1,0 +1,16 @@
+//! A session: processes, their supervision, the live line, the summary.
+
+mod context;
+mod live;
+mod monitor;
+mod play;
+mod run;
+mod summary;
+mod supervisor;
+
+pub use context::{ContextError, PlayOptions, SessionContext};
+pub use monitor::Monitor;
+pub use play::{Played, play};
+pub use run::{SessionError, SessionOptions, run, runtime_folder};
+pub use summary::{ContactSummary, LeaderSummary, LinkSummary, StateSummary, Summary};
+pub use supervisor::{EXIT_REFUSED, Supervisor, SupervisorError};

@@ -1,0 +1,297 @@
+//! Watches a session's topics: what the live line shows and the summary holds.
+
+use std::collections::BTreeMap;
+
+use ferntast_bus::{Bus, CreateError, Depth, Subscriber};
+use ferntast_msgs::{
+    Time,
+    sample::{
+        AuthoritySample, ContactStateSample, Edge, Faults, HealthSample, LinkStatusSample,
+        OperatingState, OperatingStateSample, WrenchSample,
+    },
+    topics,
+};
+
+use super::summary::{
+    ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
+};
+
+/// Long enough for the monitor's rounds of 20 ms at 1 kHz, with much to spare.
+const QUEUE: usize = 512;
+/// A node that was not heard of for this long \[s\] is not alive.
+const ALIVE: f64 = 1.0;
+
+/// What is known of one node.
+#[derive(Debug, Default)]
+pub struct NodeView {
+    /// Its last word.
+    pub last: Option<HealthSample>,
+    /// Faults of the whole session.
+    pub faults: Faults,
+    /// Deadlines missed by earlier processes of the node.
+    missed_before: u64,
+}
+
+impl NodeView {
+    /// Whether it was heard of lately.
+    pub fn is_alive(&self, now: Time) -> bool {
+        self.last
+            .is_some_and(|health| now.seconds_since(health.stamp) < ALIVE)
+    }
+
+    fn note(&mut self, health: HealthSample) {
+        if let Some(last) = self.last
+            && last.process != health.process
+        {
+            self.missed_before += last.missed;
+        }
+        self.faults.0 |= health.faults.0;
+        self.last = Some(health);
+    }
+
+    /// Deadlines missed since the start of the session.
+    pub fn missed(&self) -> u64 {
+        self.missed_before + self.last.map_or(0, |health| health.missed)
+    }
+}
+
+/// Watches the topics of a session.
+pub struct Monitor {
+    diagnostics: Subscriber<HealthSample>,
+    link: Subscriber<LinkStatusSample>,
+    contact: Subscriber<ContactStateSample>,
+    leader_force: Subscriber<WrenchSample>,
+    states: [(&'static str, Subscriber<OperatingStateSample>); 2],
+    authority: Subscriber<AuthoritySample>,
+    /// The nodes that were heard of.
+    pub nodes: BTreeMap<String, NodeView>,
+    /// The link's last word.
+    pub link_status: Option<LinkStatusSample>,
+    /// The contact's last word.
+    pub contact_state: Option<ContactStateSample>,
+    /// The last force in the hand \[N\].
+    pub hand_force: f64,
+    /// Operating states by device.
+    pub operating: BTreeMap<&'static str, StateView>,
+    round_trips: Vec<f64>,
+    peak_normal_force: f64,
+    contact_time: f64,
+    contact_stamp: Option<Time>,
+    edges: Vec<String>,
+    peak_hand_force: f64,
+    refused_masters: u64,
+    servo_rates: (f64, u64),
+}
+
+/// The operating states of one device.
+#[derive(Debug, Default)]
+pub struct StateView {
+    /// The last one.
+    pub last: Option<OperatingStateSample>,
+    visited: Vec<String>,
+}
+
+impl StateView {
+    /// Whether the device is in `state`.
+    pub fn is(&self, state: OperatingState) -> bool {
+        self.last.is_some_and(|last| last.state == state)
+    }
+}
+
+impl Monitor {
+    /// Watches the session on `bus`.
+    ///
+    /// # Errors
+    ///
+    /// A topic that cannot be opened.
+    pub fn new(bus: &Bus) -> Result<Monitor, CreateError> {
+        Ok(Monitor {
+            diagnostics: bus.subscriber(topics::DIAGNOSTICS, Depth::Queue(QUEUE))?,
+            link: bus.subscriber(topics::LINK_STATUS, Depth::Queue(QUEUE))?,
+            contact: bus.subscriber(topics::FOLLOWER_CONTACT_STATE, Depth::Queue(QUEUE))?,
+            leader_force: bus.subscriber(topics::LEADER_SERVO_CF, Depth::Queue(QUEUE))?,
+            states: [
+                (
+                    "follower",
+                    bus.subscriber(topics::FOLLOWER_OPERATING_STATE, Depth::Queue(QUEUE))?,
+                ),
+                (
+                    "leader",
+                    bus.subscriber(topics::LEADER_OPERATING_STATE, Depth::Queue(QUEUE))?,
+                ),
+            ],
+            authority: bus.subscriber(topics::LEADER_AUTHORITY, Depth::Queue(QUEUE))?,
+            nodes: BTreeMap::new(),
+            link_status: None,
+            contact_state: None,
+            hand_force: 0.0,
+            operating: BTreeMap::new(),
+            round_trips: Vec::new(),
+            peak_normal_force: 0.0,
+            contact_time: 0.0,
+            contact_stamp: None,
+            edges: Vec::new(),
+            peak_hand_force: 0.0,
+            refused_masters: 0,
+            servo_rates: (0.0, 0),
+        })
+    }
+
+    /// Takes in what arrived until `now`.
+    pub fn update(&mut self, now: Time) {
+        while let Some(received) = self.diagnostics.next(now) {
+            let health = received.message;
+            if health.node.as_str() == "servo" {
+                self.servo_rates.0 += health.rate;
+                self.servo_rates.1 += 1;
+            }
+            self.nodes
+                .entry(health.node.to_string())
+                .or_default()
+                .note(health);
+        }
+        while let Some(received) = self.link.next(now) {
+            let status = received.message;
+            if status.round_trip.is_finite() {
+                self.round_trips.push(status.round_trip);
+            }
+            self.link_status = Some(status);
+        }
+        while let Some(received) = self.contact.next(now) {
+            self.note_contact(received.message);
+        }
+        while let Some(received) = self.leader_force.next(now) {
+            let force = received.message.force;
+            self.hand_force = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+            self.peak_hand_force = self.peak_hand_force.max(self.hand_force);
+        }
+        for (device, subscriber) in &mut self.states {
+            while let Some(received) = subscriber.next(now) {
+                let view = self.operating.entry(device).or_default();
+                let name = received.message.state.name().unwrap_or("UNKNOWN");
+                if view.visited.last().is_none_or(|last| last != name) {
+                    view.visited.push(name.to_owned());
+                }
+                view.last = Some(received.message);
+            }
+        }
+        while let Some(received) = self.authority.next(now) {
+            self.refused_masters = received.message.refused_count;
+        }
+    }
+
+    fn note_contact(&mut self, state: ContactStateSample) {
+        if state.in_contact == 1 && state.valid == 1 {
+            self.peak_normal_force = self.peak_normal_force.max(state.normal_force);
+            if let Some(before) = self.contact_stamp {
+                // A gap in the stream is not contact time.
+                self.contact_time += state.stamp.seconds_since(before).clamp(0.0, 0.1);
+            }
+            self.contact_stamp = Some(state.stamp);
+            if state.edge != Edge::NONE
+                && let Some(name) = state.edge.name()
+                && !self.edges.iter().any(|edge| edge == name)
+            {
+                self.edges.push(name.to_owned());
+            }
+        } else {
+            self.contact_stamp = None;
+        }
+        self.contact_state = Some(state);
+    }
+
+    /// Forgets peaks and times: what counts begins now.
+    pub fn begin(&mut self) {
+        self.round_trips.clear();
+        self.peak_normal_force = 0.0;
+        self.contact_time = 0.0;
+        self.edges.clear();
+        self.peak_hand_force = 0.0;
+        self.servo_rates = (0.0, 0);
+    }
+
+    /// The servo loop.
+    pub fn servo(&self) -> ServoSummary {
+        let view = self.nodes.get("servo");
+        let (sum, count) = self.servo_rates;
+        ServoSummary {
+            rate_hz: (count > 0).then(|| sum / count as f64),
+            missed: view.map_or(0, NodeView::missed),
+            lateness_p99_us: view
+                .and_then(|view| view.last)
+                .map(|health| health.lateness_p99 * 1e6),
+        }
+    }
+
+    /// The link.
+    pub fn link(&mut self) -> LinkSummary {
+        self.round_trips.sort_by(f64::total_cmp);
+        let percentile = |share: f64| {
+            let last = self.round_trips.len().checked_sub(1)?;
+            let index = (last as f64 * share).round() as usize;
+            self.round_trips.get(index).map(|seconds| seconds * 1e3)
+        };
+        let status = self.link_status.as_ref();
+        LinkSummary {
+            rtt_ms: percentile(0.5),
+            rtt_p99_ms: percentile(0.99),
+            jitter_ms: status.map(|status| status.jitter * 1e3),
+            loss: status.and_then(|status| {
+                let expected = status.received + status.lost;
+                (expected > 0).then(|| status.lost as f64 / expected as f64)
+            }),
+            law: status.map_or_else(String::new, |status| status.law.to_string()),
+        }
+    }
+
+    /// The contact.
+    pub fn contact(&self) -> ContactSummary {
+        ContactSummary {
+            peak_normal_force: self.peak_normal_force,
+            time_s: self.contact_time,
+            edges: self.edges.clone(),
+        }
+    }
+
+    /// The operator's side.
+    pub fn leader(&self) -> LeaderSummary {
+        LeaderSummary {
+            peak_force: self.peak_hand_force,
+            refused_masters: self.refused_masters,
+        }
+    }
+
+    /// The operating states.
+    pub fn states(&self) -> BTreeMap<String, StateSummary> {
+        self.operating
+            .iter()
+            .map(|(device, view)| {
+                let summary = StateSummary {
+                    last: view.visited.last().cloned().unwrap_or_default(),
+                    visited: view.visited.clone(),
+                    reason: view.last.map_or_else(String::new, |last| last.reason.to_string()),
+                };
+                ((*device).to_owned(), summary)
+            })
+            .collect()
+    }
+
+    /// Every node that was heard of.
+    pub fn node_summaries(&self, now: Time) -> BTreeMap<String, NodeSummary> {
+        self.nodes
+            .iter()
+            .map(|(name, view)| {
+                let summary = NodeSummary {
+                    alive: view.is_alive(now),
+                    restarts: 0,
+                    rate_hz: view.last.map(|health| health.rate),
+                    missed: view.missed(),
+                    refused: view.last.map_or(0, |health| health.refused),
+                    lost: view.last.map_or(0, |health| health.lost),
+                    faults: view.faults.iter().map(|fault| fault.name().to_owned()).collect(),
+                };
+                (name.clone(), summary)
+            })
+            .collect()
+    }
+}

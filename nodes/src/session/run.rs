@@ -1,0 +1,429 @@
+//! A session from start to end.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    process::ExitStatus,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use ferntast_bus::{
+    Bus, CleanUpError, CreateError, OpenError, Publisher, SharedMemoryBus, SharedMemoryConfig, mcap,
+};
+use ferntast_msgs::{
+    Time,
+    sample::{OperatingState, StateCommand, StateCommandSample},
+    topics,
+};
+
+use super::{
+    ContextError, Monitor, SessionContext, Summary, Supervisor, SupervisorError, live::LiveLine,
+    summary::RecorderSummary,
+};
+use crate::{clock::Clock, node_name::NodeName};
+
+/// How often the supervisor looks \[ns\].
+const ROUND_NANOS: i64 = 20_000_000;
+/// How long the nodes may take until all are alive and the arm is armed \[s\].
+const START_PATIENCE: f64 = 20.0;
+
+/// What can be chosen about a session beside its scenario.
+#[derive(Clone, Debug)]
+pub struct SessionOptions {
+    /// End after that many seconds armed \[s\].
+    pub duration: Option<f64>,
+    /// Arm at the start.
+    pub enable: bool,
+}
+
+/// Why a session did not run, or not to its end.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// The session's file cannot be written.
+    #[error(transparent)]
+    Context(#[from] ContextError),
+    /// The folder for the session's file cannot be made.
+    #[error("cannot make {path}: {source}")]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// The operating system's reason.
+        source: io::Error,
+    },
+    /// Another session of that name runs, or its remains cannot be removed.
+    #[error(transparent)]
+    Taken(#[from] CleanUpError),
+    /// The recording's folder exists.
+    #[error("{path} exists already: choose another folder for --record, or remove it")]
+    RecordingExists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A port is taken by another program.
+    #[error("{what} {endpoint} is taken ({source}): stop what listens there, or choose another with {option}")]
+    PortTaken {
+        /// What it is for.
+        what: &'static str,
+        /// The endpoint.
+        endpoint: String,
+        /// The operating system's reason.
+        source: io::Error,
+        /// The option that chooses another.
+        option: &'static str,
+    },
+    /// The bus cannot be opened.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// A topic cannot be opened.
+    #[error(transparent)]
+    Create(#[from] CreateError),
+    /// The nodes cannot be kept running.
+    #[error(transparent)]
+    Supervisor(#[from] SupervisorError),
+    /// The nodes were not all alive, or the arm not armed, in time.
+    #[error("not ready after {seconds} s: {waiting}")]
+    NotReady {
+        /// How long it was waited \[s\].
+        seconds: f64,
+        /// For what.
+        waiting: String,
+    },
+    /// The program's own path is not known.
+    #[error("cannot find the ferntast program itself: {0}")]
+    Executable(io::Error),
+}
+
+impl SessionError {
+    /// Whether the input or the surroundings were refused, before anything moved.
+    pub fn is_refusal(&self) -> bool {
+        !matches!(self, SessionError::NotReady { .. } | SessionError::Supervisor(_))
+            || matches!(self, SessionError::Supervisor(SupervisorError::Refused { .. }))
+    }
+}
+
+/// Folder for the files of the sessions of this user.
+pub fn runtime_folder() -> PathBuf {
+    match std::env::var_os("XDG_RUNTIME_DIR") {
+        Some(folder) => PathBuf::from(folder).join("ferntast"),
+        // SAFETY: getuid cannot fail.
+        None => std::env::temp_dir().join(format!("ferntast-{}", unsafe { libc::getuid() })),
+    }
+}
+
+/// The nodes of a session, in the order in which they are stopped: first what
+/// moves the arm, last the recorder.
+fn nodes(context: &SessionContext) -> Vec<NodeName> {
+    let mut nodes = vec![
+        NodeName::Master,
+        NodeName::LinkLeader,
+        NodeName::LinkFollower,
+        NodeName::Servo,
+        NodeName::Estimator,
+        NodeName::Arm,
+        NodeName::Gateway,
+    ];
+    if context.bag.is_some() {
+        nodes.push(NodeName::Recorder);
+    }
+    nodes
+}
+
+/// Runs a session until `stop` is set, its duration is over, or it fails.
+/// Gives the summary, and what went wrong while it ran.
+///
+/// # Errors
+///
+/// What kept it from starting.
+pub fn run(
+    context: SessionContext,
+    options: &SessionOptions,
+    stop: &AtomicBool,
+) -> Result<(Summary, Result<(), SessionError>), SessionError> {
+    SharedMemoryBus::clean_up(&context.session)?;
+    check_surroundings(&context)?;
+    let folder = runtime_folder().join(&context.session);
+    fs::create_dir_all(&folder).map_err(|source| SessionError::Folder {
+        path: folder.clone(),
+        source,
+    })?;
+    let session_file = folder.join("session.json");
+    context.write(&session_file)?;
+    let executable = std::env::current_exe().map_err(SessionError::Executable)?;
+
+    let mut session = Running {
+        supervisor: Supervisor::new(executable, session_file, &nodes(&context)),
+        live: LiveLine::new(options.duration),
+        armed_at: None,
+        commanded_at: None,
+        died: Vec::new(),
+        context,
+    };
+    let clock = session.context.clock();
+    let bus = Bus::SharedMemory(SharedMemoryBus::open(&SharedMemoryConfig {
+        session: session.context.session.clone(),
+    })?);
+    let mut monitor = Monitor::new(&bus)?;
+    let mut arming = Arming {
+        follower: bus.publisher(topics::FOLLOWER_STATE_COMMAND)?,
+        leader: bus.publisher(topics::LEADER_STATE_COMMAND)?,
+    };
+    session.supervisor.start()?;
+    let mut outcome = session.supervise(clock, &mut monitor, &mut arming, options, stop);
+    let ended = clock.now();
+    monitor.update(ended);
+    let mut node_summaries = monitor.node_summaries(ended);
+    for (node, process, restarts) in session.supervisor.nodes() {
+        let summary = node_summaries.entry(node.to_string()).or_default();
+        summary.restarts = restarts;
+        summary.alive &= process.is_some();
+    }
+    let killed = session.supervisor.stop();
+    session.live.finish();
+    for node in killed {
+        eprintln!("node {node} did not stop in time and was killed");
+    }
+    monitor.update(clock.now());
+    let recorder = match recording(&session.context, &node_summaries) {
+        Ok(recorder) => recorder,
+        Err(message) => {
+            eprintln!("{message}");
+            None
+        }
+    };
+    let summary = Summary {
+        scenario: session.context.loaded.scenario.name.clone(),
+        session: session.context.session.clone(),
+        duration_s: session
+            .armed_at
+            .map_or(0.0, |armed| ended.seconds_since(armed)),
+        servo: monitor.servo(),
+        link: monitor.link(),
+        contact: monitor.contact(),
+        leader: monitor.leader(),
+        recording: session
+            .context
+            .bag
+            .as_ref()
+            .map(|bag| bag.display().to_string()),
+        recorder,
+        states: monitor.states(),
+        nodes: node_summaries,
+    };
+    drop((monitor, arming, bus));
+    if let Err(error) = SharedMemoryBus::clean_up(&session.context.session)
+        && outcome.is_ok()
+    {
+        outcome = Err(error.into());
+    }
+    // Nothing depends on the folder being gone.
+    let _ = fs::remove_dir_all(&folder);
+    Ok((summary, outcome))
+}
+
+struct Running {
+    context: SessionContext,
+    supervisor: Supervisor,
+    live: LiveLine,
+    armed_at: Option<Time>,
+    commanded_at: Option<Time>,
+    died: Vec<NodeName>,
+}
+
+struct Arming {
+    follower: Publisher<StateCommandSample>,
+    leader: Publisher<StateCommandSample>,
+}
+
+impl Arming {
+    fn enable(&mut self, now: Time) {
+        let command = StateCommandSample {
+            stamp: now,
+            command: StateCommand::ENABLE,
+            reserved: [0; 7],
+        };
+        // If a command is not sent the arm is not armed, which is noticed.
+        let _ = self.follower.publish(now, &command);
+        let _ = self.leader.publish(now, &command);
+    }
+}
+
+impl Running {
+    fn supervise(
+        &mut self,
+        clock: Clock,
+        monitor: &mut Monitor,
+        arming: &mut Arming,
+        options: &SessionOptions,
+        stop: &AtomicBool,
+    ) -> Result<(), SessionError> {
+        let started = clock.now();
+        let mut due = started;
+        while !stop.load(Ordering::Relaxed) {
+            due = due.plus_nanos(ROUND_NANOS).max(clock.now());
+            clock.sleep_until(due);
+            let now = clock.now();
+            for (node, status) in self.supervisor.watch()? {
+                self.note_death(node, status);
+            }
+            monitor.update(now);
+            if self.armed_at.is_none() {
+                self.arm(now, monitor, arming, options);
+                let waited = now.seconds_since(started);
+                if self.armed_at.is_none() && waited > START_PATIENCE {
+                    return Err(SessionError::NotReady {
+                        seconds: START_PATIENCE,
+                        waiting: self.waiting_for(now, monitor),
+                    });
+                }
+                if self.armed_at.is_some() {
+                    monitor.begin();
+                }
+            }
+            let elapsed = self.armed_at.map_or(0.0, |armed| now.seconds_since(armed));
+            self.live.show(now, elapsed, monitor, &self.supervisor);
+            if options.duration.is_some_and(|duration| elapsed >= duration) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives the command to arm once every node is alive; notes when it is.
+    fn arm(
+        &mut self,
+        now: Time,
+        monitor: &Monitor,
+        arming: &mut Arming,
+        options: &SessionOptions,
+    ) {
+        let all_alive = self.supervisor.nodes().all(|(node, process, _)| {
+            process.is_some()
+                && monitor
+                    .nodes
+                    .get(node.as_str())
+                    .is_some_and(|view| view.is_alive(now))
+        });
+        if !all_alive {
+            return;
+        }
+        if !options.enable {
+            self.armed_at = Some(now);
+            return;
+        }
+        let armed = monitor
+            .operating
+            .get("follower")
+            .is_some_and(|view| view.is(OperatingState::ENABLED));
+        if armed {
+            self.armed_at = Some(now);
+        } else if self
+            .commanded_at
+            .is_none_or(|commanded| now.seconds_since(commanded) > 0.5)
+        {
+            self.commanded_at = Some(now);
+            arming.enable(now);
+        }
+    }
+
+    fn waiting_for(&self, now: Time, monitor: &Monitor) -> String {
+        let silent: Vec<String> = self
+            .supervisor
+            .nodes()
+            .filter(|(node, _, _)| {
+                !monitor
+                    .nodes
+                    .get(node.as_str())
+                    .is_some_and(|view| view.is_alive(now))
+            })
+            .map(|(node, _, _)| node.to_string())
+            .collect();
+        if !silent.is_empty() {
+            return format!("nothing was heard of {}", silent.join(", "));
+        }
+        match monitor.operating.get("follower").and_then(|view| view.last) {
+            Some(last) => format!(
+                "the arm is {} and was not armed: {}",
+                last.state.name().unwrap_or("in an unknown state"),
+                last.reason
+            ),
+            None => "the servo has not published its operating state".to_owned(),
+        }
+    }
+
+    fn note_death(&mut self, node: NodeName, status: ExitStatus) {
+        self.live
+            .note(&format!("node {node} died ({status}); it is started again"));
+        if node == NodeName::Recorder
+            && !self.died.contains(&node)
+            && let Some(bag) = &self.context.bag
+        {
+            self.live.note(&format!(
+                "the recording goes on in another file; what {} held is mended at the end",
+                bag.display()
+            ));
+        }
+        self.died.push(node);
+    }
+}
+
+/// Whether the ports and the recording's folder are free.
+fn check_surroundings(context: &SessionContext) -> Result<(), SessionError> {
+    if let Some(bag) = &context.bag
+        && bag.exists()
+        && !is_empty_folder(bag)
+    {
+        return Err(SessionError::RecordingExists { path: bag.clone() });
+    }
+    let scenario = &context.loaded.scenario;
+    check_endpoint("the link's endpoint", &scenario.link.endpoint, "--link-endpoint")?;
+    if let Some(endpoint) = scenario.gateway.own_router() {
+        check_endpoint("the Zenoh router's endpoint", endpoint, "--router-endpoint")?;
+    }
+    Ok(())
+}
+
+fn check_endpoint(
+    what: &'static str,
+    endpoint: &str,
+    option: &'static str,
+) -> Result<(), SessionError> {
+    let Some(address) = endpoint.strip_prefix("tcp/") else {
+        return Ok(()); // the node that opens it says what is wrong
+    };
+    match std::net::TcpListener::bind(address) {
+        Ok(_) => Ok(()),
+        Err(source) => Err(SessionError::PortTaken {
+            what,
+            endpoint: endpoint.to_owned(),
+            source,
+            option,
+        }),
+    }
+}
+
+fn is_empty_folder(path: &Path) -> bool {
+    fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
+}
+
+/// What went into the recording; mends what a recorder that died left open.
+fn recording(
+    context: &SessionContext,
+    nodes: &std::collections::BTreeMap<String, super::summary::NodeSummary>,
+) -> Result<Option<RecorderSummary>, String> {
+    let Some(bag) = &context.bag else {
+        return Ok(None);
+    };
+    let info = mcap::info(bag).map_err(|error| {
+        format!(
+            "the recording {} cannot be read: {error}; try: ferntast bag repair {}",
+            bag.display(),
+            bag.display()
+        )
+    })?;
+    Ok(Some(RecorderSummary {
+        messages: info.messages,
+        lost: nodes
+            .get(NodeName::Recorder.as_str())
+            .map_or(0, |recorder| recorder.lost),
+    }))
+}

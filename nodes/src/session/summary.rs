@@ -1,0 +1,171 @@
+//! What a session comes to, as one JSON object.
+
+use std::{collections::BTreeMap, fmt};
+
+use serde::Serialize;
+
+/// The result of a session. Quantities that were never measured are `null`.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    /// The scenario's name.
+    pub scenario: String,
+    /// The session's name.
+    pub session: String,
+    /// Time from armed to stop \[s\].
+    pub duration_s: f64,
+    /// The servo loop.
+    pub servo: ServoSummary,
+    /// The link as the operator's end measured it.
+    pub link: LinkSummary,
+    /// The contact as estimated.
+    pub contact: ContactSummary,
+    /// The operator's side.
+    pub leader: LeaderSummary,
+    /// The recording's folder; `null` without one.
+    pub recording: Option<String>,
+    /// What went into the recording; `null` without one.
+    pub recorder: Option<RecorderSummary>,
+    /// CRTK operating states by device.
+    pub states: BTreeMap<String, StateSummary>,
+    /// Every node: how it did.
+    pub nodes: BTreeMap<String, NodeSummary>,
+}
+
+/// The servo loop.
+#[derive(Debug, Default, Serialize)]
+pub struct ServoSummary {
+    /// Steps a second, over the whole session \[Hz\].
+    pub rate_hz: Option<f64>,
+    /// Deadlines missed.
+    pub missed: u64,
+    /// Wake-up lateness at the 99th percentile of the last second \[µs\].
+    pub lateness_p99_us: Option<f64>,
+}
+
+/// The link.
+#[derive(Debug, Default, Serialize)]
+pub struct LinkSummary {
+    /// Median of the measured round trips \[ms\].
+    pub rtt_ms: Option<f64>,
+    /// 99th percentile of the measured round trips \[ms\].
+    pub rtt_p99_ms: Option<f64>,
+    /// Interarrival jitter at the end (RFC 3550) \[ms\].
+    pub jitter_ms: Option<f64>,
+    /// Share of all frames lost on the way to the operator, 0 … 1.
+    pub loss: Option<f64>,
+    /// The delay law.
+    pub law: String,
+}
+
+/// The contact.
+#[derive(Debug, Default, Serialize)]
+pub struct ContactSummary {
+    /// Largest normal force while in contact \[N\].
+    #[serde(rename = "peak_normal_force_N")]
+    pub peak_normal_force: f64,
+    /// Time in contact \[s\].
+    pub time_s: f64,
+    /// Edges touched.
+    pub edges: Vec<String>,
+}
+
+/// The operator's side.
+#[derive(Debug, Default, Serialize)]
+pub struct LeaderSummary {
+    /// Largest force rendered to the hand \[N\].
+    #[serde(rename = "peak_force_N")]
+    pub peak_force: f64,
+    /// Times that another source was refused.
+    pub refused_masters: u64,
+}
+
+/// What went into the recording.
+#[derive(Debug, Serialize)]
+pub struct RecorderSummary {
+    /// Messages in it.
+    pub messages: u64,
+    /// Messages that were lost on the way into it.
+    pub lost: u64,
+}
+
+/// The states of one device.
+#[derive(Debug, Default, Serialize)]
+pub struct StateSummary {
+    /// The last one.
+    #[serde(rename = "final")]
+    pub last: String,
+    /// All, in the order of entry.
+    pub visited: Vec<String>,
+    /// Why it is in the last one.
+    pub reason: String,
+}
+
+/// One node.
+#[derive(Debug, Default, Serialize)]
+pub struct NodeSummary {
+    /// Whether it ran at the end.
+    pub alive: bool,
+    /// How often it was restarted.
+    pub restarts: u32,
+    /// Steps a second in its last second \[Hz\].
+    pub rate_hz: Option<f64>,
+    /// Deadlines missed.
+    pub missed: u64,
+    /// Messages refused.
+    pub refused: u64,
+    /// Messages lost.
+    pub lost: u64,
+    /// Faults that were active at any time.
+    pub faults: Vec<String>,
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = |value: Option<f64>, digits: usize| match value {
+            Some(value) => format!("{value:.digits$}"),
+            None => "-".to_owned(),
+        };
+        writeln!(f, "scenario {}, {:.1} s armed", self.scenario, self.duration_s)?;
+        writeln!(
+            f,
+            "servo     {} Hz, {} deadlines missed",
+            number(self.servo.rate_hz, 1),
+            self.servo.missed
+        )?;
+        writeln!(
+            f,
+            "link      {} ms round trip (p99 {}), {} % lost, law {}",
+            number(self.link.rtt_ms, 2),
+            number(self.link.rtt_p99_ms, 2),
+            number(self.link.loss.map(|loss| loss * 100.0), 2),
+            self.link.law
+        )?;
+        writeln!(
+            f,
+            "contact   {:.1} s, peak normal force {:.1} N, edges: {}",
+            self.contact.time_s,
+            self.contact.peak_normal_force,
+            if self.contact.edges.is_empty() {
+                "none".to_owned()
+            } else {
+                self.contact.edges.join(", ")
+            }
+        )?;
+        writeln!(f, "hand      peak force {:.1} N", self.leader.peak_force)?;
+        for (device, state) in &self.states {
+            writeln!(f, "{device:9} {} ({})", state.visited.join(" → "), state.reason)?;
+        }
+        for (name, node) in self.nodes.iter().filter(|(_, node)| !node.faults.is_empty()) {
+            writeln!(f, "{name:14} {}", node.faults.join("; "))?;
+        }
+        match (&self.recording, &self.recorder) {
+            (Some(path), Some(recorder)) => write!(
+                f,
+                "recorded  {} messages in {path}, {} lost",
+                recorder.messages, recorder.lost
+            ),
+            (Some(path), None) => write!(f, "recorded  {path}"),
+            (None, _) => write!(f, "not recorded (--record DIR does)"),
+        }
+    }
+}
