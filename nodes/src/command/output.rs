@@ -1,7 +1,6 @@
 //! What a command leaves behind: JSON, messages, exit codes.
 
 use std::{
-    error::Error,
     fmt,
     io::{IsTerminal, Write},
     process::ExitCode,
@@ -40,21 +39,6 @@ impl Failure {
         eprintln!("{red}error:{plain} {}", self.message);
         ExitCode::from(self.code)
     }
-}
-
-/// `error` and what caused it, in one line.
-pub fn chain(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text.push_str(": ");
-            text.push_str(&cause_text);
-        }
-        source = cause.source();
-    }
-    text
 }
 
 /// Prints `value` as one JSON value on stdout.

@@ -3,6 +3,7 @@
 mod context;
 mod live;
 mod monitor;
+mod place;
 mod play;
 mod run;
 mod summary;
@@ -11,6 +12,7 @@ mod supervisor;
 pub use context::{ContextError, PlayOptions, SessionContext};
 pub use monitor::Monitor;
 pub use play::{Played, play};
-pub use run::{SessionError, SessionOptions, run, runtime_folder};
+pub use place::runtime_folder;
+pub use run::{SessionError, SessionOptions, run};
 pub use summary::{ContactSummary, LeaderSummary, LinkSummary, StateSummary, Summary};
 pub use supervisor::{EXIT_REFUSED, Supervisor, SupervisorError};

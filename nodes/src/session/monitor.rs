@@ -2,22 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use ferntast_bus::{Bus, CreateError, Depth, Subscriber};
+use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
 use ferntast_msgs::{
-    Time,
+    Message, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Faults, HealthSample, LinkStatusSample,
         OperatingState, OperatingStateSample, WrenchSample,
     },
-    topics,
+    topics::{self, Topic},
 };
 
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
 };
 
-/// Long enough for the monitor's rounds of 20 ms at 1 kHz, with much to spare.
-const QUEUE: usize = 512;
 /// A node that was not heard of for this long \[s\] is not alive.
 const ALIVE: f64 = 1.0;
 
@@ -98,6 +96,13 @@ impl StateView {
     }
 }
 
+/// Every message of `topic`, with the longest queue there is: the monitor's
+/// rounds are tens of milliseconds long.
+fn watch<M: Message>(bus: &Bus, topic: Topic<M>) -> Result<Subscriber<M>, CreateError> {
+    let queue = SharedMemoryBus::max_queue(topic.delivery);
+    bus.subscriber(topic, Depth::Queue(queue))
+}
+
 impl Monitor {
     /// Watches the session on `bus`.
     ///
@@ -106,21 +111,15 @@ impl Monitor {
     /// A topic that cannot be opened.
     pub fn new(bus: &Bus) -> Result<Monitor, CreateError> {
         Ok(Monitor {
-            diagnostics: bus.subscriber(topics::DIAGNOSTICS, Depth::Queue(QUEUE))?,
-            link: bus.subscriber(topics::LINK_STATUS, Depth::Queue(QUEUE))?,
-            contact: bus.subscriber(topics::FOLLOWER_CONTACT_STATE, Depth::Queue(QUEUE))?,
-            leader_force: bus.subscriber(topics::LEADER_SERVO_CF, Depth::Queue(QUEUE))?,
+            diagnostics: watch(bus, topics::DIAGNOSTICS)?,
+            link: watch(bus, topics::LINK_STATUS)?,
+            contact: watch(bus, topics::FOLLOWER_CONTACT_STATE)?,
+            leader_force: watch(bus, topics::LEADER_SERVO_CF)?,
             states: [
-                (
-                    "follower",
-                    bus.subscriber(topics::FOLLOWER_OPERATING_STATE, Depth::Queue(QUEUE))?,
-                ),
-                (
-                    "leader",
-                    bus.subscriber(topics::LEADER_OPERATING_STATE, Depth::Queue(QUEUE))?,
-                ),
+                ("follower", watch(bus, topics::FOLLOWER_OPERATING_STATE)?),
+                ("leader", watch(bus, topics::LEADER_OPERATING_STATE)?),
             ],
-            authority: bus.subscriber(topics::LEADER_AUTHORITY, Depth::Queue(QUEUE))?,
+            authority: watch(bus, topics::LEADER_AUTHORITY)?,
             nodes: BTreeMap::new(),
             link_status: None,
             contact_state: None,

@@ -1,17 +1,10 @@
 //! Playback: player, gateway and, if asked, a live estimator.
 
-use std::{
-    fs,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use ferntast_bus::SharedMemoryBus;
 use serde::Serialize;
 
-use super::{
-    SessionContext, Supervisor,
-    run::{SessionError, runtime_folder},
-};
+use super::{SessionContext, Supervisor, place::Place, run::SessionError};
 use crate::node_name::NodeName;
 
 /// Topics that a live estimator publishes in place of the recording.
@@ -44,20 +37,14 @@ pub fn play(
     duration: f64,
     stop: &AtomicBool,
 ) -> Result<Played, SessionError> {
-    SharedMemoryBus::clean_up(&context.session)?;
-    let folder = runtime_folder().join(&context.session);
-    fs::create_dir_all(&folder).map_err(|source| SessionError::Folder {
-        path: folder.clone(),
-        source,
-    })?;
     // First those that listen, then the player.
     let mut nodes = vec![NodeName::Gateway];
     if estimate {
         nodes.push(NodeName::Estimator);
         context.play.except = OF_THE_ESTIMATOR.map(str::to_owned).to_vec();
     }
-    let session_file = folder.join("session.json");
-    context.write(&session_file)?;
+    let place = Place::take(&context)?;
+    let session_file = place.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
     let mut listeners = Supervisor::new(executable.clone(), session_file.clone(), &nodes);
     listeners.start()?;
@@ -83,9 +70,7 @@ pub fn play(
     let played = clock.now().seconds_since(begun);
     player.stop();
     listeners.stop();
-    SharedMemoryBus::clean_up(&context.session)?;
-    // Nothing depends on the folder being gone.
-    let _ = fs::remove_dir_all(&folder);
+    place.leave()?;
     Ok(Played {
         recording: context
             .bag

@@ -1,6 +1,7 @@
 //! A session from start to end.
 
 use std::{
+    collections::BTreeMap,
     fs, io,
     path::{Path, PathBuf},
     process::ExitStatus,
@@ -17,10 +18,12 @@ use ferntast_msgs::{
 };
 
 use super::{
-    ContextError, Monitor, SessionContext, Summary, Supervisor, SupervisorError, live::LiveLine,
-    summary::RecorderSummary,
+    ContextError, Monitor, SessionContext, Summary, Supervisor, SupervisorError,
+    live::LiveLine,
+    place::Place,
+    summary::{NodeSummary, RecorderSummary},
 };
-use crate::{clock::Clock, node_name::NodeName};
+use crate::{clock::Clock, node_name::NodeName, recorder};
 
 /// How often the supervisor looks \[ns\].
 const ROUND_NANOS: i64 = 20_000_000;
@@ -101,15 +104,6 @@ impl SessionError {
     }
 }
 
-/// Folder for the files of the sessions of this user.
-pub fn runtime_folder() -> PathBuf {
-    match std::env::var_os("XDG_RUNTIME_DIR") {
-        Some(folder) => PathBuf::from(folder).join("ferntast"),
-        // SAFETY: getuid cannot fail.
-        None => std::env::temp_dir().join(format!("ferntast-{}", unsafe { libc::getuid() })),
-    }
-}
-
 /// The nodes of a session, in the order in which they are stopped: first what
 /// moves the arm, last the recorder.
 fn nodes(context: &SessionContext) -> Vec<NodeName> {
@@ -139,15 +133,9 @@ pub fn run(
     options: &SessionOptions,
     stop: &AtomicBool,
 ) -> Result<(Summary, Result<(), SessionError>), SessionError> {
-    SharedMemoryBus::clean_up(&context.session)?;
     check_surroundings(&context)?;
-    let folder = runtime_folder().join(&context.session);
-    fs::create_dir_all(&folder).map_err(|source| SessionError::Folder {
-        path: folder.clone(),
-        source,
-    })?;
-    let session_file = folder.join("session.json");
-    context.write(&session_file)?;
+    let place = Place::take(&context)?;
+    let session_file = place.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
 
     let mut session = Running {
@@ -210,13 +198,10 @@ pub fn run(
         nodes: node_summaries,
     };
     drop((monitor, arming, bus));
-    if let Err(error) = SharedMemoryBus::clean_up(&session.context.session)
-        && outcome.is_ok()
-    {
-        outcome = Err(error.into());
+    let freed = place.leave();
+    if outcome.is_ok() {
+        outcome = freed;
     }
-    // Nothing depends on the folder being gone.
-    let _ = fs::remove_dir_all(&folder);
     Ok((summary, outcome))
 }
 
@@ -405,25 +390,41 @@ fn is_empty_folder(path: &Path) -> bool {
     fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
 }
 
-/// What went into the recording; mends what a recorder that died left open.
+/// What went into the recording, all parts of it; mends a part that a recorder
+/// that died left open.
 fn recording(
     context: &SessionContext,
-    nodes: &std::collections::BTreeMap<String, super::summary::NodeSummary>,
+    nodes: &BTreeMap<String, NodeSummary>,
 ) -> Result<Option<RecorderSummary>, String> {
     let Some(bag) = &context.bag else {
         return Ok(None);
     };
-    let info = mcap::info(bag).map_err(|error| {
-        format!(
-            "the recording {} cannot be read: {error}; try: ferntast bag repair {}",
-            bag.display(),
-            bag.display()
-        )
-    })?;
-    Ok(Some(RecorderSummary {
-        messages: info.messages,
-        lost: nodes
-            .get(NodeName::Recorder.as_str())
-            .map_or(0, |recorder| recorder.lost),
-    }))
+    let recorder = nodes.get(NodeName::Recorder.as_str());
+    let restarts = recorder.map_or(0, |recorder| recorder.restarts);
+    let mut summary = RecorderSummary {
+        messages: 0,
+        lost: recorder.map_or(0, |recorder| recorder.lost),
+        parts: Vec::new(),
+    };
+    for generation in 0..=restarts {
+        let part = recorder::folder(bag, generation);
+        if !part.exists() {
+            continue; // that recorder died before it began
+        }
+        let info = match mcap::info(&part) {
+            Ok(info) => info,
+            Err(broken) => mcap::repair(&part, None)
+                .map_err(|error| error.to_string())
+                .and_then(|_| mcap::info(&part).map_err(|error| error.to_string()))
+                .map_err(|error| {
+                    format!(
+                        "the recording {} cannot be read ({broken}) nor mended ({error})",
+                        part.display()
+                    )
+                })?,
+        };
+        summary.messages += info.messages;
+        summary.parts.push(part.display().to_string());
+    }
+    Ok(Some(summary))
 }

@@ -86,6 +86,8 @@ pub struct RecorderSummary {
     pub messages: u64,
     /// Messages that were lost on the way into it.
     pub lost: u64,
+    /// Folders of its parts: more than one where a recorder was restarted.
+    pub parts: Vec<String>,
 }
 
 /// The states of one device.
@@ -159,10 +161,12 @@ impl fmt::Display for Summary {
             writeln!(f, "{name:14} {}", node.faults.join("; "))?;
         }
         match (&self.recording, &self.recorder) {
-            (Some(path), Some(recorder)) => write!(
+            (Some(_), Some(recorder)) => write!(
                 f,
-                "recorded  {} messages in {path}, {} lost",
-                recorder.messages, recorder.lost
+                "recorded  {} messages in {}, {} lost",
+                recorder.messages,
+                recorder.parts.join(" and "),
+                recorder.lost
             ),
             (Some(path), None) => write!(f, "recorded  {path}"),
             (None, _) => write!(f, "not recorded (--record DIR does)"),
