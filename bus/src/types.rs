@@ -1,6 +1,6 @@
 //! What the ways across have in common.
 
-use ferntast_msgs::{Message, Time};
+use ferntast_msgs::{Message, Text, Time};
 
 use crate::error::DecodeError;
 
@@ -50,6 +50,8 @@ pub struct SubscriberCounts {
     /// Dropped because the queue was full. With [`Depth::Newest`] a message
     /// that a newer one replaces is not counted.
     pub overflowed: u64,
+    /// Why the last one was refused, for people.
+    pub last_refusal: Text<96>,
 }
 
 impl SubscriberCounts {
@@ -60,6 +62,7 @@ impl SubscriberCounts {
 
     /// Counts `error` under its kind.
     pub fn count(&mut self, error: &DecodeError) {
+        self.last_refusal = Text::display(error);
         match error {
             DecodeError::TooLarge { .. } => self.too_large += 1,
             DecodeError::Invalid(_) => self.invalid += 1,
@@ -69,11 +72,13 @@ impl SubscriberCounts {
 
     /// Whether `message` can be acted on; counted when it cannot.
     pub(crate) fn valid<M: Message>(&mut self, message: &M) -> bool {
-        let valid = message.check().is_ok();
-        if !valid {
-            self.invalid += 1;
+        match message.check() {
+            Ok(()) => true,
+            Err(error) => {
+                self.count(&DecodeError::Invalid(error));
+                false
+            }
         }
-        valid
     }
 }
 

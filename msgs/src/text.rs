@@ -25,6 +25,18 @@ impl<const N: usize> Text<N> {
         Text(bytes)
     }
 
+    /// `value` as it is displayed, cut to `N` bytes; allocates nothing itself.
+    pub fn display(value: impl fmt::Display) -> Text<N> {
+        use fmt::Write;
+        let mut line = Line {
+            bytes: [0; N],
+            length: 0,
+        };
+        // An error says that the text was cut, which is meant.
+        let _ = write!(line, "{value}");
+        Text(line.bytes)
+    }
+
     /// The text; whatever follows the first zero byte or the first byte that
     /// is not UTF-8 does not count.
     pub fn as_str(&self) -> &str {
@@ -38,6 +50,24 @@ impl<const N: usize> Text<N> {
     /// Whether there is no text.
     pub fn is_empty(&self) -> bool {
         self.as_str().is_empty()
+    }
+}
+
+/// Text on its way into a [`Text`].
+struct Line<const N: usize> {
+    bytes: [u8; N],
+    length: usize,
+}
+
+impl<const N: usize> fmt::Write for Line<N> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for character in text.chars() {
+            let end = self.length + character.len_utf8();
+            let place = self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?;
+            character.encode_utf8(place);
+            self.length = end;
+        }
+        Ok(())
     }
 }
 

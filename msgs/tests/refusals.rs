@@ -329,6 +329,9 @@ fn every_topic_is_named_once_and_carries_a_known_interface() {
 fn texts_are_cut_between_characters_and_at_a_zero_byte() {
     assert_eq!(Text::<4>::new("abcdef").as_str(), "abcd");
     assert_eq!(Text::<4>::new("abcé").as_str(), "abc");
+    assert_eq!(Text::<4>::display("é".repeat(3)).as_str(), "éé");
+    assert_eq!(Text::<3>::display("éé").as_str(), "é");
+    assert_eq!(Text::<8>::display(1.5).as_str(), "1.5");
     assert_eq!(Text::<4>::new("ab\0c"), Text::<4>::new("ab"));
     assert!(Text::<4>::new("").is_empty());
 }

@@ -27,6 +27,7 @@ pub enum Carry {
 /// One topic on its way from a bus to another.
 trait Lane {
     fn carry(&mut self, now: Time) -> Carried;
+    fn topic(&self) -> &'static str;
     fn counts(&self) -> SubscriberCounts;
 }
 
@@ -40,6 +41,7 @@ pub struct Carried {
 }
 
 struct TypedLane<M: Message> {
+    topic: &'static str,
     from: Subscriber<M>,
     to: Publisher<M>,
     carry: Carry,
@@ -83,7 +85,11 @@ impl<M: Message> Lane for TypedLane<M> {
                 {
                     // A due time that keeps its phase, so that the rate is met on average.
                     let next = self.due.plus_nanos(period_nanos);
-                    self.due = if next > now { next } else { now.plus_nanos(period_nanos) };
+                    self.due = if next > now {
+                        next
+                    } else {
+                        now.plus_nanos(period_nanos)
+                    };
                     self.send(now, received, &mut carried);
                 }
             }
@@ -94,6 +100,10 @@ impl<M: Message> Lane for TypedLane<M> {
             }
         }
         carried
+    }
+
+    fn topic(&self) -> &'static str {
+        self.topic
     }
 
     fn counts(&self) -> SubscriberCounts {
@@ -170,6 +180,7 @@ impl Carrier {
             Carry::Newest { .. } | Carry::Not => Depth::Newest,
         };
         self.lanes.push(Box::new(TypedLane {
+            topic: topic.name,
             from: from.subscriber(topic, depth)?,
             to: to.publisher(topic)?,
             carry,
@@ -191,21 +202,10 @@ impl Carrier {
         all
     }
 
-    /// What was refused or dropped on the way in.
-    pub fn counts(&self) -> SubscriberCounts {
-        let mut counts = SubscriberCounts::default();
+    /// Tells `each` the topic of every lane and what became of its messages.
+    pub fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts)) {
         for lane in &self.lanes {
-            add(&mut counts, lane.counts());
+            each(lane.topic(), lane.counts());
         }
-        counts
     }
-}
-
-/// Adds `more` to `counts`.
-pub fn add(counts: &mut SubscriberCounts, more: SubscriberCounts) {
-    counts.delivered += more.delivered;
-    counts.undecodable += more.undecodable;
-    counts.too_large += more.too_large;
-    counts.invalid += more.invalid;
-    counts.overflowed += more.overflowed;
 }

@@ -12,7 +12,7 @@ use ferntast_msgs::{
 use crate::{
     carry::{Carrier, Carry, Stamp},
     config::{GatewaySection, HandSource, Middleware},
-    node::NodeHealth,
+    node::{InputWatch, NodeHealth},
     pace,
     process::{PERIOD_NANOS, ProcessError, Surroundings},
 };
@@ -88,7 +88,14 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     for topic in [topics::FOLLOWER_STATE_COMMAND, topics::LEADER_STATE_COMMAND] {
         carrier.add(topic, &ros, bus, stamp, every, |_, _| {})?;
     }
-    carrier.add(topics::FOLLOWER_SERVO_JP, &ros, bus, stamp, every, |_, _| {})?;
+    carrier.add(
+        topics::FOLLOWER_SERVO_JP,
+        &ros,
+        bus,
+        stamp,
+        every,
+        |_, _| {},
+    )?;
     if crtk {
         carrier.add(
             topics::LEADER_MEASURED_CP,
@@ -103,19 +110,24 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
 
     let mut meter = around.meter(PERIOD_NANOS, Faults::default());
     let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;
+    let mut watch = InputWatch::default();
     let mut failed = 0;
-    pace::run(around.clock, PERIOD_NANOS, around.stop, |now, late, missed| {
-        failed += carrier.carry(now).failed;
-        let counts = carrier.counts();
-        let health = NodeHealth {
-            refused: counts.refused(),
-            lost: failed + counts.overflowed,
-            ..NodeHealth::default()
-        };
-        if let Some(sample) = meter.step(now, late, missed, &health) {
-            // What cannot be said now is said a tenth of a second later.
-            let _ = diagnostics.publish(now, &sample);
-        }
-    });
+    pace::run(
+        around.clock,
+        PERIOD_NANOS,
+        around.stop,
+        |now, late, missed| {
+            failed += carrier.carry(now).failed;
+            let mut health = NodeHealth {
+                lost: failed,
+                ..NodeHealth::default()
+            };
+            watch.note(|each| carrier.inputs(each), &mut health);
+            if let Some(sample) = meter.step(now, late, missed, &health) {
+                // What cannot be said now is said a tenth of a second later.
+                let _ = diagnostics.publish(now, &sample);
+            }
+        },
+    );
     Ok(())
 }

@@ -68,7 +68,10 @@ pub fn bag_options(loaded: &Loaded, mode: &str) -> BagOptions {
     let record: BTreeMap<String, String> = [
         ("mode".to_owned(), mode.to_owned()),
         ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-        ("scenario".to_owned(), json(serde_json::to_string(&loaded.scenario))),
+        (
+            "scenario".to_owned(),
+            json(serde_json::to_string(&loaded.scenario)),
+        ),
         ("arm".to_owned(), json(serde_json::to_string(&loaded.arm))),
         ("link".to_owned(), json(serde_json::to_string(&loaded.link))),
     ]
@@ -136,7 +139,13 @@ impl LockstepSession {
         )?;
 
         let master = MasterNode::new(&scenario.master, loaded.hand()?)?;
-        add(&mut executor, &bus, NodeName::Master, master, MasterPorts::connect(&bus)?)?;
+        add(
+            &mut executor,
+            &bus,
+            NodeName::Master,
+            master,
+            MasterPorts::connect(&bus)?,
+        )?;
         let ports = LinkPorts::new(LeaderLinkPorts::connect(&bus)?, at_leader);
         let node = LeaderLinkNode::new(&scenario.law, session);
         add(&mut executor, &bus, NodeName::LinkLeader, node, ports)?;
@@ -144,11 +153,29 @@ impl LockstepSession {
         let node = FollowerLinkNode::new(&scenario.law, session);
         add(&mut executor, &bus, NodeName::LinkFollower, node, ports)?;
         let servo = ServoNode::new(&loaded.arm.model(), &scenario.servo)?;
-        add(&mut executor, &bus, NodeName::Servo, servo, ServoPorts::connect(&bus)?)?;
+        add(
+            &mut executor,
+            &bus,
+            NodeName::Servo,
+            servo,
+            ServoPorts::connect(&bus)?,
+        )?;
         let estimator = EstimatorNode::new(&loaded.arm.model(), &loaded.arm.estimator)?;
-        add(&mut executor, &bus, NodeName::Estimator, estimator, EstimatorPorts::connect(&bus)?)?;
+        add(
+            &mut executor,
+            &bus,
+            NodeName::Estimator,
+            estimator,
+            EstimatorPorts::connect(&bus)?,
+        )?;
         let arm = ArmNode::new(&loaded.arm, seed)?;
-        add(&mut executor, &bus, NodeName::Arm, arm, ArmPorts::connect(&bus)?)?;
+        add(
+            &mut executor,
+            &bus,
+            NodeName::Arm,
+            arm,
+            ArmPorts::connect(&bus)?,
+        )?;
 
         let mut follower = bus.publisher(topics::FOLLOWER_STATE_COMMAND)?;
         let mut leader = bus.publisher(topics::LEADER_STATE_COMMAND)?;

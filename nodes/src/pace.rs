@@ -13,12 +13,7 @@ const PRIORITY: libc::c_int = 40;
 /// Calls `tick(now, late_nanos, missed)` every `period_nanos` until `stop` is
 /// set. Late steps are not caught up: whole periods that passed are counted as
 /// missed and skipped.
-pub fn run(
-    clock: Clock,
-    period_nanos: i64,
-    stop: &AtomicBool,
-    tick: impl FnMut(Time, i64, u64),
-) {
+pub fn run(clock: Clock, period_nanos: i64, stop: &AtomicBool, tick: impl FnMut(Time, i64, u64)) {
     run_while(clock, period_nanos, || !stop.load(Ordering::Relaxed), tick);
 }
 

@@ -7,13 +7,16 @@ use ferntast_msgs::{Time, sample::Faults, topics};
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    node::NodeHealth,
+    node::{InputWatch, NodeHealth},
     pace,
     process::{PERIOD_NANOS, ProcessError, Surroundings},
 };
 
 /// Opens `McapBus` readers on the recording with the lanes to play it.
-fn open(around: &Surroundings, path: &std::path::Path) -> Result<(Carrier, Time, Time), ProcessError> {
+fn open(
+    around: &Surroundings,
+    path: &std::path::Path,
+) -> Result<(Carrier, Time, Time), ProcessError> {
     let bad = |reason: String| ProcessError::Bag {
         path: path.to_owned(),
         reason,
@@ -25,14 +28,19 @@ fn open(around: &Surroundings, path: &std::path::Path) -> Result<(Carrier, Time,
     let recording = McapBus::open(path).map_err(|error| bad(error.to_string()))?;
     let except = &around.context.play.except;
     let mut carrier = Carrier::default();
-    carrier.add_topics(&Bus::Mcap(recording), &around.bus, Stamp::Round, |topic, _| {
-        let recorded = info.topics.iter().any(|own| own.name == topic);
-        if recorded && !except.iter().any(|name| name == topic) {
-            Carry::Every { queue: 512 }
-        } else {
-            Carry::Not
-        }
-    })?;
+    carrier.add_topics(
+        &Bus::Mcap(recording),
+        &around.bus,
+        Stamp::Round,
+        |topic, _| {
+            let recorded = info.topics.iter().any(|own| own.name == topic);
+            if recorded && !except.iter().any(|name| name == topic) {
+                Carry::Every { queue: 512 }
+            } else {
+                Carry::Not
+            }
+        },
+    )?;
     Ok((carrier, start, end))
 }
 
@@ -50,6 +58,7 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         let (mut carrier, start, end) = open(around, path)?;
         let begun = around.clock.now();
         let done = std::sync::atomic::AtomicBool::new(false);
+        let mut watch = InputWatch::default();
         let mut failed = 0;
         pace::run_while(
             around.clock,
@@ -58,11 +67,11 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
             |now, late, missed| {
                 let at = start.plus_seconds(now.seconds_since(begun) * rate);
                 failed += carrier.carry(at).failed;
-                let health = NodeHealth {
-                    refused: carrier.counts().refused(),
+                let mut health = NodeHealth {
                     lost: failed,
                     ..NodeHealth::default()
                 };
+                watch.note(|each| carrier.inputs(each), &mut health);
                 if let Some(sample) = meter.step(now, late, missed, &health) {
                     let _ = diagnostics.publish(now, &sample);
                 }

@@ -18,7 +18,7 @@ use crate::{
     clock::Clock,
     config::ConfigError,
     estimator::{EstimatorNode, EstimatorPorts},
-    gateway, 
+    gateway,
     link::{
         FollowerLinkNode, FollowerLinkPorts, LeaderLinkNode, LeaderLinkPorts, LinkPorts,
         LinkTransport, session_number,
@@ -87,7 +87,12 @@ pub struct Surroundings<'a> {
 impl Surroundings<'_> {
     /// A meter for a loop of `period_nanos` \[ns\].
     pub fn meter(&self, period_nanos: i64, standing: Faults) -> HealthMeter {
-        HealthMeter::new(self.name.as_str(), std::process::id(), period_nanos, standing)
+        HealthMeter::new(
+            self.name.as_str(),
+            std::process::id(),
+            period_nanos,
+            standing,
+        )
     }
 
     /// Runs a 1 kHz loop with real-time priority, if that is to be had.

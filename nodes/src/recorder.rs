@@ -13,7 +13,7 @@ use ferntast_msgs::{
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    node::NodeHealth,
+    node::{InputWatch, NodeHealth},
     pace,
     process::{ProcessError, Surroundings},
 };
@@ -26,10 +26,7 @@ const PERIOD_NANOS: i64 = 10_000_000;
 /// # Errors
 ///
 /// The folder exists, cannot be made, or the disk is full.
-pub fn create(
-    folder: &Path,
-    options: BagOptions,
-) -> Result<McapBus, ProcessError> {
+pub fn create(folder: &Path, options: BagOptions) -> Result<McapBus, ProcessError> {
     McapBus::create_with(folder, options).map_err(|error| ProcessError::Bag {
         path: folder.to_owned(),
         reason: error.to_string(),
@@ -61,32 +58,43 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         }
     }
     let path = folder(bag, around.generation);
-    let recording = create(&path, super::lockstep::bag_options(&around.context.loaded, "session"))?;
+    let recording = create(
+        &path,
+        super::lockstep::bag_options(&around.context.loaded, "session"),
+    )?;
     let to = Bus::Mcap(recording.clone());
     let mut carrier = Carrier::default();
-    carrier.add_topics(&around.bus, &to, Stamp::Received, |_, delivery| Carry::Every {
-        queue: SharedMemoryBus::max_queue(delivery),
+    carrier.add_topics(&around.bus, &to, Stamp::Received, |_, delivery| {
+        Carry::Every {
+            queue: SharedMemoryBus::max_queue(delivery),
+        }
     })?;
     let mut meter = around.meter(PERIOD_NANOS, Faults::default());
     let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;
+    let mut watch = InputWatch::default();
     let mut failed = 0;
-    pace::run(around.clock, PERIOD_NANOS, around.stop, |now, late, missed| {
-        failed += carrier.carry(now).failed;
-        let mut health = NodeHealth {
-            lost: carrier.counts().overflowed,
-            ..NodeHealth::default()
-        };
-        health.lost += failed;
-        if health.lost > 0 {
-            health.raise(Fault::RecordingLost, Level::WARN);
-        }
-        if failed > 0 {
-            health.raise(Fault::RecordingFailed, Level::ERROR);
-        }
-        if let Some(sample) = meter.step(now, late, missed, &health) {
-            let _ = diagnostics.publish(now, &sample);
-        }
-    });
+    pace::run(
+        around.clock,
+        PERIOD_NANOS,
+        around.stop,
+        |now, late, missed| {
+            failed += carrier.carry(now).failed;
+            let mut health = NodeHealth {
+                lost: failed,
+                ..NodeHealth::default()
+            };
+            watch.note(|each| carrier.inputs(each), &mut health);
+            if health.lost > 0 {
+                health.raise(Fault::RecordingLost, Level::WARN);
+            }
+            if failed > 0 {
+                health.raise(Fault::RecordingFailed, Level::ERROR);
+            }
+            if let Some(sample) = meter.step(now, late, missed, &health) {
+                let _ = diagnostics.publish(now, &sample);
+            }
+        },
+    );
     carrier.carry(around.clock.now());
     drop(carrier);
     recording

@@ -32,7 +32,9 @@ pub enum ReplayError {
     #[error("{0}")]
     Open(String),
     /// It does not say what it was made of.
-    #[error("the recording does not say what it was made of ({0}); only recordings of `ferntast lockstep` can be fed again")]
+    #[error(
+        "the recording does not say what it was made of ({0}); only recordings of `ferntast lockstep` can be fed again"
+    )]
     Origin(String),
     /// A topic cannot be opened.
     #[error(transparent)]
@@ -100,7 +102,10 @@ impl<M: Message> Check for TypedCheck<M> {
                         (None, Some(_)) => "not in the recording",
                         _ => "different",
                     };
-                    let at = recorded.as_ref().or(replayed.as_ref()).map_or(0, |own| own.0.nanos());
+                    let at = recorded
+                        .as_ref()
+                        .or(replayed.as_ref())
+                        .map_or(0, |own| own.0.nanos());
                     result.first_difference = Some(format!("{} at {at} ns: {which}", self.topic));
                 }
             }
@@ -126,7 +131,10 @@ pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, Rep
     let open = |error: &dyn std::fmt::Display| ReplayError::Open(error.to_string());
     let info = mcap::info(path).map_err(|error| open(&error))?;
     let (Some(start), Some(end)) = (info.start, info.end) else {
-        return Err(ReplayError::Open(format!("{} holds no message", path.display())));
+        return Err(ReplayError::Open(format!(
+            "{} holds no message",
+            path.display()
+        )));
     };
     let origin = info
         .metadata
@@ -162,15 +170,31 @@ pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, Rep
     let mut checks: Vec<Box<dyn Check>> = Vec::new();
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_SERVO_JF)?;
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_SETPOINT_JS)?;
-    add_check(&mut checks, &recording, &bus, topics::FOLLOWER_OPERATING_STATE)?;
+    add_check(
+        &mut checks,
+        &recording,
+        &bus,
+        topics::FOLLOWER_OPERATING_STATE,
+    )?;
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_MEASURED_CP)?;
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_MEASURED_CF)?;
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_CONTACT_CF)?;
-    add_check(&mut checks, &recording, &bus, topics::FOLLOWER_CONTACT_STATE)?;
+    add_check(
+        &mut checks,
+        &recording,
+        &bus,
+        topics::FOLLOWER_CONTACT_STATE,
+    )?;
 
-    let meter = |name: NodeName| HealthMeter::new(name.as_str(), 0, PERIOD_NANOS, Faults::default());
+    let meter =
+        |name: NodeName| HealthMeter::new(name.as_str(), 0, PERIOD_NANOS, Faults::default());
     let servo = ServoNode::new(&arm.model(), &scenario.servo)?;
-    let mut servo = Runner::new(&bus, servo, ServoPorts::connect(&bus)?, meter(NodeName::Servo))?;
+    let mut servo = Runner::new(
+        &bus,
+        servo,
+        ServoPorts::connect(&bus)?,
+        meter(NodeName::Servo),
+    )?;
     let estimator = EstimatorNode::new(&arm.model(), &arm.estimator)?;
     let ports = EstimatorPorts::connect(&bus)?;
     let mut estimator = Runner::new(&bus, estimator, ports, meter(NodeName::Estimator))?;

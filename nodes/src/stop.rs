@@ -1,9 +1,6 @@
 //! Ctrl-C and SIGTERM.
 
-use std::sync::{
-    Arc,
-    atomic::AtomicBool,
-};
+use std::sync::{Arc, atomic::AtomicBool};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 

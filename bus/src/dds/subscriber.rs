@@ -2,13 +2,13 @@
 
 use std::{collections::VecDeque, fmt};
 
-use ferntast_msgs::{Message, Time, topics::Topic};
+use ferntast_msgs::{Message, RosMessage, Time, topics::Topic};
 use ros2_client::{MessageInfo, ReadError, Subscription, qos::History};
 
 use super::{DdsBus, MAX_QUEUE, create_topic, middleware, qos::qos, senders::Senders, type_name};
 use crate::{
     cdr,
-    error::{CreateError, EncodeError},
+    error::{CreateError, DecodeError, EncodeError},
     gaps::{self, Gaps},
     types::{Depth, Received, SubscriberCounts},
 };
@@ -100,7 +100,9 @@ impl<M: Message> DdsSubscriber<M> {
                     self.waiting.push_back(received);
                 }
                 // The reader has gone past the message that it could not decode.
-                Err(ReadError::Deserialization { .. }) => self.counts.undecodable += 1,
+                Err(ReadError::Deserialization { reason, .. }) => {
+                    self.not_this_type(reason);
+                }
                 // The participant is gone: nothing will come.
                 Err(_) => return,
             }
@@ -113,10 +115,17 @@ impl<M: Message> DdsSubscriber<M> {
         }
     }
 
+    fn not_this_type(&mut self, reason: String) {
+        self.counts.count(&DecodeError::NotThisType {
+            interface: M::Ros::INTERFACE,
+            reason,
+        });
+    }
+
     fn admit(&mut self, ros: &M::Ros, info: &MessageInfo) -> Option<Received<M>> {
         let sender = info.publisher_gid();
         if !self.senders.is_right(sender) {
-            self.counts.undecodable += 1;
+            self.not_this_type("its sender offers another type".into());
             return None;
         }
         if let Ok(number) = u64::try_from(info.sequence_number()) {
@@ -128,18 +137,21 @@ impl<M: Message> DdsSubscriber<M> {
         // the bytes are checked there against the bytes that came.
         match cdr::length(ros) {
             Ok(_) => {}
-            Err(EncodeError::TooLarge { .. }) => {
-                self.counts.too_large += 1;
+            Err(EncodeError::TooLarge { length, limit, .. }) => {
+                self.counts.count(&DecodeError::TooLarge { length, limit });
                 return None;
             }
-            Err(EncodeError::NotCdr { .. }) => {
-                self.counts.undecodable += 1;
+            Err(EncodeError::NotCdr { reason, .. }) => {
+                self.not_this_type(reason);
                 return None;
             }
         }
-        let Ok(message) = M::from_ros(ros) else {
-            self.counts.invalid += 1;
-            return None;
+        let message = match M::from_ros(ros) {
+            Ok(message) => message,
+            Err(error) => {
+                self.counts.count(&DecodeError::Invalid(error));
+                return None;
+            }
         };
         if !self.counts.valid(&message) {
             return None;

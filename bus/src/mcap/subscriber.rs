@@ -3,7 +3,7 @@
 use std::{collections::VecDeque, marker::PhantomData, sync::Arc};
 
 use ferntast_msgs::{
-    Message, Time,
+    Message, Text, Time,
     topics::{Delivery, Topic},
 };
 
@@ -95,7 +95,10 @@ impl<M: Message> McapSubscriber<M> {
             match self.messages.next_before(now) {
                 Ok(Some(message)) => self.waiting.push_back(message),
                 Ok(None) => break,
-                Err(_) => self.counts.undecodable += 1,
+                Err(error) => {
+                    self.counts.undecodable += 1;
+                    self.counts.last_refusal = Text::display(error);
+                }
             }
             if self.waiting.len() > places {
                 self.waiting.pop_front();

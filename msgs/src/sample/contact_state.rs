@@ -134,8 +134,8 @@ unsafe impl Message for ContactStateSample {
         let edge = Edge::from_name(&ros.edge)
             .ok_or_else(|| checks::unknown("edge", &ros.edge, Edge::KNOWN))?;
         // Anything else that is not finite is refused by the check.
-        let unidentified = ros.friction_coefficient.is_nan()
-            && ros.friction_coefficient_error == f64::INFINITY;
+        let unidentified =
+            ros.friction_coefficient.is_nan() && ros.friction_coefficient_error == f64::INFINITY;
         let coefficient = match unidentified {
             true => 0.0,
             false => ros.friction_coefficient,

@@ -59,7 +59,11 @@ impl Node for ArmNode {
 
     fn step(&mut self, now: Time, input: &ArmInput, output: &mut ArmOutput) {
         let silence = input.torque.silence(now);
-        output.health.input_age = if silence.is_finite() { silence } else { f64::NAN };
+        output.health.input_age = if silence.is_finite() {
+            silence
+        } else {
+            f64::NAN
+        };
         let torque = match &input.torque.message {
             Some(command) if silence <= COMMAND_LIFE => command.effort,
             Some(_) => {

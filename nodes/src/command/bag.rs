@@ -42,8 +42,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             }
         }
         Action::Repair { recording, output } => {
-            let report =
-                mcap::repair(&recording, output.as_deref()).map_err(Failure::refused)?;
+            let report = mcap::repair(&recording, output.as_deref()).map_err(Failure::refused)?;
             if json {
                 print_json(&report)?;
             } else {

@@ -49,7 +49,10 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         ..DoctorOptions::default()
     };
     if !json {
-        eprintln!("examining this machine, listening for ROS 2 peers for {} s …", LISTEN.as_secs());
+        eprintln!(
+            "examining this machine, listening for ROS 2 peers for {} s …",
+            LISTEN.as_secs()
+        );
     }
     let peers = || -> Result<Vec<Peer>, String> {
         let bus = gateway::open_ros(section).map_err(|error| error.to_string())?;

@@ -13,9 +13,11 @@ use crate::{
 
 /// Run a scenario in one process and virtual time.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "The same seed gives the same recording, byte for byte:\n  \
+#[command(
+    after_help = "The same seed gives the same recording, byte for byte:\n  \
     ferntast lockstep config/scenarios/rokviss.toml --record recordings/a\n  \
-    ferntast replay recordings/a")]
+    ferntast replay recordings/a"
+)]
 pub struct Arguments {
     /// Scenario: a shipped one or a file.
     #[arg(value_name = "NAME|FILE")]
@@ -59,10 +61,12 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
             "--duration {duration}: give a positive number of seconds"
         )));
     }
-    let mut session = LockstepSession::new(&loaded, arguments.record.as_deref())
-        .map_err(Failure::refused)?;
+    let mut session =
+        LockstepSession::new(&loaded, arguments.record.as_deref()).map_err(Failure::refused)?;
     let bar = ProgressBar::new(duration.ceil() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} s of virtual time, {eta} left") {
+    if let Ok(style) =
+        ProgressStyle::with_template("{bar:30} {pos}/{len} s of virtual time, {eta} left")
+    {
         bar.set_style(style);
     }
     let begun = Instant::now();
@@ -86,7 +90,10 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
         contact: monitor.contact(),
         leader: monitor.leader(),
         states: monitor.states(),
-        recording: arguments.record.as_ref().map(|path| path.display().to_string()),
+        recording: arguments
+            .record
+            .as_ref()
+            .map(|path| path.display().to_string()),
     };
     session.finish().map_err(Failure::failed)?;
     if json {

@@ -12,10 +12,12 @@ use crate::{
 
 /// Run one node alone, in this process.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "The node meets others of the same --session over shared memory. Three terminals make an arm that can be felt:\n  \
+#[command(
+    after_help = "The node meets others of the same --session over shared memory. Three terminals make an arm that can be felt:\n  \
     ferntast node arm\n  \
     ferntast node servo\n  \
-    ferntast node estimator")]
+    ferntast node estimator"
+)]
 pub struct Arguments {
     /// Which node.
     node: NodeName,

@@ -35,7 +35,11 @@ impl Failure {
     /// Says so on stderr.
     pub fn report(&self) -> ExitCode {
         let paint = std::io::stderr().is_terminal();
-        let (red, plain) = if paint { ("\x1b[1;31m", "\x1b[0m") } else { ("", "") };
+        let (red, plain) = if paint {
+            ("\x1b[1;31m", "\x1b[0m")
+        } else {
+            ("", "")
+        };
         eprintln!("{red}error:{plain} {}", self.message);
         ExitCode::from(self.code)
     }

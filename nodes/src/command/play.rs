@@ -44,8 +44,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     }
     let info = ferntast_bus::mcap::info(&arguments.recording).map_err(Failure::refused)?;
     let loaded = arguments.scenario.load()?;
-    let mut context =
-        SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.bag = Some(arguments.recording);
     context.play = PlayOptions {
         rate: arguments.rate,
@@ -53,8 +52,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         except: Vec::new(),
     };
     let stop = stop::on_signals().map_err(Failure::failed)?;
-    let played = session::play(context, arguments.estimate, info.duration_s, &stop)
-        .map_err(|error| {
+    let played =
+        session::play(context, arguments.estimate, info.duration_s, &stop).map_err(|error| {
             if error.is_refusal() {
                 Failure::refused(error)
             } else {

@@ -89,7 +89,9 @@ impl ScenarioOptions {
             loaded.set_link(link).map_err(Failure::refused)?;
         }
         if let Some(rtt) = self.rtt {
-            loaded.set_round_trip(rtt * 1e-3).map_err(Failure::refused)?;
+            loaded
+                .set_round_trip(rtt * 1e-3)
+                .map_err(Failure::refused)?;
         }
         loaded.complete().map_err(Failure::refused)?;
         Ok(loaded)

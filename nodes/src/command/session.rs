@@ -47,8 +47,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         )));
     }
     let loaded = arguments.scenario.load()?;
-    let mut context =
-        SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.bag = arguments.record;
     let stop = stop::on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {

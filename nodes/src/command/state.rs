@@ -13,8 +13,10 @@ use crate::clock::Clock;
 
 /// Give a state command to a running session.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "After a hold (the master or the link fell silent) the arm stays where it is until it is re-armed:\n  \
-    ferntast state follower resume")]
+#[command(
+    after_help = "After a hold (the master or the link fell silent) the arm stays where it is until it is re-armed:\n  \
+    ferntast state follower resume"
+)]
 pub struct Arguments {
     /// Who is to obey.
     #[arg(value_enum)]

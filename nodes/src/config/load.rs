@@ -19,7 +19,9 @@ use super::{HandSource, Scenario, shipped};
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
     /// Neither a file nor a shipped name.
-    #[error("{kind} {name:?}: no such file, and none of that name is shipped; shipped are: {shipped}")]
+    #[error(
+        "{kind} {name:?}: no such file, and none of that name is shipped; shipped are: {shipped}"
+    )]
     Unknown {
         /// Scenario, arm or link.
         kind: &'static str,
@@ -235,10 +237,12 @@ impl Loaded {
     ///
     /// A missing or broken recording of the hand, a missing script, a value out of bounds.
     pub fn complete(&mut self) -> Result<(), ConfigError> {
-        self.scenario.validate().map_err(|source| ConfigError::Value {
-            path: self.path.clone(),
-            source,
-        })?;
+        self.scenario
+            .validate()
+            .map_err(|source| ConfigError::Value {
+                path: self.path.clone(),
+                source,
+            })?;
         let missing = |source_name, missing| ConfigError::NoHand {
             path: self.path.clone(),
             source_name,

@@ -6,6 +6,5 @@ mod shipped;
 
 pub use load::{ConfigError, Loaded, load_scenario, read_hand_recording};
 pub use scenario::{
-    GatewaySection, HandSection, HandSource, LinkSection, Middleware,
-    RecorderSection, Scenario,
+    GatewaySection, HandSection, HandSource, LinkSection, Middleware, RecorderSection, Scenario,
 };

@@ -3,15 +3,42 @@
 
 /// Path below `config/` and text of every shipped file.
 pub const FILES: &[(&str, &str)] = &[
-    ("arms/rokviss.toml", include_str!("../../../config/arms/rokviss.toml")),
-    ("links/direct.toml", include_str!("../../../config/links/direct.toml")),
-    ("links/rokviss_20ms.toml", include_str!("../../../config/links/rokviss_20ms.toml")),
-    ("links/rokviss_30ms.toml", include_str!("../../../config/links/rokviss_30ms.toml")),
-    ("links/kontur_2.toml", include_str!("../../../config/links/kontur_2.toml")),
-    ("links/relay_600ms.toml", include_str!("../../../config/links/relay_600ms.toml")),
-    ("links/ku_band_800ms.toml", include_str!("../../../config/links/ku_band_800ms.toml")),
-    ("scenarios/rokviss.toml", include_str!("../../../config/scenarios/rokviss.toml")),
-    ("scenarios/operator.toml", include_str!("../../../config/scenarios/operator.toml")),
+    (
+        "arms/rokviss.toml",
+        include_str!("../../../config/arms/rokviss.toml"),
+    ),
+    (
+        "links/direct.toml",
+        include_str!("../../../config/links/direct.toml"),
+    ),
+    (
+        "links/rokviss_20ms.toml",
+        include_str!("../../../config/links/rokviss_20ms.toml"),
+    ),
+    (
+        "links/rokviss_30ms.toml",
+        include_str!("../../../config/links/rokviss_30ms.toml"),
+    ),
+    (
+        "links/kontur_2.toml",
+        include_str!("../../../config/links/kontur_2.toml"),
+    ),
+    (
+        "links/relay_600ms.toml",
+        include_str!("../../../config/links/relay_600ms.toml"),
+    ),
+    (
+        "links/ku_band_800ms.toml",
+        include_str!("../../../config/links/ku_band_800ms.toml"),
+    ),
+    (
+        "scenarios/rokviss.toml",
+        include_str!("../../../config/scenarios/rokviss.toml"),
+    ),
+    (
+        "scenarios/operator.toml",
+        include_str!("../../../config/scenarios/operator.toml"),
+    ),
 ];
 
 /// Text of the shipped file at `path` below `config/`.

@@ -59,7 +59,11 @@ impl Node for EstimatorNode {
 
     fn step(&mut self, now: Time, input: &EstimatorInput, output: &mut EstimatorOutput) {
         let silence = input.measured_js.silence(now);
-        output.health.input_age = if silence.is_finite() { silence } else { f64::NAN };
+        output.health.input_age = if silence.is_finite() {
+            silence
+        } else {
+            f64::NAN
+        };
         if silence > MEASUREMENT_WATCHDOG {
             output.health.raise(Fault::MeasurementSilent, Level::WARN);
             output.health.message = Text::new("no /follower/measured_js: is the arm running?");
@@ -103,7 +107,11 @@ fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput
         ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, [x, y, 0.0])
     });
     let [fx, fy] = estimate.force;
-    output.measured_cf = Some(WrenchSample::force(stamp, Frame::FOLLOWER_BASE, [fx, fy, 0.0]));
+    output.measured_cf = Some(WrenchSample::force(
+        stamp,
+        Frame::FOLLOWER_BASE,
+        [fx, fy, 0.0],
+    ));
     let [tangential, normal] = estimate.contact_force;
     output.contact_cf = Some(WrenchSample::force(
         stamp,

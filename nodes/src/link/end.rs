@@ -177,6 +177,10 @@ impl End {
     /// Time since the newest frame \[s\]; NaN before the first.
     pub fn silence(&self, now: Time) -> f64 {
         let silence = self.meter.silence(now.nanos());
-        if silence.is_finite() { silence } else { f64::NAN }
+        if silence.is_finite() {
+            silence
+        } else {
+            f64::NAN
+        }
     }
 }

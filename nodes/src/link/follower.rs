@@ -76,7 +76,11 @@ impl LinkNode for FollowerLinkNode {
 fn contact_force(now: Time, input: &FollowerLinkInput) -> Option<[f64; 3]> {
     let state = input.contact_state.message?;
     let wrench = input.measured_cf.message?;
-    let old = input.measured_cf.silence(now).max(input.contact_state.silence(now)) > ESTIMATE_LIFE;
+    let old = input
+        .measured_cf
+        .silence(now)
+        .max(input.contact_state.silence(now))
+        > ESTIMATE_LIFE;
     if old || state.valid == 0 {
         return None;
     }
@@ -123,9 +127,9 @@ impl Node for FollowerLinkNode {
             .and_then(|sample| OperatingState::from_code(sample.state.0))
             .unwrap_or(OperatingState::Disabled);
         self.end.send(now, state, 0, step.packet, &mut output.frame);
-        output.status =
-            self.end
-                .status(now, self.name, self.law.energy(), self.law.dissipated());
+        output.status = self
+            .end
+            .status(now, self.name, self.law.energy(), self.law.dissipated());
         let health = &mut output.health;
         health.input_age = self.end.silence(now);
         health.refused = self.end.refused(now);

@@ -103,9 +103,9 @@ impl Node for LeaderLinkNode {
             .unwrap_or(OperatingState::Disabled);
         self.end
             .send(now, state, self.arming, step.packet, &mut output.frame);
-        output.status =
-            self.end
-                .status(now, self.name, self.law.energy(), self.law.dissipated());
+        output.status = self
+            .end
+            .status(now, self.name, self.law.energy(), self.law.dissipated());
         let health = &mut output.health;
         health.input_age = self.end.silence(now);
         health.refused = self.end.refused(now);

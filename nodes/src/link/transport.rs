@@ -133,7 +133,7 @@ where
         self.topics.write(now, output) + self.transport.write(now, P::Node::frame(output))
     }
 
-    fn counts(&self) -> SubscriberCounts {
-        self.topics.counts()
+    fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts)) {
+        self.topics.inputs(each);
     }
 }

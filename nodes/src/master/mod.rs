@@ -8,15 +8,15 @@ use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        AuthoritySample, Fault, Frame, Level, OperatingStateSample, PoseSample,
-        StateCommandSample, WrenchSample,
+        AuthoritySample, Fault, Frame, Level, OperatingStateSample, PoseSample, StateCommandSample,
+        WrenchSample,
     },
 };
 use ferntast_sim::hand::Hand;
 
 use crate::{
     node::{Node, NodeHealth, ports},
-    say::{StatePublisher, law_command, say},
+    say::{StatePublisher, law_command},
 };
 
 /// A reflected force older than this \[s\] is not rendered.
@@ -100,7 +100,7 @@ impl MasterNode {
                 _ => Fault::CommandInvalid,
             };
             health.raise(fault, Level::WARN);
-            self.message = say(&refusal);
+            self.message = Text::display(refusal);
         }
     }
 
@@ -124,7 +124,9 @@ impl MasterNode {
         let reason = match (holder, refused) {
             (0, _) => "nobody: the first valid hand takes it",
             (_, 0) => "held by the first valid hand",
-            _ => "another hand was refused; it is free when the holder is silent or the master disabled",
+            _ => {
+                "another hand was refused; it is free when the holder is silent or the master disabled"
+            }
         };
         Some(AuthoritySample {
             reason: Text::new(reason),
@@ -144,7 +146,7 @@ impl Node for MasterNode {
             };
             if let Err(refusal) = self.master.command(command) {
                 output.health.raise(Fault::StateCommandRefused, Level::WARN);
-                self.message = say(&refusal);
+                self.message = Text::display(refusal);
             }
         }
         let dt = self
@@ -186,15 +188,13 @@ impl Node for MasterNode {
         if step.force_limited {
             health.raise(Fault::ForceLimited, Level::OK);
         }
-        if step.state == OperatingState::Enabled && step.hand.is_none() && step.hand_age.is_finite() {
+        if step.state == OperatingState::Enabled && step.hand.is_none() && step.hand_age.is_finite()
+        {
             health.raise(Fault::CommandSilent, Level::WARN);
         }
         let counts = self.master.refusals();
-        health.refused = counts.invalid
-            + counts.time
-            + counts.out_of_range
-            + counts.jump
-            + counts.unauthorised;
+        health.refused =
+            counts.invalid + counts.time + counts.out_of_range + counts.jump + counts.unauthorised;
         health.message = self.message;
     }
 }

@@ -193,7 +193,11 @@ mod tests {
         faulty.raise(Fault::CommandInvalid, Level::WARN);
         let mut reported = 0;
         for step in 0..300_i64 {
-            let health = if step == 150 { faulty } else { NodeHealth::default() };
+            let health = if step == 150 {
+                faulty
+            } else {
+                NodeHealth::default()
+            };
             let now = start.plus_nanos(step * 1_000_000);
             if let Some(sample) = meter.step(now, 0, 0, &health)
                 && sample.faults.has(Fault::CommandInvalid)

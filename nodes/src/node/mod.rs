@@ -2,13 +2,15 @@
 
 mod health;
 mod input;
+mod input_watch;
 mod ports;
 mod runner;
 
 pub use health::{HealthMeter, NodeHealth};
 pub use input::{BATCH, Batch, Newest};
-pub use ports::{Ports, Receiver, Sender, receiver};
+pub use input_watch::InputWatch;
 pub(crate) use ports::ports;
+pub use ports::{Ports, Receiver, Sender, receiver};
 pub use runner::Runner;
 
 use ferntast_msgs::Time;

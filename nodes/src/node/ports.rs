@@ -16,8 +16,8 @@ pub trait Ports {
     /// Publishes `output`; gives the number of messages that could not be sent.
     fn write(&mut self, now: Time, output: &<Self::Node as Node>::Output) -> u64;
 
-    /// Messages that arrived and were refused by the bus.
-    fn counts(&self) -> SubscriberCounts;
+    /// Tells `each` the topic of every input and what became of its messages.
+    fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts));
 }
 
 /// Something that fills a field of an input.
@@ -178,11 +178,9 @@ macro_rules! ports {
                 0 $(+ $crate::node::Sender::send(&mut self.$out_field, now, &output.$out_field))*
             }
 
-            fn counts(&self) -> ferntast_bus::SubscriberCounts {
-                #[allow(unused_mut)]
-                let mut counts = ferntast_bus::SubscriberCounts::default();
-                $($crate::carry::add(&mut counts, self.$in_field.counts());)*
-                counts
+            fn inputs(&self, each: &mut dyn FnMut(&'static str, ferntast_bus::SubscriberCounts)) {
+                $(each(ferntast_msgs::topics::$in_topic.name, self.$in_field.counts());)*
+                let _ = each;
             }
         }
     };

@@ -3,7 +3,7 @@
 use ferntast_bus::{Bus, CreateError, Publisher};
 use ferntast_msgs::{Time, sample::HealthSample, topics};
 
-use super::{HealthMeter, Node, Output, Ports};
+use super::{HealthMeter, InputWatch, Node, Output, Ports};
 
 /// A node that is connected to a bus: one [`Runner::tick`] reads, steps and
 /// publishes. The same runner serves a process of its own and lockstep.
@@ -14,6 +14,7 @@ pub struct Runner<P: Ports> {
     output: <P::Node as Node>::Output,
     meter: HealthMeter,
     diagnostics: Publisher<HealthSample>,
+    watch: InputWatch,
     unsent: u64,
 }
 
@@ -36,6 +37,7 @@ impl<P: Ports> Runner<P> {
             output: Default::default(),
             meter,
             diagnostics: bus.publisher(topics::DIAGNOSTICS)?,
+            watch: InputWatch::default(),
             unsent: 0,
         })
     }
@@ -47,10 +49,9 @@ impl<P: Ports> Runner<P> {
         self.output.clear();
         self.node.step(now, &self.input, &mut self.output);
         self.unsent += self.ports.write(now, &self.output);
-        let counts = self.ports.counts();
         let health = self.output.health();
-        health.refused += counts.refused();
-        health.lost += counts.overflowed + self.unsent;
+        health.lost += self.unsent;
+        self.watch.note(|each| self.ports.inputs(each), health);
         if let Some(sample) = self.meter.step(now, late_nanos, missed, health)
             && self.diagnostics.publish(now, &sample).is_err()
         {

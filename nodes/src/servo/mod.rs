@@ -11,13 +11,14 @@ use ferntast_model::{ArmModel, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, JointFields, JointSample, Level, OperatingStateSample, PoseSample, StateCommandSample,
+        Fault, JointFields, JointSample, Level, OperatingStateSample, PoseSample,
+        StateCommandSample,
     },
 };
 
 use crate::{
     node::{Node, ports},
-    say::{StatePublisher, law_command, say},
+    say::{StatePublisher, law_command},
 };
 
 ports! {
@@ -115,9 +116,9 @@ impl Node for ServoNode {
             fields: JointFields::ALL,
             ..JointSample::zero(now)
         });
-        output.operating_state =
-            self.states
-                .publish(now, law.state, law.reason, law.approaching);
+        output.operating_state = self
+            .states
+            .publish(now, law.state, law.reason, law.approaching);
     }
 }
 
@@ -133,11 +134,11 @@ impl ServoNode {
                 _ => Fault::CommandInvalid,
             };
             health.raise(fault, Level::WARN);
-            self.message = say(refusal);
+            self.message = Text::display(refusal);
         }
         if let Some(refusal) = &law.state_refused {
             health.raise(Fault::StateCommandRefused, Level::WARN);
-            self.message = say(refusal);
+            self.message = Text::display(refusal);
         }
         if law.effort_limited {
             health.raise(Fault::EffortLimited, Level::OK);
@@ -154,7 +155,7 @@ impl ServoNode {
                 operating::Event::Overspeed(_) => (Fault::JointOverspeed, Level::ERROR),
             };
             health.raise(fault, level);
-            self.message = say(&law.reason);
+            self.message = Text::display(law.reason);
         }
         health.message = self.message;
     }

@@ -58,7 +58,10 @@ impl LiveLine {
         if self.on_terminal {
             self.bar.set_position((elapsed * 10.0) as u64);
             self.bar.set_message(text);
-        } else if self.last.is_none_or(|last| now.seconds_since(last) >= QUIET_PERIOD) {
+        } else if self
+            .last
+            .is_none_or(|last| now.seconds_since(last) >= QUIET_PERIOD)
+        {
             self.last = Some(now);
             eprintln!("{text}");
         }

@@ -11,8 +11,8 @@ mod supervisor;
 
 pub use context::{ContextError, PlayOptions, SessionContext};
 pub use monitor::Monitor;
-pub use play::{Played, play};
 pub use place::runtime_folder;
+pub use play::{Played, play};
 pub use run::{SessionError, SessionOptions, run};
 pub use summary::{ContactSummary, LeaderSummary, LinkSummary, StateSummary, Summary};
 pub use supervisor::{EXIT_REFUSED, Supervisor, SupervisorError};

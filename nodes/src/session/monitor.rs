@@ -268,7 +268,9 @@ impl Monitor {
                 let summary = StateSummary {
                     last: view.visited.last().cloned().unwrap_or_default(),
                     visited: view.visited.clone(),
-                    reason: view.last.map_or_else(String::new, |last| last.reason.to_string()),
+                    reason: view
+                        .last
+                        .map_or_else(String::new, |last| last.reason.to_string()),
                 };
                 ((*device).to_owned(), summary)
             })
@@ -287,7 +289,11 @@ impl Monitor {
                     missed: view.missed(),
                     refused: view.last.map_or(0, |health| health.refused),
                     lost: view.last.map_or(0, |health| health.lost),
-                    faults: view.faults.iter().map(|fault| fault.name().to_owned()).collect(),
+                    faults: view
+                        .faults
+                        .iter()
+                        .map(|fault| fault.name().to_owned())
+                        .collect(),
                 };
                 (name.clone(), summary)
             })

@@ -1,9 +1,6 @@
 //! What a session holds on this host: its shared memory and its file.
 
-use std::{
-    fs,
-    path::PathBuf,
-};
+use std::{fs, path::PathBuf};
 
 use ferntast_bus::SharedMemoryBus;
 

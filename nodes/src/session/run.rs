@@ -63,7 +63,9 @@ pub enum SessionError {
         path: PathBuf,
     },
     /// A port is taken by another program.
-    #[error("{what} {endpoint} is taken ({source}): stop what listens there, or choose another with {option}")]
+    #[error(
+        "{what} {endpoint} is taken ({source}): stop what listens there, or choose another with {option}"
+    )]
     PortTaken {
         /// What it is for.
         what: &'static str,
@@ -99,8 +101,13 @@ pub enum SessionError {
 impl SessionError {
     /// Whether the input or the surroundings were refused, before anything moved.
     pub fn is_refusal(&self) -> bool {
-        !matches!(self, SessionError::NotReady { .. } | SessionError::Supervisor(_))
-            || matches!(self, SessionError::Supervisor(SupervisorError::Refused { .. }))
+        !matches!(
+            self,
+            SessionError::NotReady { .. } | SessionError::Supervisor(_)
+        ) || matches!(
+            self,
+            SessionError::Supervisor(SupervisorError::Refused { .. })
+        )
     }
 }
 
@@ -274,13 +281,7 @@ impl Running {
     }
 
     /// Gives the command to arm once every node is alive; notes when it is.
-    fn arm(
-        &mut self,
-        now: Time,
-        monitor: &Monitor,
-        arming: &mut Arming,
-        options: &SessionOptions,
-    ) {
+    fn arm(&mut self, now: Time, monitor: &Monitor, arming: &mut Arming, options: &SessionOptions) {
         let all_alive = self.supervisor.nodes().all(|(node, process, _)| {
             process.is_some()
                 && monitor
@@ -360,7 +361,11 @@ fn check_surroundings(context: &SessionContext) -> Result<(), SessionError> {
         return Err(SessionError::RecordingExists { path: bag.clone() });
     }
     let scenario = &context.loaded.scenario;
-    check_endpoint("the link's endpoint", &scenario.link.endpoint, "--link-endpoint")?;
+    check_endpoint(
+        "the link's endpoint",
+        &scenario.link.endpoint,
+        "--link-endpoint",
+    )?;
     if let Some(endpoint) = scenario.gateway.own_router() {
         check_endpoint("the Zenoh router's endpoint", endpoint, "--router-endpoint")?;
     }

@@ -127,7 +127,11 @@ impl fmt::Display for Summary {
             Some(value) => format!("{value:.digits$}"),
             None => "-".to_owned(),
         };
-        writeln!(f, "scenario {}, {:.1} s armed", self.scenario, self.duration_s)?;
+        writeln!(
+            f,
+            "scenario {}, {:.1} s armed",
+            self.scenario, self.duration_s
+        )?;
         writeln!(
             f,
             "servo     {} Hz, {} deadlines missed",
@@ -155,9 +159,18 @@ impl fmt::Display for Summary {
         )?;
         writeln!(f, "hand      peak force {:.1} N", self.leader.peak_force)?;
         for (device, state) in &self.states {
-            writeln!(f, "{device:9} {} ({})", state.visited.join(" → "), state.reason)?;
+            writeln!(
+                f,
+                "{device:9} {} ({})",
+                state.visited.join(" → "),
+                state.reason
+            )?;
         }
-        for (name, node) in self.nodes.iter().filter(|(_, node)| !node.faults.is_empty()) {
+        for (name, node) in self
+            .nodes
+            .iter()
+            .filter(|(_, node)| !node.faults.is_empty())
+        {
             writeln!(f, "{name:14} {}", node.faults.join("; "))?;
         }
         match (&self.recording, &self.recorder) {

@@ -30,7 +30,9 @@ pub enum SupervisorError {
         source: std::io::Error,
     },
     /// A node died again and again.
-    #[error("node {node} died {times} times within {window} s (last: {status}); see its messages above, or run it alone: ferntast node {node}")]
+    #[error(
+        "node {node} died {times} times within {window} s (last: {status}); see its messages above, or run it alone: ferntast node {node}"
+    )]
     GivenUp {
         /// The node.
         node: NodeName,
