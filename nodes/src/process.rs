@@ -95,8 +95,11 @@ impl Surroundings<'_> {
         )
     }
 
-    /// Runs a 1 kHz loop with real-time priority, if that is to be had.
-    fn run<P: Ports>(&self, node: P::Node, ports: P) -> Result<(), ProcessError> {
+    /// Asks for real-time priority; what stands against it is said, and is a
+    /// standing fault. Threads that are started later inherit the priority: a
+    /// link node asks before it opens the link, so that frames are received
+    /// and stamped no later than the loop runs.
+    fn request_realtime(&self) -> Faults {
         let mut standing = Faults::default();
         if let Err(error) = pace::request_realtime() {
             standing.set(Fault::NoRealtime);
@@ -106,6 +109,11 @@ impl Surroundings<'_> {
                 self.name
             );
         }
+        standing
+    }
+
+    /// Runs a 1 kHz loop.
+    fn run<P: Ports>(&self, standing: Faults, node: P::Node, ports: P) -> Result<(), ProcessError> {
         let meter = self.meter(PERIOD_NANOS, standing);
         let mut runner = Runner::new(&self.bus, node, ports, meter)?;
         pace::run(self.clock, PERIOD_NANOS, self.stop, |now, late, missed| {
@@ -163,20 +171,28 @@ pub fn run(
     let loaded = &context.loaded;
     let scenario = &loaded.scenario;
     let session = session_number(&context.session);
+    let standing = match name {
+        NodeName::Gateway | NodeName::Recorder | NodeName::Player => Faults::default(),
+        _ => around.request_realtime(),
+    };
     match name {
         NodeName::Arm => around.run(
+            standing,
             ArmNode::new(&loaded.arm, scenario.seed)?,
             ArmPorts::connect(bus)?,
         ),
         NodeName::Servo => around.run(
+            standing,
             ServoNode::new(&loaded.arm.model(), &scenario.servo)?,
             ServoPorts::connect(bus)?,
         ),
         NodeName::Estimator => around.run(
+            standing,
             EstimatorNode::new(&loaded.arm.model(), &loaded.arm.estimator)?,
             EstimatorPorts::connect(bus)?,
         ),
         NodeName::Master => around.run(
+            standing,
             MasterNode::new(&scenario.master, loaded.hand()?)?,
             MasterPorts::connect(bus)?,
         ),
@@ -189,6 +205,7 @@ pub fn run(
                 scenario.seed.wrapping_add(2),
             )?;
             around.run(
+                standing,
                 LeaderLinkNode::new(&scenario.law, session),
                 LinkPorts::new(LeaderLinkPorts::connect(bus)?, transport),
             )
@@ -202,6 +219,7 @@ pub fn run(
                 scenario.seed.wrapping_add(1),
             )?;
             around.run(
+                standing,
                 FollowerLinkNode::new(&scenario.law, session),
                 LinkPorts::new(FollowerLinkPorts::connect(bus)?, transport),
             )

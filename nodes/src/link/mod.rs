@@ -1,6 +1,6 @@
 //! The two ends of the link as nodes.
 //!
-//! Motion goes forward, force comes back, in frames of 64 bytes at 500 Hz.
+//! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz.
 //! Frames come in through the channel emulator ([`transport`]), whose way out
 //! is the moment of arrival.
 

@@ -320,7 +320,7 @@ fn presets_are_what_they_say() {
             toml::from_str(text).unwrap_or_else(|error| panic!("{name}: {error}"));
         link.validate().unwrap();
         assert!(!link.description.is_empty(), "{name}");
-        let nominal = link.nominal_round_trip(64);
+        let nominal = link.nominal_round_trip(60);
         assert!((nominal - round_trip).abs() < 1e-9, "{name}: {nominal} s");
         // What comes through it, both ways, is that.
         let count = 20_000;
