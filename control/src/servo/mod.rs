@@ -11,12 +11,15 @@
 //! Refused commands do not feed the watchdog. The first command may be anywhere
 //! in the workspace; the setpoint goes there from where the arm is, at the
 //! approach speed, and never jumps. Commands that arrive while the arm is not
-//! enabled are neither acted on nor remembered.
+//! enabled are neither acted on nor remembered. Time in which the servo itself
+//! was held up does not count as silence of others, if they are heard again
+//! within 5 ms.
 
 mod command;
 mod config;
 mod law;
 mod setpoint;
+mod stall;
 #[cfg(test)]
 mod tests;
 
@@ -25,6 +28,7 @@ pub use config::ServoConfig;
 pub use law::{LimitedTorque, PositionLaw};
 pub use setpoint::{Setpoint, SetpointGenerator, SetpointLimits};
 
+use self::stall::Stall;
 use crate::operating::{Event, OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
 use crate::{nanoseconds, seconds};
 use ferntast_model::arm::ArmParameters;
@@ -115,6 +119,7 @@ pub struct Servo {
     limit_margin: f64,
     overspeed: [f64; JOINTS],
     last_command_ns: Option<i64>,
+    stall: Stall,
     refusals: RefusalCounts,
     accepted: u64,
 }
@@ -174,6 +179,7 @@ impl Servo {
             overspeed: [0, 1]
                 .map(|index: usize| config.overspeed_share * joints[index].velocity_limit),
             last_command_ns: None,
+            stall: Stall::default(),
             refusals: RefusalCounts::default(),
             accepted: 0,
         })
@@ -186,7 +192,8 @@ impl Servo {
 
     /// One period at `now_ns` \[ns since the UNIX epoch\].
     pub fn step(&mut self, now_ns: i64, input: &ServoInput) -> ServoOutput {
-        let measurement = self.usable(now_ns, input.measurement.as_ref());
+        let stalled_ns = self.stall.step(now_ns);
+        let measurement = self.usable(now_ns - stalled_ns, input.measurement.as_ref());
         let was = self.machine.state();
         let state_refused = input
             .state_command
@@ -205,7 +212,7 @@ impl Servo {
         let refused = input
             .command
             .and_then(|command| self.take(&command, now_ns).err());
-        self.watch(now_ns);
+        self.watch(now_ns - stalled_ns);
         if was == OperatingState::Enabled
             && self.state() == OperatingState::Paused
             && let Ok(measured) = &measurement

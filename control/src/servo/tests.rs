@@ -281,6 +281,28 @@ fn silence_pauses_within_30_ms_and_latches() {
 }
 
 #[test]
+fn what_is_silent_only_while_the_servo_was_held_up_is_not_silent() {
+    // All processes held up for 40 ms, then the commands come again …
+    let mut bench = Bench::new([-0.6, 1.2]);
+    bench.approach(0.38, 0.05);
+    let held_up = 40 * MS;
+    bench.now += held_up;
+    for step in 0..200 {
+        // … the first of them only after two milliseconds.
+        let command = (step >= 2).then(|| bench.tip_command(0.38, 0.05));
+        let output = bench.step(command, None);
+        assert_eq!(output.state, OperatingState::Enabled, "step {step}");
+    }
+    // Without commands afterwards it is the commands that are silent.
+    bench.now += held_up;
+    let again = bench.now;
+    while bench.step(None, None).state == OperatingState::Enabled {
+        assert!(bench.now - again <= 10 * MS);
+    }
+    assert!(bench.now - again >= 5 * MS);
+}
+
+#[test]
 fn enabled_without_a_command_holds_and_is_not_silent() {
     let mut bench = Bench::new([-0.6, 1.2]);
     bench.step(None, Some(StateCommand::Enable));

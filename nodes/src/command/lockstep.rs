@@ -27,7 +27,7 @@ pub struct Arguments {
     scenario: ScenarioOptions,
 
     /// Virtual time to run (else that of the scenario) [s].
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
 
     /// Record into this folder (a rosbag2 directory; must not exist yet).

@@ -55,7 +55,7 @@ enum Command {
     Play(play::Arguments),
     /// Look into recordings, mend them.
     Bag(bag::Arguments),
-    /// Give a state command: enable, disable, pause, resume (re-arm).
+    /// Tell the operating state, or change it: enable, disable, pause, resume (re-arm).
     State(state::Arguments),
     /// Say what this machine offers and lacks, and how to mend it.
     Doctor(doctor::Arguments),

@@ -2,6 +2,8 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
+use ferntast_bus::SharedMemoryBus;
+
 use super::{Failure, scenario_options::ScenarioOptions};
 use crate::{
     node_name::NodeName,
@@ -63,13 +65,17 @@ pub fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
             arguments.node, context.session
         );
     }
-    process::run(arguments.node, &context, arguments.generation, &stop)
-        .map(|()| ExitCode::SUCCESS)
-        .map_err(|error| {
-            let text = format!("node {}: {error}", arguments.node);
-            match error {
-                ProcessError::Broken(_) => Failure::failed(text),
-                _ => Failure::refused(text),
-            }
-        })
+    let result = process::run(arguments.node, &context, arguments.generation, &stop);
+    if !supervised {
+        // The last process of the session frees its shared memory; while
+        // others live this is refused.
+        let _ = SharedMemoryBus::clean_up(&context.session);
+    }
+    result.map(|()| ExitCode::SUCCESS).map_err(|error| {
+        let text = format!("node {}: {error}", arguments.node);
+        match error {
+            ProcessError::Broken(_) => Failure::failed(text),
+            _ => Failure::refused(text),
+        }
+    })
 }

@@ -23,7 +23,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let result = replay::run(&arguments.recording, &mut |share| {
         bar.set_position((share * 100.0) as u64);
     })
-    .map_err(Failure::refused)?;
+    .map_err(|error| Failure::refused(format!("{}: {error}", arguments.recording.display())))?;
     bar.finish_and_clear();
     if json {
         print_json(&result)?;

@@ -20,7 +20,7 @@ pub struct ScenarioOptions {
     pub link: Option<String>,
 
     /// Constant round-trip time of the channel instead of the one in the link's file [ms].
-    #[arg(long, value_name = "MS")]
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     pub rtt: Option<f64>,
 
     /// Whose hand: scripted, crtk (a CRTK client on ROS 2), or a CSV file with recorded motion

@@ -21,7 +21,7 @@ pub struct Arguments {
     scenario: ScenarioOptions,
 
     /// End after that many seconds in which the arm was armed (else at Ctrl-C).
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
 
     /// Record into this folder (a rosbag2 directory; must not exist yet).

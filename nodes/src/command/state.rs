@@ -4,17 +4,20 @@ use std::{process::ExitCode, thread, time::Duration};
 
 use clap::ValueEnum;
 use ferntast_bus::{Bus, Depth, SharedMemoryBus, SharedMemoryConfig};
-use ferntast_msgs::sample::{OperatingState, StateCommand, StateCommandSample};
+use ferntast_msgs::sample::{
+    OperatingState, OperatingStateSample, StateCommand, StateCommandSample,
+};
 use ferntast_msgs::topics::{self, Topic};
 use serde_json::json;
 
 use super::{Failure, output::print_json};
 use crate::clock::Clock;
 
-/// Give a state command to a running session.
+/// Tell the operating state of a running session, or change it.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "After a hold (the master or the link fell silent) the arm stays where it is until it is re-armed:\n  \
+    ferntast state follower          # tells the state\n  \
     ferntast state follower resume"
 )]
 pub struct Arguments {
@@ -22,9 +25,9 @@ pub struct Arguments {
     #[arg(value_enum)]
     device: Device,
 
-    /// What to do.
+    /// What to do; without it the state is only told.
     #[arg(value_enum)]
-    command: Word,
+    command: Option<Word>,
 
     /// Name of the session.
     #[arg(long, default_value = "default", value_name = "NAME")]
@@ -69,13 +72,18 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         ),
         Device::Leader => (topics::LEADER_STATE_COMMAND, topics::LEADER_OPERATING_STATE),
     };
-    let (command, wanted) = match arguments.command {
+    let wish = arguments.command.map(|word| match word {
         Word::Enable => (StateCommand::ENABLE, OperatingState::ENABLED),
         Word::Disable => (StateCommand::DISABLE, OperatingState::DISABLED),
         Word::Pause => (StateCommand::PAUSE, OperatingState::PAUSED),
         Word::Resume => (StateCommand::RESUME, OperatingState::ENABLED),
-    };
-    let state = give(&bus, command_topic, state_topic, command, wanted)?;
+    });
+    let state = ask(&bus, command_topic, state_topic, wish);
+    drop(bus);
+    // Where no session runs, this process is the only one that was in its
+    // shared memory; where one runs, this is refused.
+    let _ = SharedMemoryBus::clean_up(&arguments.session);
+    let state = state?;
     let Some((state, reason)) = state else {
         return Err(Failure::failed(format!(
             "nobody answered in session {:?}: is it running? (ferntast session, or --session NAME)",
@@ -88,7 +96,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     } else {
         println!("{name}: {reason}");
     }
-    if state == wanted {
+    if wish.is_none_or(|(_, wanted)| state == wanted) {
         Ok(ExitCode::SUCCESS)
     } else {
         Err(Failure::failed(format!(
@@ -97,34 +105,38 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     }
 }
 
-fn give(
+/// Gives the command, if there is one, and waits for the state that it leads
+/// to, at most for [`PATIENCE`]. Gives the last state that was heard of, if any.
+fn ask(
     bus: &Bus,
     command_topic: Topic<StateCommandSample>,
-    state_topic: Topic<ferntast_msgs::sample::OperatingStateSample>,
-    command: StateCommand,
-    wanted: OperatingState,
+    state_topic: Topic<OperatingStateSample>,
+    wish: Option<(StateCommand, OperatingState)>,
 ) -> Result<Option<(OperatingState, String)>, Failure> {
     let clock = Clock::start();
     let mut publisher = bus.publisher(command_topic).map_err(Failure::failed)?;
     let mut states = bus
         .subscriber(state_topic, Depth::Newest)
         .map_err(Failure::failed)?;
-    // The reader of the command has to find this publisher first.
-    thread::sleep(Duration::from_millis(50));
+    if let Some((command, _)) = wish {
+        // The reader of the command has to find this publisher first.
+        thread::sleep(Duration::from_millis(50));
+        let now = clock.now();
+        publisher
+            .publish(now, &StateCommandSample::new(now, command))
+            .map_err(Failure::failed)?;
+    }
     let begun = clock.now();
-    let sample = StateCommandSample {
-        stamp: begun,
-        command,
-        reserved: [0; 7],
-    };
-    publisher.publish(begun, &sample).map_err(Failure::failed)?;
     let mut last = None;
     while clock.now().seconds_since(begun) < PATIENCE.as_secs_f64() {
         if let Some(received) = states.newest(clock.now()) {
             let message = received.message;
             last = Some((message.state, message.reason.to_string()));
-            if message.state == wanted && clock.now().seconds_since(begun) > 0.02 {
-                break;
+            let after = clock.now().seconds_since(begun) > 0.02;
+            match wish {
+                Some((_, wanted)) if message.state == wanted && after => break,
+                None => break,
+                _ => {}
             }
         }
         thread::sleep(Duration::from_millis(5));

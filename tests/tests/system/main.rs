@@ -1,0 +1,13 @@
+//! The whole system: sessions with all their processes, against real peers.
+
+mod crashes;
+mod delay;
+mod lockstep;
+mod masters;
+mod playback;
+mod refusals;
+mod ros;
+mod session;
+mod support;
+mod watchdog;
+mod zenoh;

@@ -1,0 +1,107 @@
+//! A peer over rmw_zenoh's protocol that matches on type hashes does what rclpy does.
+
+use ferntast_tests::{Process, Session, data};
+
+use crate::support::{PATIENCE, await_enabled, number, recording, run, start};
+
+const MIDDLEWARE: [&str; 2] = ["--middleware", "zenoh"];
+
+fn peer(session: &Session, arguments: &[&str]) -> Process {
+    let router = session.router_endpoint();
+    let arguments = [&["--router", router.as_str()], arguments].concat();
+    Process::spawn(session.peer("zenoh_peer.py", &arguments))
+}
+
+#[test]
+fn it_lists_every_topic_with_its_true_hash() {
+    let session = Session::new();
+    let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
+    await_enabled(&session, &mut process);
+    let listed = peer(&session, &["list"]).wait(PATIENCE).success().json();
+    let interfaces = run(&session, &["interfaces", "--json"]).success().json();
+    for topic in interfaces["topics"].as_array().expect("topics") {
+        let name = topic["name"].as_str().expect("name");
+        let hash = interfaces["interfaces"]
+            .as_array()
+            .expect("interfaces")
+            .iter()
+            .find(|interface| interface["name"] == topic["type"])
+            .map(|interface| &interface["hash"]);
+        let seen = &listed["topics"][name];
+        let ends: Vec<_> = [&seen["publishers"], &seen["subscriptions"]]
+            .iter()
+            .flat_map(|ends| ends.as_array().into_iter().flatten())
+            .collect();
+        assert!(!ends.is_empty(), "{name} is not there");
+        for end in ends {
+            assert_eq!(end["type"], topic["type"], "{name}");
+            assert_eq!(Some(&end["type_hash"]), hash, "{name}");
+        }
+    }
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn it_receives_the_joint_states_at_their_rate() {
+    let session = Session::new();
+    let mut process = start(&session, &MIDDLEWARE);
+    await_enabled(&session, &mut process);
+    let arguments = [
+        "count",
+        "/follower/measured_js",
+        "sensor_msgs/msg/JointState",
+        "--seconds",
+        "6",
+        "--from-first",
+    ];
+    let counted = peer(&session, &arguments).wait(PATIENCE).success().json();
+    process.interrupt();
+    process.wait(PATIENCE).success();
+    let rate = number(&counted, "stamp_rate_hz");
+    assert!((0.95 * 250.0..=1.01 * 250.0).contains(&rate), "{counted:#}");
+    assert!(
+        number(&counted, "received") > 0.95 * 6.0 * 250.0,
+        "{counted:#}"
+    );
+    assert_eq!(counted["broken"], serde_json::json!([]));
+    // It subscribed by its own hash; the key that it got carries the same.
+    let key = counted["keys"][0].as_str().expect("a key");
+    let hash = counted["type_hash"].as_str().expect("a hash");
+    assert!(key.ends_with(hash), "{key}");
+    assert!(key.starts_with(&format!("{}/follower/measured_js/", session.domain())));
+}
+
+#[test]
+fn it_drives_the_arm_and_feels_the_contour() {
+    let session = Session::new();
+    let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
+    await_enabled(&session, &mut process);
+    let file = data().join("hand/hand_2.csv");
+    let file = file.to_str().expect("a path in UTF-8");
+    let arguments = ["operator", "--hand", file, "--duration", "15"];
+    let sent = peer(&session, &arguments).wait(PATIENCE).success().json();
+    process.interrupt();
+    let summary = process.wait(PATIENCE).success().json();
+    assert!(number(&sent["force"], "rate_hz") > 400.0, "{sent:#}");
+    assert_eq!(number(&sent["force"], "not_finite"), 0.0);
+    assert!(number(&sent["force"], "nonzero") > 50.0, "{sent:#}");
+    assert!(
+        number(&summary, "contact.peak_normal_force_N") > 5.0,
+        "{summary:#}"
+    );
+    assert!(recording(&session).is_dir());
+}
+
+#[test]
+fn its_state_commands_are_obeyed() {
+    let session = Session::new();
+    let mut process = start(&session, &MIDDLEWARE);
+    await_enabled(&session, &mut process);
+    let arguments = ["command", "/follower/state_command", "pause"];
+    let told = peer(&session, &arguments).wait(PATIENCE).success().json();
+    assert_eq!(told["heard"], true);
+    process.await_stderr("follower PAUSED", PATIENCE);
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
