@@ -62,7 +62,7 @@ impl Default for ServoConfig {
         ServoConfig {
             period: 1e-3,
             command_watchdog: 0.025,
-            measurement_watchdog: 0.010,
+            measurement_watchdog: 0.020,
             command_age: 0.020,
             workspace_lower: [-0.5, -0.5],
             workspace_upper: [0.5, 0.5],

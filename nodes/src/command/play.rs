@@ -15,7 +15,12 @@ pub struct Arguments {
     recording: PathBuf,
 
     /// Speed relative to the recording.
-    #[arg(long, default_value_t = 1.0, value_name = "FACTOR", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        value_name = "FACTOR",
+        allow_negative_numbers = true
+    )]
     rate: f64,
 
     /// Begin again at the end, until Ctrl-C.

@@ -227,12 +227,14 @@ struct Arming {
 }
 
 impl Arming {
-    fn enable(&mut self, now: Time) {
-        let command = StateCommandSample {
-            stamp: now,
-            command: StateCommand::ENABLE,
-            reserved: [0; 7],
+    /// Enables both devices. A fault, as from the moments in which the nodes
+    /// were being started, is left by `disable` first.
+    fn enable(&mut self, now: Time, fault: bool) {
+        let command = match fault {
+            true => StateCommand::DISABLE,
+            false => StateCommand::ENABLE,
         };
+        let command = StateCommandSample::new(now, command);
         // If a command is not sent the arm is not armed, which is noticed.
         let _ = self.follower.publish(now, &command);
         let _ = self.leader.publish(now, &command);
@@ -296,18 +298,17 @@ impl Running {
             self.armed_at = Some(now);
             return;
         }
-        let armed = monitor
-            .operating
-            .get("follower")
-            .is_some_and(|view| view.is(OperatingState::ENABLED));
+        let follower = monitor.operating.get("follower");
+        let is = |state| follower.is_some_and(|view| view.is(state));
+        let armed = is(OperatingState::ENABLED);
         if armed {
             self.armed_at = Some(now);
         } else if self
             .commanded_at
-            .is_none_or(|commanded| now.seconds_since(commanded) > 0.5)
+            .is_none_or(|commanded| now.seconds_since(commanded) > 0.25)
         {
             self.commanded_at = Some(now);
-            arming.enable(now);
+            arming.enable(now, is(OperatingState::FAULT));
         }
     }
 

@@ -9,7 +9,7 @@ mod table;
 use std::path::PathBuf;
 
 /// The crates that must not reach a clock, a file, a socket, a thread or the middleware.
-const PURE: [&str; 4] = ["model", "control", "msgs", "sim"];
+const PURE: [&str; 5] = ["model", "control", "identification", "msgs", "sim"];
 
 /// The folder of a crate of the workspace.
 fn folder(name: &str) -> PathBuf {

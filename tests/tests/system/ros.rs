@@ -85,13 +85,16 @@ fn drives_the_arm(hand: &str) {
     let file = file.to_str().expect("a path in UTF-8");
     let mut operator = Process::spawn(session.peer("ros_operator.py", &["--hand", file]));
     operator.await_stderr("ready", PATIENCE);
-    // Python on a busy machine may itself be silent for 30 ms; that is a hold,
-    // as it should be, and the operator re-arms.
+    // On a busy machine Python may itself be silent for 30 ms, or the arm for
+    // 20 ms. That is a hold, or a fault, as it should be, and is left again.
     while operator.is_running() {
         thread::sleep(Duration::from_millis(500));
         let told = state_of_follower(&session);
-        if told == "PAUSED" && operator.is_running() {
-            state(&session, "follower", "resume");
+        match told.as_str() {
+            "PAUSED" => drop(state(&session, "follower", "resume")),
+            "FAULT" => drop(state(&session, "follower", "disable")),
+            "DISABLED" => drop(state(&session, "follower", "enable")),
+            _ => {}
         }
     }
     let sent = operator.wait(PATIENCE).success().json();

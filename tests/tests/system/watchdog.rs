@@ -53,10 +53,6 @@ fn falls_silent(silent: &str, device: &str) {
     let path = recording(&session);
     let states = messages(&path, topics::FOLLOWER_OPERATING_STATE);
     let paused = first(&states, OperatingState::PAUSED);
-    assert!(
-        paused.message.reason.as_str().contains("silent"),
-        "{paused:?}"
-    );
     let commands = messages(&path, topics::FOLLOWER_SERVO_CP);
     let last = commands
         .iter()
