@@ -3,5 +3,6 @@
 pub mod arm;
 pub mod channel;
 pub mod hand;
+pub mod joint_bench;
 pub mod lockstep;
 mod random;

@@ -3,6 +3,7 @@
 mod bag;
 mod doctor;
 mod interfaces;
+mod lab;
 mod lockstep;
 mod node;
 mod output;
@@ -53,6 +54,8 @@ enum Command {
     Replay(replay::Arguments),
     /// Put a recording back on the topics.
     Play(play::Arguments),
+    /// Hold a model against a recording, find the missing effect, add it.
+    Lab(lab::Arguments),
     /// Look into recordings, mend them.
     Bag(bag::Arguments),
     /// Tell the operating state, or change it: enable, disable, pause, resume (re-arm).
@@ -63,17 +66,34 @@ enum Command {
     Interfaces(interfaces::Arguments),
 }
 
+impl Command {
+    /// Whether it holds processes or a recording, so that nobody who stops
+    /// reading its output may end it.
+    fn keeps_running(&self) -> bool {
+        use Command::{Lockstep, Node, Play, Session};
+        matches!(self, Session(_) | Node(_) | Play(_) | Lockstep(_))
+    }
+}
+
 /// Runs the command line; gives the process's exit code: 0 when all is well,
 /// 2 when the input was refused, 1 when something failed on the way.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let json = arguments.json;
+    if !arguments.command.keeps_running() {
+        // `ferntast … | head` ends as other programs do, without a word.
+        // SAFETY: no handler is involved; no other thread runs yet.
+        unsafe {
+            libc::signal(libc::SIGPIPE, libc::SIG_DFL);
+        }
+    }
     let result = match arguments.command {
         Command::Session(arguments) => session::run(arguments, json),
         Command::Node(arguments) => node::run(arguments),
         Command::Lockstep(arguments) => lockstep::run(arguments, json),
         Command::Replay(arguments) => replay::run(arguments, json),
         Command::Play(arguments) => play::run(arguments, json),
+        Command::Lab(arguments) => lab::run(arguments, json),
         Command::Bag(arguments) => bag::run(arguments, json),
         Command::State(arguments) => state::run(arguments, json),
         Command::Doctor(arguments) => doctor::run(arguments, json),

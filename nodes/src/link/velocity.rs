@@ -20,13 +20,13 @@ impl VelocityFilter {
     pub fn step(&mut self, pose: &PoseSample) -> Motion {
         if let Some((stamp, position)) = self.last {
             let dt = pose.stamp.seconds_since(stamp);
-            if dt > LONGEST_GAP || dt < 0.0 {
+            if !(0.0..=LONGEST_GAP).contains(&dt) {
                 self.velocity = [0.0; 3];
             } else if dt > 0.0 {
                 let share = dt / (dt + TIME_CONSTANT);
-                for axis in 0..3 {
-                    let quotient = (pose.position[axis] - position[axis]) / dt;
-                    self.velocity[axis] += share * (quotient - self.velocity[axis]);
+                let axes = self.velocity.iter_mut().zip(pose.position).zip(position);
+                for ((velocity, now), before) in axes {
+                    *velocity += share * ((now - before) / dt - *velocity);
                 }
             }
         }

@@ -102,10 +102,10 @@ fn drives_the_arm(hand: &str) {
     let summary = process.wait(PATIENCE).success().json();
 
     assert_eq!(sent["interrupted"], false);
-    assert!(number(&sent, "rate_hz") > 400.0, "{sent:#}");
+    assert!(number(&sent, "rate_hz") > 150.0, "{sent:#}");
     let force = &sent["force"];
     assert_eq!(number(force, "not_finite"), 0.0);
-    assert!(number(force, "rate_hz") > 400.0, "{force:#}");
+    assert!(number(force, "rate_hz") > 300.0, "{force:#}");
     // Every one of the three recordings reaches the contour.
     assert!(number(force, "peak_force_N") > 0.5, "{force:#}");
     assert!(number(force, "nonzero") > 50.0, "{force:#}");

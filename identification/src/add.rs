@@ -1,0 +1,68 @@
+//! Adds an effect to the model.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::data::{Dataset, Inertia, ModelSpec, Term};
+use crate::design::Design;
+use crate::error::PrepareError;
+use crate::fit::{Parameter, fit};
+use crate::setup::Setup;
+
+/// What the addition did.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Addition {
+    /// Id or name of the effect.
+    pub effect: String,
+    /// RMS on rows left out, before \[Nm\].
+    pub held_out_before: f64,
+    /// After \[Nm\].
+    pub held_out_after: f64,
+    /// RMS on the rows fitted, before \[Nm\].
+    pub train_before: f64,
+    /// After \[Nm\].
+    pub train_after: f64,
+    /// All parameters of the new model.
+    pub parameters: BTreeMap<String, Parameter>,
+    /// Parameters that the data do not excite.
+    pub not_excited: Vec<String>,
+    /// The new model.
+    pub model: ModelSpec,
+}
+
+/// Fits the model without and with one more effect.
+///
+/// `inertia` turns a given inertia into a fitted one: a correction to it is
+/// the same thing.
+///
+/// # Errors
+///
+/// See [`PrepareError`].
+pub fn add(dataset: &Dataset, spec: &ModelSpec, effect: &Term) -> Result<Addition, PrepareError> {
+    let mut model = spec.clone();
+    match effect {
+        Term::Catalogue(id) if id == "inertia" => {
+            if spec.inertia == Inertia::Fit {
+                return Err(PrepareError::Twice(id.clone()));
+            }
+            // A correction to a given inertia is an inertia that is fitted.
+            model.inertia = Inertia::Fit;
+        }
+        _ => model.effects.push(effect.clone()),
+    }
+    let before = Setup::new(dataset, spec)?;
+    let before = fit(&before, &Design::new(&before));
+    let setup = Setup::new(dataset, &model)?;
+    let after = fit(&setup, &Design::new(&setup));
+    Ok(Addition {
+        effect: effect.name().to_owned(),
+        held_out_before: before.held_out,
+        held_out_after: after.held_out,
+        train_before: before.train,
+        train_after: after.train,
+        parameters: after.parameters,
+        not_excited: after.not_excited,
+        model,
+    })
+}

@@ -1,0 +1,160 @@
+//! Every effect that the model lacks, tried on the same rows.
+
+use crate::design::{BlockGrams, Design};
+use crate::effects::{self, EffectHandle};
+use crate::periodic;
+use crate::refine;
+use crate::setup::Setup;
+use crate::validation::{Score, between, left_out, trend, within};
+
+/// One effect at its best shape.
+#[derive(Clone)]
+pub struct Candidate {
+    /// The effect.
+    pub effect: EffectHandle,
+    /// Its best shape.
+    pub shape: Vec<f64>,
+    /// What it explains.
+    pub score: Score,
+    /// Mean square left out, everything shared, with it \[Nm²\].
+    pub left_out: f64,
+    /// Whether sign and size of its coefficients make sense.
+    pub plausible: bool,
+}
+
+impl Candidate {
+    /// Its id.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        &self.effect.description().id
+    }
+}
+
+/// Candidates, best first, and how many variants were tried.
+pub struct Trial {
+    /// One for each effect.
+    pub candidates: Vec<Candidate>,
+    /// Shapes tried in all, for the correction of p-values.
+    pub variants: usize,
+    /// Of these, such as show between sessions.
+    pub variants_between: usize,
+}
+
+/// Effects that the model may lack: those that it has not, and that are not a
+/// part of one it has.
+#[must_use]
+pub fn missing(setup: &Setup) -> Vec<EffectHandle> {
+    let contained: [(&str, &[&str]); 5] = [
+        ("nonlinear_viscous", &["quadratic_viscous", "cubic_viscous"]),
+        (
+            "cable_spring",
+            &["asymmetric_coulomb", "torque_sensor_offset"],
+        ),
+        ("gravity", &[]),
+        ("asymmetric_coulomb", &["torque_sensor_offset"]),
+        ("torque_sensor_offset", &["asymmetric_coulomb"]),
+    ];
+    effects::all()
+        .into_iter()
+        .filter(|effect| {
+            let id = effect.description().id.as_str();
+            let part = contained
+                .iter()
+                .any(|(whole, parts)| setup.has(whole) && parts.contains(&id));
+            let parts_there = id == "nonlinear_viscous"
+                && (setup.has("quadratic_viscous") || setup.has("cubic_viscous"));
+            !setup.has(id) && !part && !parts_there && effect.unavailable(&setup.facts).is_none()
+        })
+        .collect()
+}
+
+/// Place of the first column of the model's effect `id`.
+fn first_column(setup: &Setup, id: &str) -> Option<usize> {
+    let mut at = 0;
+    for term in &setup.terms {
+        if term.effect.description().id == id {
+            return Some(at);
+        }
+        at += term.effect.columns();
+    }
+    None
+}
+
+/// Scores one effect at one shape.
+#[must_use]
+pub fn score(
+    setup: &Setup,
+    design: &Design,
+    effect: &EffectHandle,
+    shape: &[f64],
+) -> (Score, BlockGrams) {
+    let grams = design.with(&design.extra_columns(setup, effect, shape));
+    let score = if effect.between_sessions() && setup.facts.sessions >= 3 {
+        let mut score = between(design, &grams);
+        // What a session does to a coefficient is one number a session. Either
+        // test may be the sharper one; the price of two is a factor of two.
+        let varied = effect.varies().and_then(|id| first_column(setup, id));
+        if let Some(p) = varied.and_then(|column| trend(design, &grams, column)) {
+            score.p_value = (2.0 * score.p_value.min(p)).min(1.0);
+        }
+        score
+    } else {
+        within(design, &grams)
+    };
+    (score, grams)
+}
+
+/// Tries everything.
+#[must_use]
+pub fn try_all(setup: &Setup, design: &Design, progress: &mut dyn FnMut(f64)) -> Trial {
+    let effects = missing(setup);
+    let mut trial = Trial {
+        candidates: Vec::new(),
+        variants: 0,
+        variants_between: 0,
+    };
+    let count = effects.len().max(1) as f64;
+    for (done, effect) in effects.iter().enumerate() {
+        let mut shapes = refine::grid(setup, effect);
+        let mut searched = 0;
+        if effect.description().id == "ripple" {
+            shapes.extend(
+                periodic::peaks(setup, design, 3)
+                    .into_iter()
+                    .map(|k| vec![k]),
+            );
+            searched = periodic::tried(setup);
+        }
+        if effect.between_sessions() {
+            trial.variants_between += shapes.len();
+        } else {
+            trial.variants += shapes.len() + searched;
+        }
+        let best = shapes
+            .into_iter()
+            .map(|shape| (refine::error_of(setup, design, effect, &shape), shape))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        progress((done as f64 + 0.6) / count);
+        let Some((error, shape)) = best else { continue };
+        // A shape is polished only where the grid found something.
+        let shape = if error.is_finite() {
+            refine::polish(setup, design, effect, &shape)
+        } else {
+            shape
+        };
+        let (score, grams) = score(setup, design, effect, &shape);
+        let plausible = effect.plausible(&shape, &score.coefficients);
+        trial.candidates.push(Candidate {
+            effect: effect.clone(),
+            left_out: left_out(design, &grams),
+            shape,
+            score,
+            plausible,
+        });
+        progress((done as f64 + 1.0) / count);
+    }
+    trial
+        .candidates
+        .sort_by(|a, b| b.score.gain.total_cmp(&a.score.gain));
+    trial
+}

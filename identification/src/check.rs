@@ -1,0 +1,114 @@
+//! Refuses recordings and models that make no sense, before anything is computed.
+
+use crate::data::{Dataset, Inertia, ModelSpec, Session};
+use crate::error::PrepareError;
+
+/// Samples of a session at least.
+pub const FEWEST_SAMPLES: usize = 100;
+
+/// Checks recordings and the model's numbers.
+///
+/// # Errors
+///
+/// The first thing that is wrong.
+pub fn check(dataset: &Dataset, spec: &ModelSpec) -> Result<(), PrepareError> {
+    if dataset.sessions.is_empty() {
+        return Err(PrepareError::NoSession);
+    }
+    for session in dataset.sessions.iter().chain(&dataset.held_out) {
+        check_session(session)?;
+    }
+    let sessions: Vec<&Session> = dataset.sessions.iter().chain(&dataset.held_out).collect();
+    mixed(&sessions, "joint_torque", |s| s.joint_torque.is_some())?;
+    mixed(&sessions, "temperature", |s| s.temperature.is_some())?;
+    if let Some(first) = sessions.first() {
+        for session in &sessions {
+            for name in session.extra.keys().chain(first.extra.keys()) {
+                mixed(&sessions, name, |s| s.extra.contains_key(name))?;
+            }
+        }
+    }
+    if dataset.sessions.iter().all(|s| constant(&s.position)) {
+        return Err(PrepareError::ConstantPosition);
+    }
+    if dataset.sessions.iter().all(|s| constant(&s.motor_torque)) {
+        return Err(PrepareError::ConstantMotorTorque);
+    }
+    if let Inertia::Given(inertia) = spec.inertia
+        && !(inertia.is_finite() && inertia >= 0.0)
+    {
+        return Err(PrepareError::Inertia(inertia));
+    }
+    if let Some(ratio) = spec.gear_ratio
+        && !(ratio.is_finite() && ratio > 0.0)
+    {
+        return Err(PrepareError::GearRatio(ratio));
+    }
+    Ok(())
+}
+
+fn constant(signal: &[f64]) -> bool {
+    signal.windows(2).all(|w| w[0] == w[1])
+}
+
+fn mixed(
+    sessions: &[&Session],
+    channel: &str,
+    has: impl Fn(&Session) -> bool,
+) -> Result<(), PrepareError> {
+    let with = sessions.iter().filter(|s| has(s)).count();
+    if with == 0 || with == sessions.len() {
+        return Ok(());
+    }
+    Err(PrepareError::Mixed {
+        channel: channel.to_owned(),
+        with,
+        all: sessions.len(),
+    })
+}
+
+fn check_session(session: &Session) -> Result<(), PrepareError> {
+    let name = || session.name.clone();
+    if !(session.period.is_finite() && session.period > 0.0) {
+        return Err(PrepareError::Period {
+            session: name(),
+            period: session.period,
+        });
+    }
+    if session.len() < FEWEST_SAMPLES {
+        return Err(PrepareError::TooFewSamples {
+            session: name(),
+            samples: session.len(),
+            needed: FEWEST_SAMPLES,
+        });
+    }
+    let channels = [
+        ("position", Some(&session.position)),
+        ("motor_torque", Some(&session.motor_torque)),
+    ]
+    .into_iter()
+    .chain([
+        ("joint_torque", session.joint_torque.as_ref()),
+        ("temperature", session.temperature.as_ref()),
+    ])
+    .filter_map(|(n, c)| c.map(|c| (n, c)))
+    .chain(session.extra.iter().map(|(n, c)| (n.as_str(), c)));
+    for (channel, signal) in channels {
+        if signal.len() != session.len() {
+            return Err(PrepareError::Length {
+                session: name(),
+                channel: channel.to_owned(),
+                samples: signal.len(),
+                expected: session.len(),
+            });
+        }
+        if let Some(sample) = signal.iter().position(|x| !x.is_finite()) {
+            return Err(PrepareError::NotFinite {
+                session: name(),
+                channel: channel.to_owned(),
+                sample,
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,123 @@
+//! What the engine is given: recordings cut into sessions, and the model that is believed.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// One session: channels sampled together at a uniform period, no gap inside.
+///
+/// All channels are as long as `position`. Joint quantities are on the joint
+/// side of the gear. For a prismatic joint read m for rad and N for Nm.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Session {
+    /// Where it is from, for people: "stribeck-0.mcap, session 3".
+    pub name: String,
+    /// Start \[s\] since the first session's start; days between sessions are kept.
+    pub start: f64,
+    /// Sampling period \[s\].
+    pub period: f64,
+    /// q \[rad\].
+    pub position: Vec<f64>,
+    /// τ_m \[Nm\].
+    pub motor_torque: Vec<f64>,
+    /// τ \[Nm\], what the joint torque sensor feels; `None` where there is no sensor.
+    pub joint_torque: Option<Vec<f64>>,
+    /// Temperature \[degC\].
+    pub temperature: Option<Vec<f64>>,
+    /// Anything else by name: searched for dependence, usable in expressions.
+    pub extra: BTreeMap<String, Vec<f64>>,
+}
+
+/// Kind of joint: it decides the units in which results are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointType {
+    /// rad, Nm, kg m².
+    #[default]
+    Revolute,
+    /// m, N, kg.
+    Prismatic,
+}
+
+/// The recordings of one joint.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Dataset {
+    /// What models are fitted to.
+    pub sessions: Vec<Session>,
+    /// Never fitted, only predicted; may be empty: then sessions, or blocks of
+    /// time of a single session, are left out in turn.
+    pub held_out: Vec<Session>,
+    /// Kind of joint.
+    pub joint: JointType,
+}
+
+/// Inertia J in τ_m = J q̈ + τ + τ_F.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Inertia {
+    /// Known \[kg m²\].
+    Given(f64),
+    /// A parameter like any other, reported as `inertia`.
+    Fit,
+}
+
+/// The model that is believed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelSpec {
+    /// J.
+    pub inertia: Inertia,
+    /// Motor turns in one turn of the joint; for a prismatic joint, in one turn of the screw \[1\].
+    pub gear_ratio: Option<f64>,
+    /// Effects it has.
+    pub effects: Vec<Term>,
+}
+
+/// One effect of a model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Term {
+    /// By its id in the [catalogue](crate::catalogue).
+    Catalogue(String),
+    /// By a formula of the user's own.
+    Custom(CustomEffect),
+}
+
+/// An effect of the user's own: a torque \[Nm\] that is added to τ_F.
+///
+/// Names in the expression that are neither signals nor functions are
+/// parameters. Those with bounds are searched within them; the others must
+/// enter linearly and are fitted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CustomEffect {
+    /// Its name in results.
+    pub name: String,
+    /// Over `q`, `qd`, `qdd`, `tau`, `tau_m`, `T` \[degC\], `t` (seconds since the first session's start) and extra signals.
+    pub expression: String,
+    /// Lower and upper bound of the parameters that are searched.
+    pub bounds: BTreeMap<String, [f64; 2]>,
+}
+
+impl Session {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there is no sample.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+}
+
+impl Term {
+    /// Id or name, as in files and results.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Catalogue(id) => id,
+            Self::Custom(custom) => &custom.name,
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Columns of an effect on a session.
+
+use crate::effects::{EffectHandle, Exact, MOST_COLUMNS};
+use crate::filter::Kernel;
+use crate::signals::{Filters, Signals};
+
+/// Columns at the working rate, not filtered.
+#[must_use]
+pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<Vec<f64>> {
+    if let Some(columns) = effect.whole(shape, &signals.points) {
+        return columns;
+    }
+    let count = effect.columns().min(MOST_COLUMNS);
+    let mut columns = vec![Vec::with_capacity(signals.points.len()); count];
+    let extras: Vec<&[f64]> = effect
+        .extra()
+        .iter()
+        .map(|name| signals.extra.get(name).map_or(&[][..], Vec::as_slice))
+        .collect();
+    let mut memory = [0.0; 4];
+    let mut values = [0.0; MOST_COLUMNS];
+    let mut extra = vec![0.0; extras.len()];
+    for (at, point) in signals.points.iter().enumerate() {
+        for (value, signal) in extra.iter_mut().zip(&extras) {
+            *value = signal.get(at).copied().unwrap_or(0.0);
+        }
+        effect.evaluate_with(shape, point, &extra, &mut memory, &mut values[..count]);
+        for (column, value) in columns.iter_mut().zip(&values) {
+            column.push(*value);
+        }
+    }
+    columns
+}
+
+/// Columns at rows `rows`, through the column filter.
+#[must_use]
+pub fn filtered(
+    signals: &Signals,
+    filters: &Filters,
+    inertia: f64,
+    effect: &EffectHandle,
+    shape: &[f64],
+    rows: &[usize],
+) -> Vec<Vec<f64>> {
+    let kernel = |order| Kernel::gaussian(filters.column, order, signals.period);
+    let exact = effect.exact();
+    if exact.is_empty() {
+        let smooth = kernel(0);
+        return working(signals, effect, shape)
+            .iter()
+            .map(|column| smooth.at_samples(column, rows))
+            .collect();
+    }
+    let (q, tau) = (&signals.raw.position, &signals.raw.joint_torque);
+    exact
+        .iter()
+        .map(|channel| match channel {
+            Exact::One => vec![1.0; rows.len()],
+            Exact::Position => kernel(0).at_samples(q, rows),
+            Exact::Velocity => kernel(1).at_samples(q, rows),
+            Exact::Acceleration => kernel(2).at_samples(q, rows),
+            Exact::JointTorque => kernel(0).at_samples(tau, rows),
+            Exact::JointTorqueRate => kernel(1).at_samples(tau, rows),
+            Exact::Driven => {
+                let mut sum = kernel(0).at_samples(tau, rows);
+                let acceleration = kernel(2).at_samples(q, rows);
+                sum.iter_mut()
+                    .zip(acceleration)
+                    .for_each(|(s, a)| *s += inertia * a);
+                sum
+            }
+        })
+        .collect()
+}
+
+/// y = τ_m − τ − J q̈ at rows `rows`, through the column filter.
+#[must_use]
+pub fn measured(signals: &Signals, filters: &Filters, inertia: f64, rows: &[usize]) -> Vec<f64> {
+    let kernel = |order| Kernel::gaussian(filters.column, order, signals.period);
+    let smooth = kernel(0);
+    let torque = smooth.at_samples(&signals.raw.motor_torque, rows);
+    let load = smooth.at_samples(&signals.raw.joint_torque, rows);
+    let acceleration = kernel(2).at_samples(&signals.raw.position, rows);
+    torque
+        .iter()
+        .zip(load)
+        .zip(acceleration)
+        .map(|((m, l), a)| m - l - inertia * a)
+        .collect()
+}

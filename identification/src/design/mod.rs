@@ -1,0 +1,179 @@
+//! The regression: rows, columns, blocks of time, and their Gram matrices.
+
+pub mod columns;
+
+use crate::effects::EffectHandle;
+use crate::gram::Gram;
+use crate::setup::Setup;
+use crate::signals::Signals;
+
+/// Blocks of time in all, at least; a session is one or more of them.
+const FEWEST_BLOCKS: usize = 12;
+
+/// Rows of one session.
+#[derive(Clone, Debug)]
+pub struct SessionDesign {
+    /// y = τ_m − τ − J q̈, filtered \[Nm\].
+    pub measured: Vec<f64>,
+    /// Columns of the model's effects, filtered.
+    pub base: Vec<Vec<f64>>,
+    /// First row and the row past the last, of each block of time.
+    pub blocks: Vec<(usize, usize)>,
+    /// Gram of each block: base columns and y.
+    pub grams: Vec<Gram>,
+}
+
+/// Rows of all sessions that are fitted.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// One for each session.
+    pub sessions: Vec<SessionDesign>,
+    /// Number of base columns.
+    pub base: usize,
+    /// Which (session, block) are left out together.
+    pub folds: Vec<Vec<(usize, usize)>>,
+}
+
+/// Grams of base, candidate columns and y, by session and block.
+pub type BlockGrams = Vec<Vec<Gram>>;
+
+impl Design {
+    /// Builds the rows of the model as it stands in `setup`.
+    #[must_use]
+    pub fn new(setup: &Setup) -> Self {
+        let per_session = FEWEST_BLOCKS.div_ceil(setup.sessions.len().max(1));
+        let sessions: Vec<SessionDesign> = setup
+            .sessions
+            .iter()
+            .map(|signals| SessionDesign::new(setup, signals, &signals.rows, per_session))
+            .collect();
+        let base = setup.terms.iter().map(|t| t.effect.columns()).sum();
+        let whole = sessions.iter().filter(|s| !s.measured.is_empty()).count() >= 3;
+        let mut folds = Vec::new();
+        for (s, session) in sessions.iter().enumerate() {
+            let blocks: Vec<(usize, usize)> = (0..session.blocks.len()).map(|b| (s, b)).collect();
+            if blocks.is_empty() {
+                continue;
+            }
+            if whole {
+                folds.push(blocks);
+            } else {
+                folds.extend(blocks.into_iter().map(|b| vec![b]));
+            }
+        }
+        Self {
+            sessions,
+            base,
+            folds,
+        }
+    }
+
+    /// Gram of all rows.
+    #[must_use]
+    pub fn total(&self) -> Gram {
+        Gram::sum(self.sessions.iter().flat_map(|s| &s.grams), self.base)
+    }
+
+    /// The model's own Grams.
+    #[must_use]
+    pub fn own(&self) -> BlockGrams {
+        self.sessions.iter().map(|s| s.grams.clone()).collect()
+    }
+
+    /// Columns of another effect on every session.
+    #[must_use]
+    pub fn extra_columns(
+        &self,
+        setup: &Setup,
+        effect: &EffectHandle,
+        shape: &[f64],
+    ) -> Vec<Vec<Vec<f64>>> {
+        setup
+            .sessions
+            .iter()
+            .map(|signals| {
+                let inertia = setup.facts.inertia.unwrap_or(0.0);
+                columns::filtered(
+                    signals,
+                    &setup.filters,
+                    inertia,
+                    effect,
+                    shape,
+                    &signals.rows,
+                )
+            })
+            .collect()
+    }
+
+    /// Grams with another effect's columns, or any others, put in.
+    #[must_use]
+    pub fn with(&self, extra: &[Vec<Vec<f64>>]) -> BlockGrams {
+        self.sessions
+            .iter()
+            .zip(extra)
+            .map(|(session, columns)| {
+                let base = session.base_and_measured();
+                let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                session
+                    .blocks
+                    .iter()
+                    .zip(&session.grams)
+                    .map(|((from, to), gram)| gram.with(&base, &columns, *from, *to))
+                    .collect()
+            })
+            .collect()
+    }
+}
+
+impl SessionDesign {
+    /// Rows `rows` of one session in `count` blocks of time.
+    #[must_use]
+    pub fn new(setup: &Setup, signals: &Signals, rows: &[usize], count: usize) -> Self {
+        let inertia = setup.facts.inertia.unwrap_or(0.0);
+        let measured = columns::measured(signals, &setup.filters, inertia, rows);
+        let base: Vec<Vec<f64>> = setup
+            .terms
+            .iter()
+            .flat_map(|term| {
+                columns::filtered(
+                    signals,
+                    &setup.filters,
+                    inertia,
+                    &term.effect,
+                    &term.shape,
+                    rows,
+                )
+            })
+            .collect();
+        let blocks = blocks(rows.len(), count);
+        let views: Vec<&[f64]> = base.iter().map(Vec::as_slice).collect();
+        let grams = blocks
+            .iter()
+            .map(|(from, to)| Gram::of(&views, &measured, *from, *to))
+            .collect();
+        Self {
+            measured,
+            base,
+            blocks,
+            grams,
+        }
+    }
+
+    /// Base columns, then y.
+    #[must_use]
+    pub fn base_and_measured(&self) -> Vec<&[f64]> {
+        self.base
+            .iter()
+            .map(Vec::as_slice)
+            .chain([self.measured.as_slice()])
+            .collect()
+    }
+}
+
+/// Cuts `rows` rows into `count` blocks of equal length, fewer if they are few.
+fn blocks(rows: usize, count: usize) -> Vec<(usize, usize)> {
+    let count = count.min(rows / 20).max(usize::from(rows > 0));
+    (0..count)
+        .map(|b| (b * rows / count, (b + 1) * rows / count))
+        .collect()
+}

@@ -1,0 +1,35 @@
+//! Viscous friction of different slope in the two directions.
+
+use super::{Direction, Effect, EffectDescription, Memory, OwnSignals, Point, Unit, describe};
+
+describe!(
+    AsymmetricViscous,
+    "asymmetric_viscous",
+    "τ_F = bav · |q̇|",
+    "slope by direction, as in Janot, Gautier, Brunot 2019",
+    coefficients: ["bav": Unit::new("Nm s/rad", "N s/m")],
+    shape: [],
+    shows_as: "slopes over q̇ differ by direction",
+    excited_by: "several speeds in both directions",
+    taken_for: ["asymmetric_coulomb"]
+);
+
+impl Effect for AsymmetricViscous {
+    fn description(&self) -> &EffectDescription {
+        &self.0
+    }
+
+    fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
+        if let [c] = columns {
+            *c = point.velocity.abs();
+        }
+    }
+
+    fn own_signals(&self) -> OwnSignals {
+        OwnSignals {
+            names: &["velocity"],
+            direction: Direction::Same,
+            any_pair: false,
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! One channel stamped late.
+
+use super::{Effect, EffectDescription, Facts, Memory, ONE, Point, Unit, describe};
+
+describe!(
+    ChannelDelay,
+    "channel_delay",
+    "x_measured(t) = x(t − d) for one channel: 0 motor torque, 1 joint torque, 2 position (3 where τ is modelled)",
+    "time stamps",
+    coefficients: ["delay": Unit::new("s", "s")],
+    shape: ["channel": ONE, "shift": Unit::new("s", "s")],
+    shows_as: "proportional to d(signal)/dt",
+    excited_by: "fast accelerations and changes of load",
+    taken_for: ["inertia", "viscous", "elasticity"]
+);
+
+impl Effect for ChannelDelay {
+    fn description(&self) -> &EffectDescription {
+        &self.0
+    }
+
+    // Replaced by `whole`: the true value of a late channel lies ahead.
+    fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
+        let _ = point;
+        columns.fill(0.0);
+    }
+
+    fn whole(&self, shape: &[f64], points: &[Point]) -> Option<Vec<Vec<f64>>> {
+        let [channel, delay, ..] = shape else {
+            return None;
+        };
+        let period = points.first()?.period;
+        let late = |value: &dyn Fn(&Point) -> f64, by: f64| -> Vec<f64> {
+            let values: Vec<f64> = points.iter().map(value).collect();
+            let last = values.len() - 1;
+            (0..values.len())
+                .map(|at| {
+                    let place = (at as f64 - by / period).clamp(0.0, last as f64);
+                    let before = place.floor() as usize;
+                    let share = place - before as f64;
+                    let after = values[(before + 1).min(last)];
+                    // Per second of delay: the coefficient is the delay itself.
+                    (values[before] + share * (after - values[before]) - values[at]) / delay
+                })
+                .collect()
+        };
+        Some(vec![match channel.round() as i64 {
+            0 => late(&|p| p.motor_predicted, *delay),
+            1 => late(&|p| p.load, -delay),
+            2 => late(&|p| p.motor_predicted - p.load, -delay),
+            // The load is modelled from the position, and late with it.
+            _ => late(&|p| p.motor_predicted, -delay),
+        }])
+    }
+
+    fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
+        let channels: &[f64] = if facts.joint_torque {
+            &[0.0, 1.0, 2.0]
+        } else {
+            &[0.0, 3.0]
+        };
+        channels
+            .iter()
+            .flat_map(|channel| {
+                [0.0005, 0.0015, 0.004, 0.01, 0.02, 0.035, 0.06, 0.09, 0.13]
+                    .map(|d| vec![*channel, d])
+            })
+            .collect()
+    }
+
+    fn bounds(&self, _facts: &Facts) -> Vec<[f64; 2]> {
+        // The channel is not refined.
+        vec![[0.0, 0.0], [0.0002, 0.2]]
+    }
+
+    fn needs_prediction(&self) -> bool {
+        true
+    }
+
+    // The channel is late as a whole, not by a part: fitted delay and shift agree.
+    fn plausible(&self, shape: &[f64], coefficients: &[f64]) -> bool {
+        let shift = shape.get(1).copied().unwrap_or(1.0);
+        coefficients
+            .iter()
+            .all(|c| (0.5..1.6).contains(&(c / shift)))
+    }
+}

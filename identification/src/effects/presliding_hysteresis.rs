@@ -1,0 +1,51 @@
+//! Friction that builds up over travel after a reversal.
+
+use super::{
+    ANGLE, Effect, EffectDescription, Facts, Memory, ONE, Point, TORQUE, describe, logarithmic,
+};
+
+describe!(
+    PreslidingHysteresis,
+    "presliding_hysteresis",
+    "τ_F = (bz + bzT |τ|) · (z − sign(q̇)), dz/dq = (sign(q̇) − z)/δ",
+    "Dahl 1968; Canudas de Wit et al. 1995 (LuGre)",
+    coefficients: ["bz": TORQUE, "bzT": ONE],
+    shape: ["delta": ANGLE],
+    shows_as: "loop after each reversal, over travel not time",
+    excited_by: "reversals at several amplitudes, slow and fast",
+    taken_for: ["elasticity", "backlash"]
+);
+
+impl Effect for PreslidingHysteresis {
+    fn description(&self) -> &EffectDescription {
+        &self.0
+    }
+
+    // memory: [bristle state z, started]. z follows the travel of each sample
+    // exactly: z ← s + (z − s) exp(−|Δq|/δ).
+    fn evaluate(&self, shape: &[f64], point: &Point, memory: &mut Memory, columns: &mut [f64]) {
+        let s = point.sign();
+        if let ([level, by_load], [delta, ..]) = (columns, shape) {
+            memory[0] =
+                s + (memory[0] - s) * (-(point.velocity * point.period).abs() / delta).exp();
+            *level = memory[0] - s;
+            *by_load = *level * point.load.abs();
+        }
+    }
+
+    fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
+        let [low, high] = self.bounds(facts)[0];
+        logarithmic(low, high, 9)
+            .into_iter()
+            .map(|delta| vec![delta])
+            .collect()
+    }
+
+    fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
+        vec![[0.0015 * facts.travel(), 0.2 * facts.travel()]]
+    }
+
+    fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
+        coefficients.first().is_some_and(|c| *c > 0.0)
+    }
+}

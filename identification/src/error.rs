@@ -1,0 +1,204 @@
+//! What can be wrong with what the engine is given.
+
+use thiserror::Error;
+
+/// Why recordings and model cannot be put together.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PrepareError {
+    /// No session at all.
+    #[error("no session to fit; name at least one recording")]
+    NoSession,
+    /// A session is too short.
+    #[error(
+        "{session}: {samples} samples are too few, at least {needed} are needed; record longer or drop this session"
+    )]
+    TooFewSamples {
+        /// Name of the session.
+        session: String,
+        /// What it has.
+        samples: usize,
+        /// What it takes.
+        needed: usize,
+    },
+    /// Channels of one session differ in length.
+    #[error(
+        "{session}: channel {channel} has {samples} samples, position has {expected}; sample all channels together"
+    )]
+    Length {
+        /// Name of the session.
+        session: String,
+        /// Which channel.
+        channel: String,
+        /// Its length.
+        samples: usize,
+        /// Length of position.
+        expected: usize,
+    },
+    /// A sampling period that is not a positive number.
+    #[error("{session}: sampling period {period} s; it must be a positive number")]
+    Period {
+        /// Name of the session.
+        session: String,
+        /// The period \[s\].
+        period: f64,
+    },
+    /// NaN or infinity in a channel.
+    #[error(
+        "{session}: channel {channel} is not a number at sample {sample}; cut it out or repair it"
+    )]
+    NotFinite {
+        /// Name of the session.
+        session: String,
+        /// Which channel.
+        channel: String,
+        /// Which sample.
+        sample: usize,
+    },
+    /// The joint never moved.
+    #[error(
+        "the position is constant in every session: nothing can be told from a joint at rest; record motion"
+    )]
+    ConstantPosition,
+    /// The motor torque is constant.
+    #[error("the motor torque is constant in every session; is the right signal named?")]
+    ConstantMotorTorque,
+    /// Some sessions have a channel, others do not.
+    #[error("channel {channel} is in {with} of {all} sessions; it must be in all or in none")]
+    Mixed {
+        /// Which channel.
+        channel: String,
+        /// Sessions that have it.
+        with: usize,
+        /// Sessions.
+        all: usize,
+    },
+    /// The joint moved, yet hardly ever away from rest and reversals.
+    #[error(
+        "only {rows} moments of steady motion for {parameters} parameters; record longer strokes"
+    )]
+    NothingExcited {
+        /// Rows of the regression.
+        rows: usize,
+        /// Parameters of the model.
+        parameters: usize,
+    },
+    /// A given inertia that is not a positive number.
+    #[error("inertia {0} kg m²; it must be zero or more, or fitted")]
+    Inertia(f64),
+    /// A gear ratio that is not a positive number.
+    #[error("gear ratio {0}; it must be a positive number")]
+    GearRatio(f64),
+    /// No effect has this id.
+    #[error("unknown effect {id:?}; the catalogue has {known}")]
+    UnknownEffect {
+        /// What was asked for.
+        id: String,
+        /// Ids of the catalogue, separated by commas.
+        known: String,
+    },
+    /// The same effect twice.
+    #[error("effect {0:?} is in the model twice; name it once")]
+    Twice(String),
+    /// An effect that these recordings cannot hold.
+    #[error("effect {id:?} cannot be fitted to these recordings: {why}")]
+    Unavailable {
+        /// Its id.
+        id: String,
+        /// What is missing.
+        why: String,
+    },
+    /// A formula that cannot be used.
+    #[error(transparent)]
+    Expression(#[from] ExpressionError),
+}
+
+/// Why a formula cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ExpressionError {
+    /// It does not parse.
+    #[error("effect {effect:?}: cannot read the expression {expression:?}: {why}")]
+    Syntax {
+        /// Name of the effect.
+        effect: String,
+        /// The expression.
+        expression: String,
+        /// What is wrong, and where.
+        why: String,
+    },
+    /// A parameter neither enters linearly nor has bounds.
+    #[error(
+        "effect {effect:?}: parameter {parameter:?} does not enter linearly; give it bounds, like {parameter} = [0.005, 0.2]"
+    )]
+    NotLinear {
+        /// Name of the effect.
+        effect: String,
+        /// The parameter.
+        parameter: String,
+    },
+    /// Nothing to fit.
+    #[error(
+        "effect {effect:?}: the expression {expression:?} has no parameter that enters linearly; write a*({expression})"
+    )]
+    NoParameter {
+        /// Name of the effect.
+        effect: String,
+        /// The expression.
+        expression: String,
+    },
+    /// Too much to fit.
+    #[error("effect {effect:?}: {count} parameters of one kind, at most {most} are possible")]
+    TooMany {
+        /// Name of the effect.
+        effect: String,
+        /// How many.
+        count: usize,
+        /// Limit.
+        most: usize,
+    },
+    /// Bounds that leave no value.
+    #[error(
+        "effect {effect:?}: bounds [{lower}, {upper}] of {parameter:?} exclude every value; the lower must be below the upper"
+    )]
+    Bounds {
+        /// Name of the effect.
+        effect: String,
+        /// The parameter.
+        parameter: String,
+        /// Lower bound.
+        lower: f64,
+        /// Upper bound.
+        upper: f64,
+    },
+    /// Bounds for a name that the expression does not have.
+    #[error("effect {effect:?}: bounds for {parameter:?}, which the expression does not have")]
+    UnusedBounds {
+        /// Name of the effect.
+        effect: String,
+        /// The parameter.
+        parameter: String,
+    },
+    /// A signal that the recordings lack.
+    #[error(
+        "effect {effect:?} needs {signal:?}, which the recordings do not have; they have {known}"
+    )]
+    MissingSignal {
+        /// Name of the effect.
+        effect: String,
+        /// The signal.
+        signal: String,
+        /// Signals that there are.
+        known: String,
+    },
+    /// Not a number on these recordings.
+    #[error(
+        "effect {effect:?}: the expression is not a number at {session}, {time:.3} s; keep roots, logarithms and quotients defined"
+    )]
+    NotFinite {
+        /// Name of the effect.
+        effect: String,
+        /// The session.
+        session: String,
+        /// Time in it \[s\].
+        time: f64,
+    },
+}

@@ -1,0 +1,94 @@
+//! Held-out data beyond the range in which the model was fitted.
+
+use serde::Serialize;
+
+use crate::setup::Setup;
+use crate::signals::Signals;
+
+/// Beyond the fitted range by this share of it counts.
+const MARGIN: f64 = 0.05;
+
+/// A held-out session that leaves the fitted range.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Extrapolation {
+    /// Name of the session.
+    pub session: String,
+    /// `velocity`, `load` or `temperature`.
+    pub signal: String,
+    /// Lowest and highest value fitted.
+    pub fitted: [f64; 2],
+    /// Lowest and highest value in this session.
+    pub reached: [f64; 2],
+    /// Share of its rows beyond.
+    pub share: f64,
+}
+
+type Value = fn(&Signals, usize) -> f64;
+
+/// Every session held out (each in turn, where none is named) against the others.
+#[must_use]
+pub fn find(setup: &Setup) -> Vec<Extrapolation> {
+    let mut signals: Vec<(&str, Value)> = vec![("velocity", |s, at| s.points[at].velocity)];
+    if setup.facts.loaded {
+        signals.push(("load", |s, at| s.points[at].load));
+    }
+    if setup.facts.temperature {
+        signals.push(("temperature", |s, at| s.points[at].temperature));
+    }
+    let mut found = Vec::new();
+    for (name, value) in signals {
+        let offset = if name == "temperature" {
+            setup.facts.reference_temperature
+        } else {
+            0.0
+        };
+        let range = |s: &Signals| span(s.rows.iter().map(|at| value(s, *at) + offset));
+        let own: Vec<Option<[f64; 2]>> = setup.sessions.iter().map(range).collect();
+        let mut check = |session: &Signals, fitted: Option<[f64; 2]>| {
+            let (Some(fitted), Some(reached)) = (fitted, range(session)) else {
+                return;
+            };
+            let margin = MARGIN * (fitted[1] - fitted[0]);
+            let beyond = session
+                .rows
+                .iter()
+                .filter(|at| {
+                    let x = value(session, **at) + offset;
+                    x < fitted[0] - margin || x > fitted[1] + margin
+                })
+                .count();
+            if beyond > 0 {
+                found.push(Extrapolation {
+                    session: session.name.clone(),
+                    signal: name.to_owned(),
+                    fitted,
+                    reached,
+                    share: beyond as f64 / session.rows.len().max(1) as f64,
+                });
+            }
+        };
+        if setup.held_out.is_empty() {
+            for (i, session) in setup.sessions.iter().enumerate() {
+                let others = own
+                    .iter()
+                    .enumerate()
+                    .filter(|(j, _)| *j != i)
+                    .filter_map(|(_, r)| *r);
+                check(session, span(others.flatten()));
+            }
+        } else {
+            let all = span(own.iter().filter_map(|r| *r).flatten());
+            for session in &setup.held_out {
+                check(session, all);
+            }
+        }
+    }
+    found
+}
+
+fn span(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+        (l.min(x), h.max(x))
+    });
+    (low <= high).then_some([low, high])
+}

@@ -1,0 +1,163 @@
+//! Effects that these data cannot tell apart.
+
+use crate::candidates::Candidate;
+use crate::design::{Design, columns};
+use crate::setup::Setup;
+use crate::statistics::mean_error;
+
+/// Below this many standard errors two gains do not differ.
+const SAME: f64 = 2.0;
+/// A rival explains this share of the best one's gain at least.
+const LEAST_RATIO: f64 = 0.85;
+/// … and leaves at most this many times the mean square.
+const MOST_LEFT: f64 = 1.05;
+
+/// Degrees of freedom of an effect: what is fitted and what is searched over
+/// more than one value.
+fn freedom(candidate: &Candidate) -> usize {
+    candidate.effect.columns() + candidate.shape.len()
+}
+
+/// Difference of two gains in standard errors, paired fold by fold.
+fn difference(design: &Design, a: &Candidate, b: &Candidate) -> f64 {
+    let (a, b) = (
+        by_fold(design, &a.score.gains),
+        by_fold(design, &b.score.gains),
+    );
+    let differences: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
+    let (mean, error) = mean_error(&differences);
+    if mean == 0.0 {
+        0.0
+    } else {
+        mean / error.max(1e-300)
+    }
+}
+
+/// Gains summed over each fold; they come block by block within folds, or one a fold.
+fn by_fold(design: &Design, gains: &[f64]) -> Vec<f64> {
+    if gains.len() == design.folds.len() {
+        return gains.to_vec();
+    }
+    let mut at = 0;
+    design
+        .folds
+        .iter()
+        .map(|fold| {
+            let sum = gains.iter().skip(at).take(fold.len()).sum();
+            at += fold.len();
+            sum
+        })
+        .collect()
+}
+
+/// Whether `other` explains the data as well as `best` does: it leaves hardly
+/// more, or the difference is within its own error.
+fn as_good(design: &Design, best: &Candidate, other: &Candidate) -> bool {
+    let left = |c: &Candidate| (c.score.before - c.score.gain).max(1e-300);
+    let ratio = other.score.gain / best.score.gain.max(1e-300);
+    let (less, more) = if ratio < 1.0 {
+        (best, other)
+    } else {
+        (other, best)
+    };
+    ratio > LEAST_RATIO
+        && ratio < LEAST_RATIO.recip()
+        && (left(more) < MOST_LEFT * left(less) || difference(design, best, other).abs() < SAME)
+}
+
+/// Puts the simplest of those that are as good as the best first.
+pub fn order(design: &Design, passing: &mut Vec<Candidate>) {
+    passing.sort_by(|a, b| b.score.gain.total_cmp(&a.score.gain));
+    let Some(best) = passing.first().cloned() else {
+        return;
+    };
+    let simplest = passing
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| freedom(c) < freedom(&best) && as_good(design, &best, c))
+        .min_by_key(|(at, c)| (freedom(c), *at))
+        .map(|(at, _)| at);
+    if let Some(at) = simplest {
+        let first = passing.remove(at);
+        passing.insert(0, first);
+    }
+}
+
+/// The candidates that explain these data as well as `candidate` does.
+#[must_use]
+pub fn of<'a>(
+    design: &Design,
+    candidate: &Candidate,
+    passing: &'a [Candidate],
+    tried: &'a [Candidate],
+) -> Vec<&'a Candidate> {
+    // The step from equation (3) to (4) of the paper is these two together.
+    let parts: &[&str] = match candidate.id() {
+        "nonlinear_viscous" => &["quadratic_viscous", "cubic_viscous"],
+        _ => &[],
+    };
+    passing
+        .iter()
+        .filter(|other| {
+            other.id() != candidate.id()
+                && !parts.contains(&other.id())
+                && as_good(design, candidate, other)
+        })
+        .chain(tried.iter().filter(|other| parts.contains(&other.id())))
+        .collect()
+}
+
+/// What to record next.
+#[must_use]
+pub fn separate_by(setup: &Setup, candidate: &Candidate, like: &[&Candidate]) -> String {
+    let own = &candidate.effect.description().excited_by;
+    let Some(other) = like.first() else {
+        return own.clone();
+    };
+    let theirs = &other.effect.description().excited_by;
+    let place = farthest_apart(setup, candidate, other);
+    let what = if own == theirs {
+        own.clone()
+    } else {
+        format!("{own}; and {theirs}")
+    };
+    format!(
+        "{what}. On these data {} and {} differ most at {place}",
+        candidate.id(),
+        other.id()
+    )
+}
+
+/// State at which two candidates' predictions differ most.
+fn farthest_apart(setup: &Setup, a: &Candidate, b: &Candidate) -> String {
+    let predict = |signals: &crate::signals::Signals, c: &Candidate| -> Vec<f64> {
+        let mut sum = vec![0.0; signals.points.len()];
+        for (column, coefficient) in columns::working(signals, &c.effect, &c.shape)
+            .iter()
+            .zip(&c.score.coefficients)
+        {
+            sum.iter_mut()
+                .zip(column)
+                .for_each(|(s, x)| *s += coefficient * x);
+        }
+        sum
+    };
+    let mut best = (0.0, crate::effects::Point::default());
+    for signals in &setup.sessions {
+        let (pa, pb) = (predict(signals, a), predict(signals, b));
+        for at in &signals.rows {
+            let gap = (pa[*at] - pb[*at]).abs();
+            if gap > best.0 {
+                best = (gap, signals.points[*at]);
+            }
+        }
+    }
+    let (angle, torque) = match setup.facts.joint {
+        crate::data::JointType::Revolute => ("rad", "Nm"),
+        crate::data::JointType::Prismatic => ("m", "N"),
+    };
+    format!(
+        "position {:.3} {angle}, velocity {:.3} {angle}/s, load {:.2} {torque}",
+        best.1.position, best.1.velocity, best.1.load
+    )
+}

@@ -1,0 +1,183 @@
+//! The model fitted to everything: parameters with standard errors.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use crate::design::{BlockGrams, Design, SessionDesign};
+use crate::gram::{Gram, pseudo_inverse};
+use crate::setup::{BoundTerm, Setup};
+use crate::statistics::jackknife_covariance;
+use crate::validation::{fold_gram, left_out};
+
+/// A parameter of the fitted model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Value.
+    pub value: f64,
+    /// Standard error by leaving sessions (or blocks of time) out in turn, which
+    /// allows for autocorrelation; `None` for a shape parameter, which is searched.
+    pub std_error: Option<f64>,
+    /// Unit.
+    pub unit: String,
+    /// Effect that it belongs to.
+    pub effect: String,
+}
+
+/// A fit.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Coefficients of all columns, term by term.
+    pub coefficients: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// Root mean square of the residual on the rows fitted \[Nm\].
+    pub train: f64,
+    /// The same on rows left out: explicit held-out sessions, else folds \[Nm\].
+    pub held_out: f64,
+    /// All parameters by name.
+    pub parameters: BTreeMap<String, Parameter>,
+    /// Names of parameters whose standard error exceeds their value, or which
+    /// the data do not touch at all.
+    pub not_excited: Vec<String>,
+    /// Ratio of the largest to the smallest eigenvalue of the normalised normal equations.
+    pub condition: f64,
+}
+
+impl Setup {
+    /// This setup with one more effect in the model.
+    #[must_use]
+    pub fn extended(&self, term: BoundTerm) -> Self {
+        let mut terms = self.terms.clone();
+        let mut facts = self.facts.clone();
+        facts.load_coulomb |= term.effect.description().id == "load_coulomb";
+        terms.push(term);
+        let mut extended = Self {
+            facts,
+            filters: self.filters,
+            sessions: self.sessions.clone(),
+            held_out: self.held_out.clone(),
+            terms,
+        };
+        extended.predict();
+        extended
+    }
+}
+
+/// Fits the model as it stands.
+#[must_use]
+pub fn fit(setup: &Setup, design: &Design) -> Fit {
+    let grams = design.own();
+    let total = design.total();
+    let coefficients = total.solve();
+    let covariance = jackknife(design, &grams, &total, &coefficients);
+    let rows = total.rows.max(1) as f64;
+    let held_out = if setup.held_out.is_empty() {
+        left_out(design, &grams).sqrt()
+    } else {
+        held_out_error(setup, &coefficients)
+    };
+    let n = total.columns();
+    let (_, condition) = pseudo_inverse(&total.products.view((0, 0), (n, n)).into_owned());
+    let (parameters, not_excited) = name(setup, &coefficients, &covariance, &total);
+    Fit {
+        train: (total.squared_error(&coefficients) / rows).sqrt(),
+        held_out,
+        coefficients,
+        covariance,
+        parameters,
+        not_excited,
+        condition,
+    }
+}
+
+fn jackknife(
+    design: &Design,
+    grams: &BlockGrams,
+    total: &Gram,
+    estimate: &DVector<f64>,
+) -> DMatrix<f64> {
+    let without: Vec<DVector<f64>> = design
+        .folds
+        .iter()
+        .map(|fold| {
+            total
+                .without(&fold_gram(grams, fold, total.columns()))
+                .solve()
+        })
+        .collect();
+    jackknife_covariance(estimate, &without)
+}
+
+/// RMS on the held-out sessions.
+fn held_out_error(setup: &Setup, coefficients: &DVector<f64>) -> f64 {
+    let (mut error, mut rows) = (0.0, 0);
+    for signals in &setup.held_out {
+        let session = SessionDesign::new(setup, signals, &signals.rows, 1);
+        for gram in &session.grams {
+            error += gram.squared_error(coefficients);
+            rows += gram.rows;
+        }
+    }
+    (error / rows.max(1) as f64).sqrt()
+}
+
+type Named = (BTreeMap<String, Parameter>, Vec<String>);
+
+fn name(
+    setup: &Setup,
+    coefficients: &DVector<f64>,
+    covariance: &DMatrix<f64>,
+    total: &Gram,
+) -> Named {
+    let mut parameters = BTreeMap::new();
+    let mut not_excited = Vec::new();
+    let mut at = 0;
+    for term in &setup.terms {
+        let description = term.effect.description();
+        let effect = if description.id == "inertia_fit" {
+            "inertia"
+        } else {
+            &description.id
+        };
+        let mut insert = |name: &str, parameter: Parameter| {
+            // Two effects of the user's own may share a name.
+            let name = if parameters.contains_key(name) {
+                format!("{effect}.{name}")
+            } else {
+                name.to_owned()
+            };
+            parameters.insert(name.clone(), parameter);
+            name
+        };
+        for quantity in &description.coefficients {
+            let (value, error) = (coefficients[at], covariance[(at, at)].max(0.0).sqrt());
+            let name = insert(
+                &quantity.name,
+                Parameter {
+                    value,
+                    std_error: Some(error),
+                    unit: quantity.unit.of(setup.facts.joint).to_owned(),
+                    effect: effect.to_owned(),
+                },
+            );
+            if error >= value.abs() || total.products[(at, at)] <= 0.0 {
+                not_excited.push(name);
+            }
+            at += 1;
+        }
+        for (quantity, value) in description.shape.iter().zip(&term.shape) {
+            insert(
+                &quantity.name,
+                Parameter {
+                    value: *value,
+                    std_error: None,
+                    unit: quantity.unit.of(setup.facts.joint).to_owned(),
+                    effect: effect.to_owned(),
+                },
+            );
+        }
+    }
+    (parameters, not_excited)
+}

@@ -1,0 +1,59 @@
+//! What recordings say about a joint's model: how far off it is and where,
+//! which physical effect is missing, and how far the error falls with it.
+//!
+//! ```text
+//! sessions ─ filter, differentiate, thin, mask ─ columns of effects ─ Gram matrices ─┬ compare
+//!           (signals)                           (effects, design)    (gram)          ├ diagnose
+//!                                                                                    └ add
+//! ```
+//!
+//! Equation throughout: τ_m = J q̈ + τ + τ_F, joint quantities on the joint side
+//! of the gear. Pure: no file, clock, thread or randomness; the same recordings
+//! give the same answer.
+
+pub mod add;
+pub mod candidates;
+pub mod check;
+pub mod compare;
+pub mod data;
+pub mod dependence;
+pub mod design;
+pub mod diagnose;
+pub mod effects;
+pub mod error;
+pub mod expression;
+pub mod extrapolation;
+pub mod family;
+pub mod filter;
+pub mod fit;
+pub mod gram;
+pub mod noise_floor;
+pub mod periodic;
+pub mod refine;
+pub mod residual_map;
+pub mod setup;
+pub mod signals;
+pub mod simulate;
+pub mod statistics;
+pub mod validation;
+
+pub use add::{Addition, add};
+pub use compare::{Comparison, compare};
+pub use data::{CustomEffect, Dataset, Inertia, JointType, ModelSpec, Session, Term};
+pub use diagnose::{Diagnosis, Verdict, diagnose};
+pub use effects::EffectDescription;
+pub use error::{ExpressionError, PrepareError};
+
+/// Every effect that a model can be given by id, and that [`diagnose()`] tries.
+#[must_use]
+pub fn catalogue() -> Vec<EffectDescription> {
+    effects::all()
+        .iter()
+        .map(|effect| effect.description().clone())
+        .collect()
+}
+
+#[cfg(test)]
+mod bench;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,178 @@
+//! Search for the shape of an effect: a grid, then golden sections.
+
+use crate::design::{BlockGrams, Design};
+use crate::effects::EffectHandle;
+use crate::gram::Gram;
+use crate::setup::Setup;
+
+/// Grid points for each searched parameter that has bounds but no grid.
+const GRID: usize = 12;
+
+/// Grams of all sessions with each session's own base taken out: what is left
+/// of the extra columns and y.
+#[must_use]
+pub fn within(grams: &BlockGrams, base: usize) -> Gram {
+    let mut sum: Option<Gram> = None;
+    for session in grams {
+        let Some(first) = session.first() else {
+            continue;
+        };
+        let total = Gram::sum(session, first.columns());
+        let reduced = total.reduce(base, &total.explain(base));
+        match &mut sum {
+            None => sum = Some(reduced),
+            Some(sum) => sum.add(&reduced),
+        }
+    }
+    sum.unwrap_or_else(|| Gram::empty(0))
+}
+
+/// Squared error that a shape leaves, each session with its own base.
+#[must_use]
+pub fn error_of(setup: &Setup, design: &Design, effect: &EffectHandle, shape: &[f64]) -> f64 {
+    let grams = design.with(&design.extra_columns(setup, effect, shape));
+    let reduced = if effect.between_sessions() {
+        let flat: Vec<Gram> = grams.into_iter().flatten().collect();
+        let Some(first) = flat.first() else {
+            return f64::INFINITY;
+        };
+        let total = Gram::sum(&flat, first.columns());
+        total.reduce(design.base, &total.explain(design.base))
+    } else {
+        within(&grams, design.base)
+    };
+    let coefficients = reduced.solve();
+    let error = reduced.squared_error(&coefficients);
+    if effect.plausible(shape, coefficients.as_slice()) {
+        error
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Shapes to try: the effect's own grid, or one over its bounds.
+#[must_use]
+pub fn grid(setup: &Setup, effect: &EffectHandle) -> Vec<Vec<f64>> {
+    let shapes = effect.shapes(&setup.facts);
+    let bounds = effect.bounds(&setup.facts);
+    if shapes.len() > 1 || bounds.is_empty() {
+        return shapes;
+    }
+    // Several parameters share a limited number of points.
+    let count = match bounds.len() {
+        1 => GRID,
+        2 => 8,
+        _ => 4,
+    };
+    let mut grid = vec![Vec::new()];
+    for [low, high] in &bounds {
+        let values: Vec<f64> = (0..count)
+            .map(|i| {
+                let share = i as f64 / (count - 1) as f64;
+                // Positive bounds far apart are scanned by ratio.
+                if *low > 0.0 && high / low > 8.0 {
+                    low * (high / low).powf(share)
+                } else {
+                    low + (high - low) * share
+                }
+            })
+            .collect();
+        grid = grid
+            .iter()
+            .flat_map(|shape| values.iter().map(|v| [shape.clone(), vec![*v]].concat()))
+            .collect();
+    }
+    grid
+}
+
+/// Improves a shape by golden sections, one parameter after the other, between
+/// `1/reach` and `reach` times (or the neighbouring grid points of) its value.
+#[must_use]
+pub fn polish(setup: &Setup, design: &Design, effect: &EffectHandle, start: &[f64]) -> Vec<f64> {
+    let bounds = effect.bounds(&setup.facts);
+    let mut shape = start.to_vec();
+    if bounds.len() != shape.len() {
+        return shape;
+    }
+    let spacing = spacing(&grid(setup, effect), start);
+    for at in 0..shape.len() {
+        let low = bounds[at][0].max(shape[at] - spacing[at]);
+        let high = bounds[at][1].min(shape[at] + spacing[at]);
+        if high <= low {
+            continue;
+        }
+        let (mut best, mut best_error) = (shape[at], error_of(setup, design, effect, &shape));
+        let mut try_value = |value: f64, shape: &mut Vec<f64>| {
+            shape[at] = value;
+            let error = error_of(setup, design, effect, shape);
+            if error < best_error {
+                (best, best_error) = (value, error);
+            }
+            error
+        };
+        let ratio = 0.618_034;
+        let (mut a, mut b) = (low, high);
+        let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
+        let (mut at_c, mut at_d) = (try_value(c, &mut shape), try_value(d, &mut shape));
+        for _ in 0..9 {
+            if at_c < at_d {
+                (b, d, at_d) = (d, c, at_c);
+                c = b - ratio * (b - a);
+                at_c = try_value(c, &mut shape);
+            } else {
+                (a, c, at_c) = (c, d, at_d);
+                d = a + ratio * (b - a);
+                at_d = try_value(d, &mut shape);
+            }
+        }
+        shape[at] = best;
+    }
+    shape
+}
+
+/// Distance to the farther of the neighbouring grid values, of each parameter.
+fn spacing(grid: &[Vec<f64>], shape: &[f64]) -> Vec<f64> {
+    (0..shape.len())
+        .map(|at| {
+            let mut above = f64::INFINITY;
+            let mut below = f64::INFINITY;
+            for other in grid {
+                let gap = other.get(at).copied().unwrap_or(shape[at]) - shape[at];
+                if gap > 1e-9 * shape[at].abs() {
+                    above = above.min(gap);
+                } else if gap < -1e-9 * shape[at].abs() {
+                    below = below.min(-gap);
+                }
+            }
+            match (above.is_finite(), below.is_finite()) {
+                (true, true) => above.max(below),
+                (true, false) => above,
+                (false, true) => below,
+                (false, false) => 0.3 * shape[at].abs(),
+            }
+        })
+        .collect()
+}
+
+/// The best shape, or `None` if the effect has none or none makes sense.
+#[must_use]
+pub fn search(setup: &Setup, design: &Design, effect: &EffectHandle) -> Option<Vec<f64>> {
+    let mut candidates = grid(setup, effect);
+    if effect.description().id == "ripple" {
+        candidates.extend(
+            crate::periodic::peaks(setup, design, 3)
+                .into_iter()
+                .map(|k| vec![k]),
+        );
+    }
+    let best = candidates
+        .into_iter()
+        .map(|shape| (error_of(setup, design, effect, &shape), shape))
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let polished = polish(setup, design, effect, &best.1);
+    Some(if effect.bounds(&setup.facts).len() > 1 {
+        polish(setup, design, effect, &polished)
+    } else {
+        polished
+    })
+}

@@ -1,0 +1,211 @@
+//! A session made ready: smoothed, differentiated, thinned, masked.
+
+use std::collections::BTreeMap;
+
+use crate::data::Session;
+use crate::effects::Point;
+use crate::filter::{Kernel, noise_level, thin};
+
+const SECONDS_PER_DAY: f64 = 86_400.0;
+/// Sampling faster than this \[s\] tells nothing more about friction.
+const WORKING_PERIOD: f64 = 0.002;
+/// Share of the range of positions that is dropped after a reversal: there
+/// friction still builds up (presliding) and has no value of its own.
+const TRAVEL_AFTER_REVERSAL: f64 = 0.006;
+/// Share of the top speed below which a joint is near rest.
+const NEAR_REST: f64 = 0.005;
+
+/// Widths of the filters, the same for all sessions of a dataset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filters {
+    /// Samples of the recording in one working sample.
+    pub thinning: usize,
+    /// Width \[working samples\] of the light smoothing in which states (the
+    /// sign of velocity, say) are judged.
+    pub state: f64,
+    /// Width \[working samples\] of the filter on every column of the regression.
+    pub column: f64,
+    /// Working samples from one row of the regression to the next.
+    pub stride: usize,
+    /// |q̇| \[rad/s\] below which the joint is near rest.
+    pub rest_speed: f64,
+    /// Travel \[rad\] after a reversal that is dropped.
+    pub travel: f64,
+}
+
+/// A session at its working rate, and the rows of the regression.
+#[derive(Clone, Debug)]
+pub struct Signals {
+    /// Name of the session.
+    pub name: String,
+    /// Working period \[s\].
+    pub period: f64,
+    /// States at the working rate, lightly smoothed.
+    pub points: Vec<Point>,
+    /// Extra signals at the working rate.
+    pub extra: BTreeMap<String, Vec<f64>>,
+    /// Channels at the working rate before smoothing.
+    pub raw: Channels,
+    /// Working sample of each row, in order of time; near rest there is none.
+    pub rows: Vec<usize>,
+    /// The same rows without regard to rest and reversal, for the eye.
+    pub all_rows: Vec<usize>,
+}
+
+/// Measured channels at the working rate.
+#[derive(Clone, Debug, Default)]
+pub struct Channels {
+    /// q \[rad\].
+    pub position: Vec<f64>,
+    /// τ_m \[Nm\].
+    pub motor_torque: Vec<f64>,
+    /// τ \[Nm\]; zero without a sensor.
+    pub joint_torque: Vec<f64>,
+}
+
+impl Filters {
+    /// Chooses widths from the noise in the recordings: as little smoothing as
+    /// leaves the acceleration a twentieth noise, at most.
+    #[must_use]
+    pub fn choose(sessions: &[Session]) -> Self {
+        let period = sessions.first().map_or(0.01, |s| s.period);
+        let thinning = ((WORKING_PERIOD / period + 1e-6).floor() as usize).max(1);
+        let working = period * thinning as f64;
+        let positions: Vec<Vec<f64>> = sessions
+            .iter()
+            .map(|s| thin(&s.position, thinning))
+            .collect();
+        let noise = positions.iter().map(|q| noise_level(q)).fold(0.0, f64::max);
+        let mut state = 6.0;
+        for width in [1.0, 1.5, 2.0, 3.0, 4.0] {
+            let kernel = Kernel::sharp(width, 2, working);
+            let (mut sum, mut count) = (0.0, 1e-9);
+            for q in &positions {
+                for at in (0..q.len()).step_by(3) {
+                    sum += kernel.at(q, at).powi(2);
+                    count += 1.0;
+                }
+            }
+            if noise * noise * kernel.noise_gain() < 0.0025 * sum / count {
+                state = width;
+                break;
+            }
+        }
+        let slope = Kernel::sharp(state, 1, working);
+        let mut speeds: Vec<f64> = positions
+            .iter()
+            .flat_map(|q| (0..q.len()).step_by(5).map(|at| slope.at(q, at).abs()))
+            .collect();
+        let top = quantile(&mut speeds, 0.99);
+        let mut all: Vec<f64> = positions.concat();
+        let range = quantile(&mut all, 0.98) - quantile(&mut all, 0.02);
+        let column = f64::max(2.0, state);
+        Self {
+            thinning,
+            state,
+            column,
+            stride: (2.0 * column).round() as usize,
+            rest_speed: f64::max(NEAR_REST * top, 4.0 * noise * slope.noise_gain().sqrt()),
+            travel: TRAVEL_AFTER_REVERSAL * range,
+        }
+    }
+}
+
+/// The value below which a share of the numbers lies; 0 for none.
+pub fn quantile(numbers: &mut [f64], share: f64) -> f64 {
+    if numbers.is_empty() {
+        return 0.0;
+    }
+    let at = ((numbers.len() - 1) as f64 * share).round() as usize;
+    *numbers.select_nth_unstable_by(at, f64::total_cmp).1
+}
+
+impl Signals {
+    /// Makes a session ready.
+    #[must_use]
+    pub fn new(session: &Session, filters: &Filters) -> Self {
+        let period = session.period * filters.thinning as f64;
+        let thin = |signal: &[f64]| thin(signal, filters.thinning);
+        let raw = Channels {
+            position: thin(&session.position),
+            motor_torque: thin(&session.motor_torque),
+            joint_torque: session.joint_torque.as_ref().map_or_else(
+                || vec![0.0; session.len().div_ceil(filters.thinning)],
+                |s| thin(s),
+            ),
+        };
+        let kernel = |order| Kernel::sharp(filters.state, order, period);
+        let (smooth, slope, curvature) = (kernel(0), kernel(1), kernel(2));
+        let temperature = session.temperature.as_ref().map(|s| thin(s));
+        let days = session.start / SECONDS_PER_DAY;
+        let points: Vec<Point> = (0..raw.position.len())
+            .map(|at| Point {
+                period,
+                position: smooth.at(&raw.position, at),
+                velocity: slope.at(&raw.position, at),
+                acceleration: curvature.at(&raw.position, at),
+                motor_torque: smooth.at(&raw.motor_torque, at),
+                load: smooth.at(&raw.joint_torque, at),
+                load_rate: slope.at(&raw.joint_torque, at),
+                load_jerk: curvature.at(&raw.joint_torque, at),
+                temperature: temperature.as_ref().map_or(0.0, |t| smooth.at(t, at)),
+                days: days + at as f64 * period / SECONDS_PER_DAY,
+                ..Point::default()
+            })
+            .collect();
+        let reach = Kernel::reach(filters.column);
+        let last = points.len().saturating_sub(reach);
+        let all_rows: Vec<usize> = (reach..last).step_by(filters.stride.max(1)).collect();
+        let sliding = sliding(&points, filters);
+        let mut bad = vec![0_usize; points.len() + 1];
+        for at in 0..points.len() {
+            bad[at + 1] = bad[at] + usize::from(!sliding[at]);
+        }
+        let rows = all_rows
+            .iter()
+            .copied()
+            .filter(|at| bad[at + reach] == bad[at - reach])
+            .collect();
+        Self {
+            name: session.name.clone(),
+            period,
+            points,
+            extra: session
+                .extra
+                .iter()
+                .map(|(k, v)| (k.clone(), smooth.everywhere(&thin(v))))
+                .collect(),
+            raw,
+            rows,
+            all_rows,
+        }
+    }
+
+    /// Time \[s\] of a working sample since the session's start.
+    #[must_use]
+    pub fn time(&self, at: usize) -> f64 {
+        at as f64 * self.period
+    }
+}
+
+/// Which samples slide: faster than rest, and some way past the last reversal.
+fn sliding(points: &[Point], filters: &Filters) -> Vec<bool> {
+    let mut direction = 0.0;
+    let mut travelled = 0.0;
+    points
+        .iter()
+        .map(|point| {
+            // A fast change of speed passes rest between two samples.
+            let passing = 2.0 * point.acceleration.abs() * point.period;
+            if point.velocity.abs() < filters.rest_speed.max(passing) {
+                return false;
+            }
+            if point.velocity.signum() != direction {
+                direction = point.velocity.signum();
+                travelled = 0.0;
+            }
+            travelled += point.velocity.abs() * point.period;
+            travelled > filters.travel
+        })
+        .collect()
+}

@@ -1,0 +1,210 @@
+//! What is read, what is refused, what is written and read again.
+
+use std::fs;
+
+use super::*;
+
+const SAMPLE: &str = r#"# my joint
+recording = ["a.mcap", "${FERNTAST_DATA}/b.csv"] # two runs
+held_out = "/abs/c.mcap"
+[joint]
+type = "prismatic"
+[signals]
+position = "/js.position[0]"   # m
+motor_torque = "/m.effort[0]"
+extra.supply = "/power.voltage"
+[model]
+inertia = { fit = true }
+gear_ratio = 160
+effects = ["coulomb", { name = "bump", expression = "b*exp(-(qd/vs)^2)", vs = [0.005, 0.2] }] # so far
+"#;
+
+fn parse(text: &str) -> Result<Experiment, ExperimentError> {
+    Experiment::parse(text, Path::new("dir/e.toml"), Path::new("/data"))
+}
+
+#[test]
+fn a_file_is_read_and_its_paths_count_from_its_folder() {
+    let experiment = parse(SAMPLE).unwrap();
+    let recordings = ["dir/a.mcap", "/data/b.csv"].map(PathBuf::from);
+    assert_eq!(experiment.recordings, recordings);
+    assert_eq!(experiment.held_out, [PathBuf::from("/abs/c.mcap")]);
+    assert_eq!(experiment.joint, JointType::Prismatic);
+    assert_eq!(experiment.signals.extra["supply"], "/power.voltage");
+    assert_eq!(experiment.model.inertia, Inertia::Fit);
+    let Term::Custom(custom) = &experiment.model.effects[1] else {
+        panic!("{:?}", experiment.model);
+    };
+    assert_eq!(custom.bounds["vs"], [0.005, 0.2]);
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    for (from, to, words) in [
+        ("held_out", "heldout", "unknown field `heldout`"),
+        (
+            "motor_torque = \"/m.effort[0]\"",
+            "",
+            "missing field `motor_torque`",
+        ),
+        ("position =", "positon =", "unknown field `positon`"),
+        (
+            "{ fit = true }",
+            "{ fit = false }",
+            "model.inertia: give a number",
+        ),
+        ("{ fit = true }", "\"big\"", "expected a number (kg m²"),
+        ("{ fit = true }", "-1.0", "model.inertia: -1 is outside"),
+        ("{ fit = true }", "nan", "model.inertia: NaN is outside"),
+        ("= 160", "= 0", "model.gear_ratio: 0 is outside"),
+        ("\"prismatic\"", "\"helical\"", "unknown variant `helical`"),
+        ("[0.005, 0.2]", "[0.2, 0.2]", "exclude every value"),
+        ("[0.005, 0.2]", "0.2", "expected an effect's id"),
+        (
+            "\"bump\"",
+            "\"coulomb\"",
+            "model.effects[1]: coulomb is there twice",
+        ),
+        ("\"bump\"", "\"a b\"", "a name is letters"),
+        (
+            "extra.supply",
+            "extra.tau_m",
+            "signals.extra.tau_m: the name is taken",
+        ),
+        (
+            "[\"a.mcap\", \"${FERNTAST_DATA}/b.csv\"]",
+            "[]",
+            "the list is empty",
+        ),
+        ("[joint]", "[joint", "TOML parse error at line 4"),
+    ] {
+        assert!(SAMPLE.contains(from), "{from}");
+        let error = parse(&SAMPLE.replacen(from, to, 1))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.starts_with("dir/e.toml: ") && error.contains(words),
+            "{error}"
+        );
+    }
+}
+
+fn added(effect: Term, before: f64, after: f64) -> AddedEffect {
+    let b0 = FittedParameter {
+        value: 11.5,
+        std_error: Some(0.2),
+        unit: "N".to_owned(),
+    };
+    let bs = FittedParameter {
+        value: 3.0,
+        std_error: None,
+        unit: "N".to_owned(),
+    };
+    AddedEffect {
+        effect,
+        held_out_before: before,
+        held_out_after: after,
+        unit: "N".to_owned(),
+        parameters: [("b0".to_owned(), b0), ("bs".to_owned(), bs)].into(),
+    }
+}
+
+#[test]
+fn a_child_keeps_comments_and_knows_where_it_came_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir(at("sub")).unwrap();
+    fs::write(at("a.csv"), "first").unwrap();
+    fs::write(at("b.csv"), "second").unwrap();
+    let text = SAMPLE
+        .replace("a.mcap", "a.csv")
+        .replace("\"/abs/c.mcap\"", "[]");
+    fs::write(at("e.toml"), text).unwrap();
+    let first = Experiment::read(&at("e.toml"), folder.path()).unwrap();
+
+    let stribeck = Term::Catalogue("stribeck".to_owned());
+    write_child(
+        &first,
+        &added(stribeck.clone(), 2.0, 1.5),
+        &at("sub/e2.toml"),
+    )
+    .unwrap();
+    let text = fs::read_to_string(at("sub/e2.toml")).unwrap();
+    for kept in [
+        "# my joint",
+        "# two runs",
+        "# m\n",
+        "] # so far",
+        "\"../a.csv\"",
+        "\"${FERNTAST_DATA}/b.csv\"",
+    ] {
+        assert!(text.contains(kept), "{kept} in {text}");
+    }
+    let second = Experiment::read(&at("sub/e2.toml"), folder.path()).unwrap();
+    assert_eq!(second.model.effects[2], stribeck);
+    assert_eq!(
+        data_hash(&second.recordings).unwrap(),
+        data_hash(&first.recordings).unwrap()
+    );
+    let lineage = second.lineage.clone().unwrap();
+    assert_eq!(lineage.parent, "../e.toml");
+    // printf '\005\0\0\0\0\0\0\0first\006\0\0\0\0\0\0\0second' | sha256sum
+    assert_eq!(lineage.data_sha256, SHA256);
+    assert_eq!(lineage.parameters["b0"].std_error, Some(0.2));
+    assert_eq!(lineage.parameters["bs"].std_error, None);
+
+    let mine = CustomEffect {
+        name: "cogging".to_owned(),
+        expression: "a*sin(k*q)".to_owned(),
+        bounds: [("k".to_owned(), [5.0, 7.0])].into(),
+    };
+    let mine = Term::Custom(mine);
+    fs::write(at("b.csv"), "changed").unwrap();
+    write_child(&second, &added(mine.clone(), 1.5, 1.2), &at("e3.toml")).unwrap();
+    let third = Experiment::read(&at("e3.toml"), folder.path()).unwrap();
+    assert_eq!(third.model.effects[3], mine);
+    assert_eq!(third.lineage.clone().unwrap().parent, "sub/e2.toml");
+
+    let steps = history(&at("e3.toml"), folder.path()).unwrap();
+    let errors: Vec<_> = steps.iter().map(|step| step.held_out).collect();
+    assert_eq!(errors, [Some(2.0), Some(1.5), Some(1.2)]);
+    let names: Vec<_> = steps.iter().map(|step| step.added.as_deref()).collect();
+    assert_eq!(names, [None, Some("stribeck"), Some("cogging")]);
+    assert_eq!(steps[2].effects.len(), 4);
+    assert!(!steps[1].other_data && steps[2].other_data);
+
+    // A parent that is gone shortens the chain.
+    fs::remove_file(at("e.toml")).unwrap();
+    assert_eq!(history(&at("e3.toml"), folder.path()).unwrap().len(), 2);
+}
+
+const SHA256: &str = "2ff8a9f01da276c49f015bbe38a3b50eb7bf8d960b1094bc289fdb50ed281c4f";
+
+#[test]
+fn what_must_not_be_written_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("a.csv"), "x").unwrap();
+    let text = SAMPLE.replace("[\"a.mcap\", \"${FERNTAST_DATA}/b.csv\"]", "\"a.csv\"");
+    fs::write(at("e.toml"), text.replace("\"/abs/c.mcap\"", "[]")).unwrap();
+    let mut experiment = Experiment::read(&at("e.toml"), folder.path()).unwrap();
+    let new = added(Term::Catalogue("stribeck".to_owned()), 2.0, 1.0);
+    let old = added(Term::Catalogue("coulomb".to_owned()), 2.0, 1.0);
+    let refused = |experiment: &Experiment, added, name| {
+        write_child(experiment, added, &at(name))
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(refused(&experiment, &new, "e.toml").contains("is the experiment itself"));
+    assert!(refused(&experiment, &old, "f.toml").contains("coulomb is in the model already"));
+    assert!(refused(&experiment, &new, "no/f.toml").contains("cannot write"));
+    assert!(!at("f.toml").exists());
+    experiment.path = None;
+    assert!(refused(&experiment, &new, "f.toml").contains("no experiment file"));
+
+    let circle = "[lineage]\nparent = \"e.toml\"\neffect = \"x\"\ndata_sha256 = \"\"\nheld_out_before = 1.0\nheld_out_after = 1.0\nunit = \"N\"\n";
+    let text = fs::read_to_string(at("e.toml")).unwrap();
+    fs::write(at("e.toml"), text + circle).unwrap();
+    let error = history(&at("e.toml"), folder.path()).unwrap_err();
+    assert!(error.to_string().contains("lead back to it"));
+}

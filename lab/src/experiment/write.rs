@@ -1,0 +1,184 @@
+//! Writes the experiment that comes out of another one by adding an effect.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Component, Path, PathBuf},
+};
+
+use ferntast_identification::Term;
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
+
+use super::{DATA_VARIABLE, Experiment, FittedParameter, WriteError, data_hash, folder_of};
+
+/// What was added, and what it brought.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AddedEffect {
+    /// The effect.
+    pub effect: Term,
+    /// Error on data not fitted, before.
+    pub held_out_before: f64,
+    /// Error on data not fitted, after.
+    pub held_out_after: f64,
+    /// Unit of both errors.
+    pub unit: String,
+    /// The fitted parameters by name, those of all effects.
+    pub parameters: BTreeMap<String, FittedParameter>,
+}
+
+/// Writes `parent` with the effect added to `output`, with its lineage.
+/// Comments and order of the parent's file stay. Relative paths are turned so
+/// that they lead to the same recordings.
+///
+/// # Errors
+///
+/// [`WriteError`]; nothing is written then.
+pub fn write_child(
+    parent: &Experiment,
+    added: &AddedEffect,
+    output: &Path,
+) -> Result<(), WriteError> {
+    let Some(parent_path) = &parent.path else {
+        return Err(WriteError::NoParent);
+    };
+    let is_parent = match (output.canonicalize(), parent_path.canonicalize()) {
+        (Ok(output), Ok(parent)) => output == parent,
+        _ => output == parent_path,
+    };
+    if is_parent {
+        return Err(WriteError::OverParent {
+            path: output.to_owned(),
+        });
+    }
+    let name = added.effect.name();
+    if parent.model.effects.iter().any(|term| term.name() == name) {
+        return Err(WriteError::Twice {
+            effect: name.to_owned(),
+        });
+    }
+    let again = |reason: String| WriteError::Parent {
+        path: parent_path.clone(),
+        reason,
+    };
+    let text = fs::read_to_string(parent_path).map_err(|error| again(error.to_string()))?;
+    let mut document: DocumentMut = text
+        .parse()
+        .map_err(|error: toml_edit::TomlError| again(error.to_string()))?;
+    let (from, to) = (folder_of(parent_path), folder_of(output));
+    for key in ["recording", "held_out"] {
+        if let Some(item) = document.get_mut(key) {
+            turn_paths(item, &from, &to);
+        }
+    }
+    let effects = document
+        .get_mut("model")
+        .and_then(|model| model.get_mut("effects"))
+        .and_then(Item::as_array_mut)
+        .ok_or_else(|| again("model.effects is no list".to_owned()))?;
+    push(effects, &added.effect);
+    let all: Vec<PathBuf> = [&parent.recordings[..], &parent.held_out[..]].concat();
+    let hash = data_hash(&all).map_err(|(path, source)| WriteError::Data { path, source })?;
+    document.insert(
+        "lineage",
+        Item::Table(lineage(added, &hash, &from, &to, parent_path)),
+    );
+    fs::write(output, document.to_string()).map_err(|source| WriteError::Write {
+        path: output.to_owned(),
+        source,
+    })
+}
+
+/// Puts an effect behind the others, on a line of its own where they have that.
+fn push(effects: &mut Array, effect: &Term) {
+    let mut new: Value = match effect {
+        Term::Catalogue(id) => id.as_str().into(),
+        Term::Custom(custom) => {
+            let mut table = InlineTable::new();
+            table.insert("name", custom.name.as_str().into());
+            table.insert("expression", custom.expression.as_str().into());
+            for (parameter, [lower, upper]) in &custom.bounds {
+                table.insert(parameter, Array::from_iter([*lower, *upper]).into());
+            }
+            table.into()
+        }
+    };
+    let prefix = effects
+        .iter()
+        .last()
+        .and_then(|last| last.decor().prefix()?.as_str())
+        .map(|prefix| match prefix.rsplit_once('\n') {
+            Some((_, indent)) => format!(
+                "\n{}",
+                indent.trim_end_matches(|c: char| !c.is_whitespace())
+            ),
+            None if effects.len() > 1 => prefix.to_owned(),
+            None => " ".to_owned(),
+        });
+    let default = if effects.is_empty() { "" } else { " " };
+    new.decor_mut()
+        .set_prefix(prefix.unwrap_or_else(|| default.to_owned()));
+    effects.push_formatted(new);
+}
+
+fn lineage(added: &AddedEffect, hash: &str, from: &Path, to: &Path, parent_path: &Path) -> Table {
+    let mut table = Table::new();
+    let parent_name = parent_path.file_name().unwrap_or_default();
+    let parent = turned(&parent_name.to_string_lossy(), from, to);
+    table.insert("parent", value(parent));
+    table.insert("effect", value(added.effect.name()));
+    table.insert("data_sha256", value(hash));
+    table.insert("held_out_before", value(added.held_out_before));
+    table.insert("held_out_after", value(added.held_out_after));
+    table.insert("unit", value(added.unit.as_str()));
+    let mut parameters = Table::new();
+    for (name, parameter) in &added.parameters {
+        let mut entry = InlineTable::new();
+        entry.insert("value", parameter.value.into());
+        if let Some(std_error) = parameter.std_error.filter(|error| error.is_finite()) {
+            entry.insert("std_error", std_error.into());
+        }
+        entry.insert("unit", parameter.unit.as_str().into());
+        parameters.insert(name, value(entry));
+    }
+    table.insert("parameters", Item::Table(parameters));
+    table
+}
+
+/// Turns relative paths that count from `from` into such that count from `to`.
+fn turn_paths(item: &mut Item, from: &Path, to: &Path) {
+    let turn = |value: &mut Value| {
+        if let Some(text) = value.as_str() {
+            let new = turned(text, from, to);
+            let decor = value.decor().clone();
+            *value = new.into();
+            *value.decor_mut() = decor;
+        }
+    };
+    match item.as_value_mut() {
+        Some(Value::Array(paths)) => paths.iter_mut().for_each(turn),
+        Some(value) => turn(value),
+        None => {}
+    }
+}
+
+fn turned(text: &str, from: &Path, to: &Path) -> String {
+    let path = Path::new(text);
+    if path.is_absolute() || text.starts_with(DATA_VARIABLE) {
+        return text.to_owned();
+    }
+    let (Ok(from), Ok(to)) = (from.canonicalize(), to.canonicalize()) else {
+        return from.join(path).display().to_string();
+    };
+    if from == to {
+        return text.to_owned();
+    }
+    let target = from.join(path);
+    let common = target
+        .components()
+        .zip(to.components())
+        .take_while(|(a, b)| a == b)
+        .count();
+    let up = to.components().skip(common).map(|_| Component::ParentDir);
+    let relative: PathBuf = up.chain(target.components().skip(common)).collect();
+    relative.display().to_string()
+}

@@ -1,0 +1,30 @@
+//! Recordings against models: what is read, and what is shown.
+//!
+//! * [`message_path`]: which number of a message is a signal,
+//! * [`schema`]: numbers out of messages of whatever type a recording carries,
+//! * [`csv`]: the same out of columns,
+//! * [`recording`]: signals put on one time base and cut into sessions,
+//! * [`experiment`]: the file that names recordings, signals and model, and
+//!   how one came out of another,
+//! * [`report`]: a page to look at.
+//!
+//! What the data say about a model is told by `ferntast-identification`.
+
+pub mod csv;
+pub mod experiment;
+pub mod message_path;
+pub mod recording;
+pub mod report;
+pub mod schema;
+
+/// Of `names` those most like `wanted`, the most alike first; at most 12.
+pub(crate) fn nearest<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut rated: Vec<(usize, &str)> = names
+        .map(|name| (strsim::damerau_levenshtein(wanted, name), name))
+        .collect();
+    // Of equals, in the order of the file.
+    rated.sort_by_key(|&(distance, _)| distance);
+    rated.dedup_by_key(|(_, name)| *name);
+    let names = rated.into_iter().take(12).map(|(_, name)| name.to_owned());
+    names.collect()
+}

@@ -1,0 +1,331 @@
+//! Signals put on the position's time base and cut where one is missing.
+
+use std::path::Path;
+
+use super::{LoadError, Series};
+
+/// An interval more than that many periods long is a gap.
+const GAP: i64 = 10;
+
+/// Shorter stretches than this are left out \[samples\].
+pub(super) const SHORTEST: usize = 50;
+
+/// Sample times that deviate less than this part of a period from a uniform
+/// grid are taken as uniform.
+const UNIFORM: f64 = 0.1;
+
+/// Slower than this is taken for a mistaken unit \[ns\].
+const SLOWEST: i64 = 10_000_000_000;
+
+/// A stretch with all signals, uniformly sampled.
+pub(super) struct Piece {
+    /// Time of the first sample \[ns\].
+    pub(super) start: i64,
+    /// \[s\].
+    pub(super) period: f64,
+    /// In the order of the series.
+    pub(super) channels: Vec<Vec<f64>>,
+}
+
+/// A series with its own period.
+struct Timed<'a> {
+    series: &'a Series,
+    period: i64,
+    /// How long its last value may stand for what follows \[ns\].
+    hold: i64,
+    /// The sample at or before the time that was asked for last.
+    at: usize,
+}
+
+/// Cuts the series of one file (the position first) into pieces.
+/// Returns them with the number of samples left out in short ones.
+pub(super) fn align(file: &Path, all: &[Series]) -> Result<(Vec<Piece>, usize), LoadError> {
+    let Some(position) = all.first() else {
+        return Ok((Vec::new(), 0));
+    };
+    let too_short = |samples: usize| LoadError::TooShort {
+        file: file.to_owned(),
+        samples,
+        needed: SHORTEST,
+    };
+    if position.times.len() < SHORTEST {
+        return Err(too_short(position.times.len()));
+    }
+    let period = median_interval(position).max(1);
+    if period > SLOWEST {
+        return Err(LoadError::TooSlow {
+            signal: position.signal.clone(),
+            file: file.to_owned(),
+            period: period as f64 * 1e-9,
+        });
+    }
+    let mut others: Vec<Timed> = all
+        .iter()
+        .skip(1)
+        .map(|series| Timed::new(series, period))
+        .collect();
+    for other in &others {
+        other.check_overlap(file, position)?;
+    }
+    let mut cut = Cutter {
+        period,
+        columns: vec![Vec::new(); all.len()],
+        times: Vec::new(),
+        pieces: Vec::new(),
+        left_out: 0,
+        longest: 0,
+    };
+    let mut row = vec![0.0; all.len()];
+    for (&time, &value) in position.times.iter().zip(&position.values) {
+        let mut complete = true;
+        for (slot, value) in row.iter_mut().zip(
+            std::iter::once(Some(value)).chain(others.iter_mut().map(|other| other.value(time))),
+        ) {
+            match value {
+                Some(value) => *slot = value,
+                None => complete = false,
+            }
+        }
+        match complete {
+            true => cut.push(time, &row),
+            false => cut.close(),
+        }
+    }
+    cut.close();
+    match cut.pieces.is_empty() {
+        true => Err(too_short(cut.longest)),
+        false => Ok((cut.pieces, cut.left_out)),
+    }
+}
+
+fn median_interval(series: &Series) -> i64 {
+    let mut intervals: Vec<i64> = series
+        .times
+        .windows(2)
+        .map(|pair| pair[1].saturating_sub(pair[0]))
+        .collect();
+    let middle = intervals.len() / 2;
+    match intervals.is_empty() {
+        true => 0,
+        false => *intervals.select_nth_unstable(middle).1,
+    }
+}
+
+impl<'a> Timed<'a> {
+    fn new(series: &'a Series, position_period: i64) -> Timed<'a> {
+        let period = median_interval(series).max(1);
+        Timed {
+            series,
+            period,
+            // A slow signal (temperature) may stand for one period of its own;
+            // a single sample for all time.
+            hold: match series.times.len() {
+                1 => i64::MAX,
+                _ if period > 3 * position_period => period,
+                _ => 0,
+            },
+            at: 0,
+        }
+    }
+
+    fn check_overlap(&self, file: &Path, position: &Series) -> Result<(), LoadError> {
+        let ends = |series: &Series| {
+            let first = series.times.first().copied().unwrap_or(0);
+            (first, series.times.last().copied().unwrap_or(first))
+        };
+        let (from, to) = ends(self.series);
+        let (position_from, position_to) = ends(position);
+        let earliest = from.saturating_sub(self.hold);
+        if earliest <= position_to && to.saturating_add(self.hold) >= position_from {
+            return Ok(());
+        }
+        // Seconds since the earlier of both, to be readable.
+        let origin = from.min(position_from);
+        let seconds = |time: i64| time.saturating_sub(origin) as f64 * 1e-9;
+        Err(LoadError::NoOverlap {
+            signal: self.series.signal.clone(),
+            file: file.to_owned(),
+            from: seconds(from),
+            to: seconds(to),
+            position_from: seconds(position_from),
+            position_to: seconds(position_to),
+        })
+    }
+
+    /// The value at `time`, which must not be before the last one asked for;
+    /// `None` inside a gap and outside.
+    fn value(&mut self, time: i64) -> Option<f64> {
+        let times = &self.series.times;
+        let value = |index: usize| self.series.values.get(index).copied();
+        while times.get(self.at + 1).is_some_and(|&next| next <= time) {
+            self.at += 1;
+        }
+        let before = *times.get(self.at)?;
+        if time <= before {
+            let near = before.saturating_sub(time) <= self.hold;
+            return value(self.at).filter(|_| near);
+        }
+        match times.get(self.at + 1) {
+            Some(&after) if after.saturating_sub(before) <= GAP.saturating_mul(self.period) => {
+                let part = (time - before) as f64 / (after - before) as f64;
+                let (a, b) = (value(self.at)?, value(self.at + 1)?);
+                Some(a + (b - a) * part)
+            }
+            _ if time.saturating_sub(before) <= self.hold => value(self.at),
+            Some(&after) if after.saturating_sub(time) <= self.hold => value(self.at + 1),
+            _ => None,
+        }
+    }
+}
+
+struct Cutter {
+    period: i64,
+    times: Vec<i64>,
+    columns: Vec<Vec<f64>>,
+    pieces: Vec<Piece>,
+    left_out: usize,
+    longest: usize,
+}
+
+impl Cutter {
+    fn push(&mut self, time: i64, row: &[f64]) {
+        let last = self.times.last().copied();
+        if last.is_some_and(|last| time.saturating_sub(last) > GAP * self.period) {
+            self.close();
+        }
+        self.times.push(time);
+        for (column, value) in self.columns.iter_mut().zip(row) {
+            column.push(*value);
+        }
+    }
+
+    /// Ends the stretch that is open.
+    fn close(&mut self) {
+        let times = std::mem::take(&mut self.times);
+        let columns: Vec<Vec<f64>> = self.columns.iter_mut().map(std::mem::take).collect();
+        self.longest = self.longest.max(times.len());
+        if times.len() < SHORTEST {
+            self.left_out += times.len();
+            return;
+        }
+        self.pieces.push(uniform(&times, columns));
+    }
+}
+
+/// The same on a uniform grid: as it is where it is uniform already, else
+/// interpolated linearly.
+fn uniform(times: &[i64], columns: Vec<Vec<f64>>) -> Piece {
+    let start = times.first().copied().unwrap_or(0);
+    let seconds: Vec<f64> = times
+        .iter()
+        .map(|&time| (time - start) as f64 * 1e-9)
+        .collect();
+    let end = seconds.last().copied().unwrap_or(0.0);
+    let mean = end / (seconds.len().max(2) - 1) as f64;
+    let on_grid =
+        |(index, &time): (usize, &f64)| (time - index as f64 * mean).abs() <= UNIFORM * mean;
+    if seconds.iter().enumerate().all(on_grid) {
+        return Piece {
+            start,
+            period: mean,
+            channels: columns,
+        };
+    }
+    // The mean, not the median, where intervals are of two kinds: so as many
+    // samples come out as went in.
+    let (period, count) = (mean, seconds.len());
+    let channels = columns
+        .iter()
+        .map(|column| {
+            let mut at = 0;
+            let sample = |index: usize| {
+                let time = index as f64 * period;
+                while seconds.get(at + 1).is_some_and(|&next| next < time) {
+                    at += 1;
+                }
+                let (t0, t1) = (seconds.get(at), seconds.get(at + 1));
+                let (x0, x1) = (column.get(at), column.get(at + 1));
+                match (t0, t1, x0, x1) {
+                    (Some(t0), Some(t1), Some(x0), Some(x1)) if t1 > t0 => {
+                        x0 + (x1 - x0) * ((time - t0) / (t1 - t0)).clamp(0.0, 1.0)
+                    }
+                    _ => column.last().copied().unwrap_or_default(),
+                }
+            };
+            (0..count).map(sample).collect()
+        })
+        .collect();
+    Piece {
+        start,
+        period,
+        channels,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn series(signal: &str, times: Vec<i64>) -> Series {
+        let mut series = Series::new(signal, Path::new("a"));
+        series.values = times.iter().map(|&time| time as f64 * 1e-9).collect();
+        series.times = times;
+        series
+    }
+
+    #[test]
+    fn nothing_is_interpolated_across_a_gap_of_another_signal() {
+        let ms = 1_000_000;
+        let position = series("position", (0..400).map(|n| n * ms).collect());
+        // Every 2 ms, and silent from 150 ms to 250 ms.
+        let torque = (0..200)
+            .map(|n| 2 * n * ms)
+            .filter(|t| !(151 * ms..250 * ms).contains(t));
+        let torque = series("motor_torque", torque.collect());
+        let (pieces, left_out) = align(Path::new("a"), &[position, torque]).unwrap();
+        let ranges: Vec<(i64, usize)> = pieces
+            .iter()
+            .map(|piece| (piece.start / ms, piece.channels[1].len()))
+            .collect();
+        assert_eq!((ranges, left_out), (vec![(0, 151), (250, 149)], 0));
+        for piece in &pieces {
+            let pairs = piece.channels[0].iter().zip(&piece.channels[1]);
+            assert!(pairs.into_iter().all(|(q, tau)| (q - tau).abs() < 1e-12));
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        /// Whatever the times are: pieces are whole, long enough, and hold
+        /// nothing but what was there.
+        #[test]
+        fn any_times_give_whole_pieces(
+            steps in prop::collection::vec(prop_oneof![
+                30 => 900_000..1_100_000i64,
+                1 => 1..i64::MAX / 400,
+            ], 60..300),
+            slow in prop::collection::vec(1..50_000_000i64, 1..60),
+            first in prop_oneof![Just(0), Just(i64::MIN / 2), any::<i32>().prop_map(i64::from)],
+        ) {
+            let sum = |steps: &[i64]| -> Vec<i64> {
+                steps.iter().scan(first, |time, step| {
+                    *time = time.saturating_add(*step);
+                    Some(*time)
+                }).collect()
+            };
+            let all = [series("position", sum(&steps)), series("temperature", sum(&slow))];
+            if let Ok((pieces, _)) = align(Path::new("a"), &all) {
+                for piece in pieces {
+                    prop_assert!(piece.period > 0.0);
+                    prop_assert!(piece.channels.iter().all(|c| c.len() == piece.channels[0].len()));
+                    prop_assert!(piece.channels[0].len() >= SHORTEST);
+                    let (low, high) = (all[1].values[0], all[1].values[all[1].values.len() - 1]);
+                    prop_assert!(piece.channels[1].iter().all(|&v| low <= v && v <= high));
+                }
+            }
+        }
+    }
+}

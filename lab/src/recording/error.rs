@@ -1,0 +1,241 @@
+//! Why recordings give no data to fit a model to.
+
+use std::path::PathBuf;
+
+use ferntast_bus::mcap::{OpenBagError, ReadMessageError, SelectTopicError};
+
+use crate::{
+    csv::CsvError,
+    message_path::MessagePathError,
+    schema::{DecodeError, SchemaError, SelectError},
+};
+
+/// Why recordings give no data to fit a model to.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// A recording cannot be opened: not there, cut off, damaged.
+    #[error(transparent)]
+    Open(#[from] OpenBagError),
+    /// A recording is damaged inside.
+    #[error("{}: {source}; run `ferntast bag repair {}`", path.display(), path.display())]
+    Read {
+        /// The recording.
+        path: PathBuf,
+        /// Where and what.
+        source: Box<ReadMessageError>,
+    },
+    /// Topics cannot be read together.
+    #[error("{}: {source}", path.display())]
+    Topics {
+        /// The recording.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<SelectTopicError>,
+    },
+    /// Neither a rosbag2 directory nor a file that is read.
+    #[error("{} is no recording that is read: give a rosbag2 directory, an .mcap file or a .csv file", path.display())]
+    Kind {
+        /// What was given.
+        path: PathBuf,
+    },
+    /// A CSV file.
+    #[error(transparent)]
+    Csv(Box<CsvError>),
+    /// A signal's path cannot be read.
+    #[error("signals.{signal}: {source}")]
+    Path {
+        /// The signal.
+        signal: String,
+        /// Where and what.
+        source: Box<MessagePathError>,
+    },
+    /// The recording has no such topic.
+    #[error("signals.{signal}: {} has no topic {topic}; numbers that it has, nearest first: {}", file.display(), list(available))]
+    NoTopic {
+        /// The signal.
+        signal: String,
+        /// The recording.
+        file: PathBuf,
+        /// The topic asked for.
+        topic: String,
+        /// Paths of numbers that there are.
+        available: Vec<String>,
+    },
+    /// The topic has no such number.
+    #[error("signals.{signal} = {path}: {source}; numbers that {} has, nearest first: {}", file.display(), list(available))]
+    NoNumber {
+        /// The signal.
+        signal: String,
+        /// Its path.
+        path: String,
+        /// The recording.
+        file: PathBuf,
+        /// What the path meets instead.
+        source: Box<SelectError>,
+        /// Paths of numbers that there are.
+        available: Vec<String>,
+    },
+    /// The topic's messages cannot be understood.
+    #[error("signals.{signal}: topic {topic} of {}: {source}", file.display())]
+    Schema {
+        /// The signal.
+        signal: String,
+        /// The topic.
+        topic: String,
+        /// The recording.
+        file: PathBuf,
+        /// Why not.
+        source: Box<SchemaError>,
+    },
+    /// A message does not fit its schema.
+    #[error("signals.{signal}: message {message} of topic {topic} in {}: {source}", file.display())]
+    Decode {
+        /// The signal.
+        signal: String,
+        /// The topic.
+        topic: String,
+        /// The recording.
+        file: PathBuf,
+        /// Which message of the topic, counted from 1.
+        message: usize,
+        /// What is wrong.
+        source: DecodeError,
+    },
+    /// The path gives more than one number.
+    #[error("signals.{signal} = {path} gives {count} numbers in message {message} of {}: choose one, by an index or by a filter such as {{name==\"joint_1\"}}", file.display())]
+    Several {
+        /// The signal.
+        signal: String,
+        /// Its path.
+        path: String,
+        /// The recording.
+        file: PathBuf,
+        /// Which message of the topic, counted from 1.
+        message: usize,
+        /// How many numbers.
+        count: u64,
+    },
+    /// Not a single message has the number.
+    #[error("signals.{signal} = {path}: none of the {messages} messages in {} has it{}; numbers that the file has, nearest first: {}", file.display(), longest(*length), list(available))]
+    Never {
+        /// The signal.
+        signal: String,
+        /// Its path.
+        path: String,
+        /// The recording.
+        file: PathBuf,
+        /// Messages of the topic.
+        messages: usize,
+        /// Length of the array that was looked into.
+        length: Option<u64>,
+        /// Paths of numbers that there are.
+        available: Vec<String>,
+    },
+    /// There is nothing to read.
+    #[error("signals.{signal}: topic {topic} of {} has no message", file.display())]
+    Empty {
+        /// The signal.
+        signal: String,
+        /// The topic.
+        topic: String,
+        /// The recording.
+        file: PathBuf,
+    },
+    /// A value that is not finite.
+    #[error("signals.{signal} is {value} in {}, {place}: leave that part out of the recording", file.display())]
+    NotFinite {
+        /// The signal.
+        signal: String,
+        /// The value.
+        value: f64,
+        /// The recording.
+        file: PathBuf,
+        /// Message or line.
+        place: String,
+    },
+    /// Time runs backwards.
+    #[error("time runs backwards by {by} s under signals.{signal} in {}, {place}: cut the recording there, or order it by time", file.display())]
+    Backwards {
+        /// The signal.
+        signal: String,
+        /// The recording.
+        file: PathBuf,
+        /// Message or line.
+        place: String,
+        /// How far \[s\].
+        by: f64,
+    },
+    /// Two signals are never there at the same time.
+    #[error("signals.{signal} ({from:.3} … {to:.3} s) and signals.position ({position_from:.3} … {position_to:.3} s) never overlap in {}: they must be of the same run and clock", file.display())]
+    NoOverlap {
+        /// The signal.
+        signal: String,
+        /// The recording.
+        file: PathBuf,
+        /// Its first time \[s\].
+        from: f64,
+        /// Its last time \[s\].
+        to: f64,
+        /// The position's first time \[s\].
+        position_from: f64,
+        /// The position's last time \[s\].
+        position_to: f64,
+    },
+    /// A signal does not move at all.
+    #[error(
+        "signals.{signal} is {value} in every sample of {recordings}: nothing can be learnt from a constant; is it the right signal?"
+    )]
+    Constant {
+        /// The signal.
+        signal: String,
+        /// Its value.
+        value: f64,
+        /// The recordings.
+        recordings: String,
+    },
+    /// Too little is left.
+    #[error("{}: {samples} samples without a gap are too few, {needed} are needed; record longer, or see that all signals are there at the same time", file.display())]
+    TooShort {
+        /// The recording.
+        file: PathBuf,
+        /// The longest stretch with all signals \[samples\].
+        samples: usize,
+        /// How many would do.
+        needed: usize,
+    },
+    /// Sampled so slowly that it must be another unit.
+    #[error("signals.{signal} in {} comes every {period} s: time is in seconds here; if the column is in another unit, add .@div(…) to signals.time", file.display())]
+    TooSlow {
+        /// The signal.
+        signal: String,
+        /// The recording.
+        file: PathBuf,
+        /// Median interval \[s\].
+        period: f64,
+    },
+    /// The same recording is fitted and held out.
+    #[error("{} is both under recording and under held_out: what is held out must not be fitted", path.display())]
+    Both {
+        /// The recording.
+        path: PathBuf,
+    },
+}
+
+fn list(paths: &[String]) -> String {
+    match paths {
+        [] => "none".to_owned(),
+        paths => paths.join(", "),
+    }
+}
+
+fn longest(length: Option<u64>) -> String {
+    length.map_or(String::new(), |length| {
+        format!(" (the array there has {length} elements)")
+    })
+}
+
+impl From<CsvError> for LoadError {
+    fn from(error: CsvError) -> LoadError {
+        LoadError::Csv(Box::new(error))
+    }
+}

@@ -1,0 +1,56 @@
+//! One page that says how a model fares, with charts to zoom into. It is
+//! whole in itself: it asks nothing of a network, and nothing else of the disk.
+//!
+//! Long curves are thinned out to what a screen can show: of every stretch
+//! the smallest and the largest value stay, so that no peak is lost.
+
+mod data;
+#[cfg(test)]
+mod tests;
+mod thin;
+
+pub use data::{
+    Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap, Trace,
+    Verdict, Window,
+};
+
+const PAGE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("style.css");
+const CHARTS: &str = include_str!("charts.js");
+const SECTIONS: &str = include_str!("sections.js");
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+#[error("the report cannot be written as JSON: {0}")]
+pub struct RenderError(#[from] serde_json::Error);
+
+/// The page as HTML.
+///
+/// # Errors
+///
+/// None in practice: everything in a report can be written as JSON.
+pub fn render(report: &Report) -> Result<String, RenderError> {
+    let data = serde_json::to_string(&thin::thinned(report))?;
+    // Nothing in it may end the script element or begin a comment.
+    let data = data.replace('<', "\\u003c");
+    let title = report.title.replace('&', "&amp;").replace('<', "&lt;");
+    let parts = [
+        ("@TITLE@", title.as_str()),
+        ("@STYLE@", STYLE),
+        ("@CHARTS@", CHARTS),
+        ("@SECTIONS@", SECTIONS),
+        ("@DATA@", &data),
+    ];
+    // Piece by piece, so that what is put in is never searched.
+    let mut page = String::with_capacity(PAGE.len() + data.len() + CHARTS.len());
+    let mut rest = PAGE;
+    for (mark, content) in parts {
+        if let Some((before, after)) = rest.split_once(mark) {
+            page.push_str(before);
+            page.push_str(content);
+            rest = after;
+        }
+    }
+    page.push_str(rest);
+    Ok(page)
+}

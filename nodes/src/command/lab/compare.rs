@@ -1,0 +1,39 @@
+//! `ferntast lab compare`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use ferntast_identification::compare;
+
+use super::{
+    super::{Failure, output::print_json},
+    open, table,
+};
+
+/// Fit the model, tell its error on data it was not fitted to, and where it fails.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Experiment file, or the recording of a session.
+    experiment: PathBuf,
+}
+
+/// Runs it.
+pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let mut results = Vec::new();
+    for opened in open::open(&arguments.experiment)? {
+        let result = compare(&opened.dataset, &opened.experiment.model)
+            .map_err(|error| open::refuse(&opened, error))?;
+        if !json {
+            println!("{}", opened.experiment.title);
+            table::comparison(&result, opened.torque_unit());
+        }
+        results.push(result);
+    }
+    if json {
+        // One joint, one object; a recording of both joints, a list.
+        match results.as_slice() {
+            [result] => print_json(result)?,
+            results => print_json(&results)?,
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,52 @@
+//! `ferntast lab diagnose`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use ferntast_identification::{Diagnosis, diagnose};
+
+use super::{
+    super::{Failure, output::print_json},
+    open::{self, Opened},
+    table,
+};
+
+/// Tell which effect is missing.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Three verdicts: missing (with the effects that explain it, best first), complete (the rest is \
+    noise), unexplained (the residual depends on these signals in a way that no effect of the catalogue has)."
+)]
+pub struct Arguments {
+    /// Experiment file, or the recording of a session.
+    experiment: PathBuf,
+}
+
+/// Diagnoses with a progress bar.
+pub fn with_bar(opened: &Opened) -> Result<Diagnosis, Failure> {
+    let bar = open::bar("diagnose");
+    let result = diagnose(&opened.dataset, &opened.experiment.model, &mut |share| {
+        bar.set_position((share * 1000.0) as u64);
+    });
+    bar.finish_and_clear();
+    result.map_err(|error| open::refuse(opened, error))
+}
+
+/// Runs it.
+pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let mut results = Vec::new();
+    for opened in open::open(&arguments.experiment)? {
+        let result = with_bar(&opened)?;
+        if !json {
+            println!("{}", opened.experiment.title);
+            table::diagnosis(&result, opened.torque_unit());
+        }
+        results.push(result);
+    }
+    if json {
+        match results.as_slice() {
+            [result] => print_json(result)?,
+            results => print_json(&results)?,
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

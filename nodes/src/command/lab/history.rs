@@ -1,0 +1,55 @@
+//! `ferntast lab history`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use ferntast_lab::experiment;
+
+use super::{
+    super::{Failure, output::print_json},
+    table,
+};
+
+/// Show how the error fell, step by step.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Experiment file that `lab add` wrote.
+    experiment: PathBuf,
+}
+
+/// Runs it.
+pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let steps = experiment::history(&arguments.experiment, &experiment::data_folder())
+        .map_err(Failure::refused)?;
+    if json {
+        print_json(&steps)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let largest = steps
+        .iter()
+        .filter_map(|step| step.held_out)
+        .fold(f64::MIN_POSITIVE, f64::max);
+    for step in &steps {
+        let what = step
+            .added
+            .as_ref()
+            .map_or_else(|| step.effects.join(", "), |added| format!("+ {added}"));
+        let (error, bar) = step.held_out.map_or_else(
+            || ("-".to_owned(), String::new()),
+            |error| {
+                let length = (error / largest * 40.0).round() as usize;
+                let unit = step.unit.as_deref().unwrap_or("");
+                (
+                    format!("{} {unit}", table::significant(error)),
+                    "#".repeat(length),
+                )
+            },
+        );
+        let other = if step.other_data {
+            "  (other recordings)"
+        } else {
+            ""
+        };
+        println!("{what:<40} {error:>14} {bar}{other}");
+    }
+    Ok(ExitCode::SUCCESS)
+}

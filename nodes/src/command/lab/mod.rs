@@ -1,0 +1,82 @@
+//! `ferntast lab`: recordings against models.
+
+mod add;
+mod auto;
+mod compare;
+mod diagnose;
+mod history;
+mod open;
+mod report;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Subcommand;
+
+use super::Failure;
+
+/// Hold a model against a recording, find which effect is missing, add it.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Five minutes, from \"my model is off\" to proof:\n  \
+    ferntast lab compare E.toml              # how far off, and where\n  \
+    ferntast lab diagnose E.toml             # which effect is missing\n  \
+    ferntast lab add E.toml stribeck -o E2.toml\n  \
+    ferntast lab history E2.toml             # the error falling\n  \
+    ferntast lab report E2.toml -o report.html\n\n\
+    An experiment file names recording, signals and model:\n  \
+    recording = \"bench.mcap\"                 # or a rosbag2 directory, a .csv, a list\n  \
+    [signals]                                # message paths; in CSV names of columns\n  \
+    position     = \"/follower/measured_js.position[0]\"\n  \
+    motor_torque = \"/follower/motor_js.effort[0]\"\n  \
+    joint_torque = \"/follower/measured_js.effort[0]\"   # optional\n  \
+    [model]\n  \
+    inertia = { fit = true }                 # or a number [kg m2]\n  \
+    effects = [\"coulomb\", \"viscous\", { name = \"cogging\", expression = \"a*sin(6*q) + b*cos(6*q)\" }]\n\n\
+    A recording of a session can be given in place of an experiment file.")]
+pub struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Fit the model on one part of the recordings, tell its error on the rest, and where it fails.
+    Compare(compare::Arguments),
+    /// Tell which effect is missing, if any.
+    Diagnose(diagnose::Arguments),
+    /// Add an effect, refit, and write the new experiment file.
+    Add(add::Arguments),
+    /// Diagnose and add until the model is complete or what is left has no name.
+    Auto(auto::Arguments),
+    /// Show how the error fell, step by step.
+    History(history::Arguments),
+    /// Write one page with charts.
+    Report(report::Arguments),
+    /// List the effects of the catalogue.
+    Effects,
+}
+
+/// Runs it.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    match arguments.action {
+        Action::Compare(arguments) => compare::run(&arguments, json),
+        Action::Diagnose(arguments) => diagnose::run(&arguments, json),
+        Action::Add(arguments) => add::run(&arguments, json),
+        Action::Auto(arguments) => auto::run(&arguments, json),
+        Action::History(arguments) => history::run(&arguments, json),
+        Action::Report(arguments) => report::run(&arguments, json),
+        Action::Effects => effects(json),
+    }
+}
+
+fn effects(json: bool) -> Result<ExitCode, Failure> {
+    let catalogue = ferntast_identification::catalogue();
+    if json {
+        super::output::print_json(&catalogue)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for effect in catalogue {
+        println!("{:24} {}", effect.id, effect.equation);
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,194 @@
+//! Results for people at a terminal.
+
+use std::collections::BTreeMap;
+
+use ferntast_identification::{
+    compare::Comparison,
+    diagnose::{Diagnosis, Verdict},
+    fit::Parameter,
+    residual_map::ResidualMap,
+};
+
+/// The parameters with their standard errors.
+pub fn parameters(parameters: &BTreeMap<String, Parameter>, not_excited: &[String]) {
+    println!(
+        "{:<26} {:>14} {:>14}  unit",
+        "parameter", "value", "std error"
+    );
+    for (name, parameter) in parameters {
+        let error = parameter
+            .std_error
+            .map_or_else(|| "searched".to_owned(), significant);
+        let excited = match not_excited.contains(name) {
+            true => "  (not excited by these data)",
+            false => "",
+        };
+        println!(
+            "{name:<26} {:>14} {error:>14}  {}{excited}",
+            significant(parameter.value),
+            parameter.unit
+        );
+    }
+}
+
+/// How far off the model is, and where.
+pub fn comparison(comparison: &Comparison, unit: &str) {
+    println!(
+        "{} samples, {} used; error {} {unit} fitted, {} {unit} held out ({:.1} % of the torque); noise between repeats {}",
+        comparison.samples,
+        comparison.used,
+        significant(comparison.rms.train),
+        significant(comparison.rms.held_out),
+        comparison.relative_error_held_out * 100.0,
+        comparison.noise.repeats.map_or_else(
+            || "-".to_owned(),
+            |noise| format!("{} {unit}", significant(noise))
+        )
+    );
+    println!();
+    parameters(&comparison.parameters, &comparison.not_excited);
+    for map in &comparison.residual_maps {
+        println!();
+        residual_map(map, unit);
+    }
+    println!();
+    println!("worst stretches");
+    for window in comparison.worst.iter().take(5) {
+        println!(
+            "  {} {:.1} … {:.1} s: {} {unit}",
+            window.session,
+            window.from,
+            window.to,
+            significant(window.rms)
+        );
+    }
+    for beyond in &comparison.extrapolated {
+        println!(
+            "  {}: {} goes beyond what was fitted ({} … {}): {} … {} in {:.0} % of it",
+            beyond.session,
+            beyond.signal,
+            significant(beyond.fitted[0]),
+            significant(beyond.fitted[1]),
+            significant(beyond.reached[0]),
+            significant(beyond.reached[1]),
+            beyond.share * 100.0
+        );
+    }
+    if let Some(simulation) = &comparison.simulation {
+        println!();
+        println!(
+            "simulated forward over {} windows of {} s: position off by {} of {} moved (RMS)",
+            simulation.windows,
+            simulation.window_s,
+            significant(simulation.position_rms_rad),
+            significant(simulation.motion_rms_rad)
+        );
+    }
+}
+
+/// The mean residual over one signal as bars.
+fn residual_map(map: &ResidualMap, unit: &str) {
+    const HALF: usize = 20;
+    let largest = map
+        .bins
+        .iter()
+        .map(|bin| bin.mean.abs())
+        .fold(f64::MIN_POSITIVE, f64::max);
+    println!(
+        "mean residual over {} [{}], full bar {} {unit}",
+        map.signal,
+        map.unit,
+        significant(largest)
+    );
+    let step = map.bins.len().div_ceil(16).max(1);
+    for bin in map.bins.iter().step_by(step) {
+        let length = (bin.mean.abs() / largest * HALF as f64).round() as usize;
+        let (left, right) = match bin.mean < 0.0 {
+            true => ("#".repeat(length), String::new()),
+            false => (String::new(), "#".repeat(length)),
+        };
+        println!("  {:>11} {left:>HALF$}|{right}", significant(bin.at));
+    }
+}
+
+/// The verdict, the ranking, and what to do next.
+pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
+    let verdict = match diagnosis.verdict {
+        Verdict::Missing => "missing: an effect of the catalogue explains what the model leaves",
+        Verdict::Complete => "complete: what is left is noise",
+        Verdict::Unexplained => {
+            "unexplained: something is missing that the catalogue does not have"
+        }
+    };
+    println!("{verdict}");
+    println!(
+        "error {} {unit} on data held out; {} variants tried",
+        significant(diagnosis.rms.held_out),
+        diagnosis.tried
+    );
+    if !diagnosis.candidates.is_empty() {
+        println!();
+        println!(
+            "{:<24} {:>12} {:>12} {:>8} {:>9}",
+            "effect", "before", "after", "", "p"
+        );
+    }
+    for candidate in &diagnosis.candidates {
+        println!(
+            "{:<24} {:>12} {:>12} {:>7.1}% {:>9.1e}",
+            candidate.effect,
+            significant(candidate.held_out_before),
+            significant(candidate.held_out_after),
+            (candidate.held_out_after / candidate.held_out_before - 1.0) * 100.0,
+            candidate.p_value
+        );
+        if !candidate.indistinguishable_from.is_empty() {
+            println!(
+                "    these data cannot tell it from {}",
+                candidate.indistinguishable_from.join(", ")
+            );
+        }
+        if !candidate.separate_by.is_empty() {
+            println!("    {}", candidate.separate_by);
+        }
+    }
+    if !diagnosis.residual_depends_on.is_empty() {
+        println!();
+        println!("the residual depends on");
+    }
+    for dependence in &diagnosis.residual_depends_on {
+        println!(
+            "  {:<28} {:.1} % of its mean square",
+            dependence.signals.join(" and "),
+            dependence.strength * 100.0
+        );
+    }
+}
+
+/// Four significant digits.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) {
+        let digits = usize::try_from(3 - magnitude).unwrap_or(0);
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::significant;
+
+    #[test]
+    fn four_digits() {
+        assert_eq!(significant(203.1349), "203.1");
+        assert_eq!(significant(-0.012345), "-0.01235");
+        assert_eq!(significant(12345.6), "12346");
+        assert_eq!(significant(1.5e-7), "1.500e-7");
+        assert_eq!(significant(0.0), "0");
+    }
+}

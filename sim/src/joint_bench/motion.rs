@@ -1,0 +1,346 @@
+//! Motions that the lab can ask for, as position over time.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt;
+use std::str::FromStr;
+
+use super::BenchError;
+use crate::random::Random;
+
+/// A motion that a session runs.
+///
+/// Each one after the first shows what the standard motion leaves confounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Motion {
+    /// The paper's: the contour's spring pulled at 1, 5, 10, 20 and 40 °/s,
+    /// then a sine, then moves to random places at random speeds.
+    Standard,
+    /// No spring; strong and fast moves. Tells motor constant, torque gain and
+    /// load-dependent friction apart, shows inertia and delays.
+    FastUnloaded,
+    /// Short slow strokes with many reversals, at several loads. Shows
+    /// presliding, backlash, elasticity, Stribeck.
+    SlowReversals,
+    /// No spring; constant speeds from 0.5 to 57 °/s in both directions. Tells
+    /// the viscous terms and Stribeck apart.
+    WideSpeedRange,
+    /// No spring; slow sweeps over ±86°. Tells gravity from a cable, ripple
+    /// from one local spot.
+    WidePosition,
+    /// The same few speeds, at strokes that lie at different loads on both
+    /// springs. Tells what goes with load from what goes with position.
+    LoadSteps,
+    /// Sawtooth and sines of rising frequency under load. Tells delays from
+    /// inertia and viscous friction.
+    Accelerations,
+    /// The standard motion with all sessions on one date, spread over the whole
+    /// range of temperature and warming up by 8 K each. Tells temperature from wear.
+    TemperatureSweep,
+    /// The standard motion at one temperature, on dates far apart. Tells wear
+    /// from temperature.
+    DateSweep,
+}
+
+impl Motion {
+    /// All of them.
+    pub const ALL: [Motion; 9] = [
+        Motion::Standard,
+        Motion::FastUnloaded,
+        Motion::SlowReversals,
+        Motion::WideSpeedRange,
+        Motion::WidePosition,
+        Motion::LoadSteps,
+        Motion::Accelerations,
+        Motion::TemperatureSweep,
+        Motion::DateSweep,
+    ];
+
+    /// Its name in files and on the command line.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Motion::Standard => "standard",
+            Motion::FastUnloaded => "fast_unloaded",
+            Motion::SlowReversals => "slow_reversals",
+            Motion::WideSpeedRange => "wide_speed_range",
+            Motion::WidePosition => "wide_position",
+            Motion::LoadSteps => "load_steps",
+            Motion::Accelerations => "accelerations",
+            Motion::TemperatureSweep => "temperature_sweep",
+            Motion::DateSweep => "date_sweep",
+        }
+    }
+
+    /// True where the joint pulls the contour's springs.
+    pub(super) fn has_springs(self) -> bool {
+        !matches!(
+            self,
+            Motion::FastUnloaded | Motion::WideSpeedRange | Motion::WidePosition
+        )
+    }
+
+    /// Position over time that a session follows.
+    pub(super) fn programme(self, random: &mut Random) -> Programme {
+        let mut programme = Programme::default();
+        programme.rest(0.3);
+        match self {
+            Motion::Standard | Motion::TemperatureSweep | Motion::DateSweep => {
+                standard(&mut programme, random);
+            }
+            Motion::FastUnloaded => fast(&mut programme, random),
+            Motion::SlowReversals => slow_reversals(&mut programme, random),
+            Motion::WideSpeedRange => wide_speeds(&mut programme),
+            Motion::WidePosition => wide_position(&mut programme),
+            Motion::LoadSteps => load_steps(&mut programme),
+            Motion::Accelerations => accelerations(&mut programme),
+        }
+        programme.to(0.0, 0.25, 2.0);
+        programme.rest(0.3);
+        programme
+    }
+}
+
+impl fmt::Display for Motion {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.id())
+    }
+}
+
+impl FromStr for Motion {
+    type Err = BenchError;
+
+    fn from_str(id: &str) -> Result<Self, BenchError> {
+        Self::ALL
+            .into_iter()
+            .find(|motion| motion.id() == id)
+            .ok_or_else(|| BenchError::UnknownMotion {
+                id: id.into(),
+                known: Self::ALL.map(Motion::id).join(", "),
+            })
+    }
+}
+
+const DEGREE: f64 = PI / 180.0;
+
+fn standard(programme: &mut Programme, random: &mut Random) {
+    // The slowest leg is kept short, or it would be most of the session.
+    let reach = 0.38 + 0.14 * random.uniform();
+    programme.stroke(0.0, 0.4 * reach, 1.0 * DEGREE, 4.0);
+    for speed in [5.0, 10.0, 20.0, 40.0] {
+        programme.stroke(0.0, reach, speed * DEGREE, 4.5);
+    }
+    programme.sine(0.5 * reach, 32.0 * DEGREE, 4.0);
+    for _ in 0..13 {
+        let target = -0.12 + 0.70 * random.uniform();
+        let speed = DEGREE * (4.0 + 37.0 * random.uniform() * random.uniform().sqrt());
+        programme.to(target, speed, 2.0 + 6.0 * random.uniform());
+    }
+}
+
+fn fast(programme: &mut Programme, random: &mut Random) {
+    for _ in 0..32 {
+        let target = -0.5 + random.uniform();
+        let speed = DEGREE * (10.0 + 34.0 * random.uniform());
+        programme.to(target, speed, 2.0 + 8.0 * random.uniform());
+    }
+    for reach in [0.08, 0.16, 0.32] {
+        programme.to(0.0, 0.3, 3.0);
+        programme.sine(reach, 38.0 * DEGREE, 8.0);
+    }
+}
+
+fn slow_reversals(programme: &mut Programme, random: &mut Random) {
+    for centre in [0.0, 0.12, 0.30] {
+        for reach in [0.05, 0.025, 0.012, 0.006, 0.003] {
+            let speed = DEGREE * (0.8 + 1.2 * random.uniform());
+            programme.to(centre, 0.1, 2.0);
+            for _ in 0..2 {
+                programme.to(centre + reach, speed, 1.0);
+                programme.to(centre - reach, speed, 1.0);
+            }
+        }
+        programme.to(centre, 0.1, 2.0);
+        programme.stroke(centre, centre + 0.15, 8.0 * DEGREE, 3.0);
+    }
+}
+
+fn wide_speeds(programme: &mut Programme) {
+    for (speed, reach) in [
+        (0.5, 0.06),
+        (1.0, 0.08),
+        (2.0, 0.10),
+        (3.5, 0.15),
+        (6.0, 0.2),
+        (10.0, 0.3),
+        (15.0, 0.4),
+        (20.0, 0.5),
+        (26.0, 0.6),
+        (33.0, 0.7),
+        (40.0, 0.8),
+        (48.0, 0.9),
+        (57.0, 1.0),
+    ] {
+        programme.stroke(-0.5 * reach, 0.5 * reach, speed * DEGREE, 5.0);
+    }
+}
+
+fn wide_position(programme: &mut Programme) {
+    programme.stroke(-1.5, 1.5, 30.0 * DEGREE, 4.0);
+    programme.to(-1.5, 0.5, 4.0);
+    programme.stroke(-1.5, 1.5, 8.0 * DEGREE, 4.0);
+    programme.to(-0.2, 0.3, 3.0);
+    programme.to(0.2, 2.0 * DEGREE, 1.0);
+    programme.to(-0.2, 2.0 * DEGREE, 1.0);
+}
+
+fn load_steps(programme: &mut Programme) {
+    for centre in [0.0, 0.15, 0.3, 0.45, -0.2] {
+        programme.to(centre, 0.15, 2.0);
+        for (speed, reach) in [(2.0, 0.03), (8.0, 0.05), (20.0, 0.07)] {
+            programme.stroke(centre - reach, centre + reach, speed * DEGREE, 4.0);
+        }
+    }
+}
+
+fn accelerations(programme: &mut Programme) {
+    for _ in 0..3 {
+        programme.to(0.4, 4.0 * DEGREE, 3.0);
+        programme.to(0.0, 40.0 * DEGREE, 9.0);
+    }
+    for (reach, speed) in [(0.25, 20.0), (0.15, 25.0), (0.08, 30.0), (0.04, 30.0)] {
+        programme.to(0.2, 0.2, 2.0);
+        programme.sine(reach, speed * DEGREE, 10.0);
+    }
+    for speed in [3.0, 12.0, 30.0] {
+        programme.stroke(0.05, 0.4, speed * DEGREE, 9.0);
+    }
+}
+
+/// One stretch of a programme.
+#[derive(Clone, Copy, Debug)]
+enum Piece {
+    Rest,
+    /// Speed rises and falls by raised cosines, so that acceleration has no step.
+    Move {
+        speed: f64,
+        ramp: f64,
+    },
+    /// `centre` − `reach` cos(ω t) from its turning point, or the move there.
+    Sine {
+        reach: f64,
+        rate: f64,
+    },
+}
+
+/// Position over time, as stretches one after another, from 0 on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Programme {
+    /// Start \[s\], start position \[rad\], what follows.
+    pieces: Vec<(f64, f64, Piece)>,
+    end: f64,
+    position: f64,
+}
+
+impl Programme {
+    /// Its length \[s\].
+    pub(super) fn duration(&self) -> f64 {
+        self.end
+    }
+
+    fn push(&mut self, piece: Piece, duration: f64, position: f64) {
+        self.pieces.push((self.end, self.position, piece));
+        self.end += duration;
+        self.position = position;
+    }
+
+    fn rest(&mut self, duration: f64) {
+        self.push(Piece::Rest, duration, self.position);
+    }
+
+    /// Moves to `target` \[rad\] at `speed` \[rad/s\], with at most
+    /// `acceleration` \[rad/s²\]; a short way is taken more slowly.
+    fn to(&mut self, target: f64, speed: f64, acceleration: f64) {
+        let way = target - self.position;
+        if way.abs() < 1e-6 {
+            return;
+        }
+        // A raised-cosine ramp of duration r peaks at speed π/(2 r).
+        let speed = speed.min((way.abs() * acceleration / FRAC_PI_2).sqrt());
+        let ramp = FRAC_PI_2 * speed / acceleration;
+        let duration = way.abs() / speed + ramp;
+        let speed = speed.copysign(way);
+        self.push(Piece::Move { speed, ramp }, duration, target);
+    }
+
+    /// To `from`, then to `target` and back at one speed.
+    fn stroke(&mut self, from: f64, target: f64, speed: f64, acceleration: f64) {
+        self.to(from, 0.3, 2.0);
+        self.to(target, speed, acceleration);
+        self.to(from, speed, acceleration);
+    }
+
+    /// `cycles` of a sine whose lower turning point is here.
+    fn sine(&mut self, reach: f64, speed: f64, cycles: f64) {
+        let rate = speed / reach;
+        self.push(
+            Piece::Sine { reach, rate },
+            cycles * TAU / rate,
+            self.position,
+        );
+    }
+
+    /// Position \[rad\], velocity and acceleration at `time` \[s\]; `cursor` is
+    /// the stretch found last and only moves on.
+    pub(super) fn at(&self, time: f64, cursor: &mut usize) -> [f64; 3] {
+        while self
+            .pieces
+            .get(*cursor + 1)
+            .is_some_and(|(start, ..)| *start <= time)
+        {
+            *cursor += 1;
+        }
+        let Some(&(start, from, piece)) = self.pieces.get(*cursor) else {
+            return [self.position, 0.0, 0.0];
+        };
+        let next = self.pieces.get(*cursor + 1).map_or(self.end, |next| next.0);
+        let (time, left) = (time - start, next - time);
+        match piece {
+            Piece::Rest => [from, 0.0, 0.0],
+            Piece::Move { speed, ramp } => {
+                let to = self
+                    .pieces
+                    .get(*cursor + 1)
+                    .map_or(self.position, |next| next.1);
+                if left <= 0.0 {
+                    [to, 0.0, 0.0]
+                } else if time < ramp {
+                    let [way, velocity, acceleration] = rise(time, speed, ramp);
+                    [from + way, velocity, acceleration]
+                } else if left < ramp {
+                    let [way, velocity, acceleration] = rise(left, speed, ramp);
+                    [to - way, velocity, -acceleration]
+                } else {
+                    [from + speed * (time - 0.5 * ramp), speed, 0.0]
+                }
+            }
+            Piece::Sine { reach, rate } => {
+                let (sine, cosine) = (rate * time).sin_cos();
+                [
+                    from + reach * (1.0 - cosine),
+                    reach * rate * sine,
+                    reach * rate * rate * cosine,
+                ]
+            }
+        }
+    }
+}
+
+/// Way, velocity and acceleration `time` after the start of a ramp to `speed`.
+fn rise(time: f64, speed: f64, ramp: f64) -> [f64; 3] {
+    let rate = PI / ramp;
+    let (sine, cosine) = (rate * time).sin_cos();
+    [
+        0.5 * speed * (time - sine / rate),
+        0.5 * speed * (1.0 - cosine),
+        0.5 * speed * rate * sine,
+    ]
+}
