@@ -2,6 +2,7 @@
 
 pub mod arm;
 pub mod carry;
+pub mod challenge;
 pub mod clock;
 pub mod command;
 pub mod config;

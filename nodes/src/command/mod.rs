@@ -1,6 +1,7 @@
 //! The `ferntast` command.
 
 mod bag;
+mod challenge;
 mod doctor;
 mod interfaces;
 mod lab;
@@ -56,6 +57,8 @@ enum Command {
     Play(play::Arguments),
     /// Hold a model against a recording, find the missing effect, add it.
     Lab(lab::Arguments),
+    /// Make a recording with a hidden effect, to learn on; test the lab with many.
+    Challenge(challenge::Arguments),
     /// Look into recordings, mend them.
     Bag(bag::Arguments),
     /// Tell the operating state, or change it: enable, disable, pause, resume (re-arm).
@@ -93,6 +96,7 @@ pub fn main() -> ExitCode {
         Command::Lockstep(arguments) => lockstep::run(arguments, json),
         Command::Replay(arguments) => replay::run(arguments, json),
         Command::Play(arguments) => play::run(arguments, json),
+        Command::Challenge(arguments) => challenge::run(arguments, json),
         Command::Lab(arguments) => lab::run(arguments, json),
         Command::Bag(arguments) => bag::run(arguments, json),
         Command::State(arguments) => state::run(arguments, json),

@@ -2,6 +2,7 @@
 
 mod crashes;
 mod delay;
+mod lab;
 mod lockstep;
 mod masters;
 mod playback;

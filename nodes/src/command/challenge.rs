@@ -1,0 +1,216 @@
+//! `ferntast challenge`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use clap::Subcommand;
+use ferntast_sim::joint_bench::{BenchConfig, BenchError, HiddenEffect};
+use indicatif::ProgressBar;
+use serde_json::json;
+
+use super::{Failure, output::print_json};
+use crate::challenge::{self, BlindTest, Count, Plan};
+
+/// Recordings with a hidden effect: to learn on, and to test the lab with.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Learn on one:\n  \
+    ferntast challenge new recordings/riddle\n  \
+    ferntast lab diagnose recordings/riddle/experiment.toml\n  \
+    ferntast challenge reveal recordings/riddle stribeck")]
+pub struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Make a recording with one effect hidden, and seal the answer.
+    New {
+        /// Folder, which must not exist yet.
+        folder: PathBuf,
+
+        /// Decides joint, sessions, noise, and what is hidden.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+
+        /// Size of the hidden effect: 1 is plain to see, 0.25 is hard.
+        #[arg(long, default_value_t = 1.0)]
+        strength: f64,
+
+        /// Hide this effect (can be given twice), or "none", instead of what the seed says.
+        #[arg(long, value_name = "EFFECT")]
+        hide: Vec<String>,
+
+        /// Sessions, each at another date and temperature.
+        #[arg(long, default_value_t = 6)]
+        sessions: usize,
+    },
+    /// Open the sealed answer.
+    Reveal {
+        /// The challenge's folder.
+        folder: PathBuf,
+        /// Your answer: an effect, "complete" or "unexplained".
+        answer: String,
+    },
+    /// Put many recordings to the diagnosis and print how it did, with the misses.
+    Blind {
+        /// Recordings of each effect at each strength.
+        #[arg(long, default_value_t = 3)]
+        repeats: usize,
+
+        /// Strengths of the hidden effects.
+        #[arg(long, value_delimiter = ',', default_values_t = [1.0, 0.5, 0.25])]
+        strengths: Vec<f64>,
+
+        /// Recordings that hide nothing.
+        #[arg(long, default_value_t = 400)]
+        nothing: usize,
+
+        /// Seed of the first recording.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
+}
+
+/// Runs it.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    match arguments.action {
+        Action::New {
+            folder,
+            seed,
+            strength,
+            hide,
+            sessions,
+        } => {
+            let config = BenchConfig {
+                seed,
+                hidden: hidden(seed, &hide).map_err(Failure::refused)?,
+                strength,
+                sessions,
+                ..BenchConfig::default()
+            };
+            challenge::create(&folder, &config).map_err(Failure::refused)?;
+            let experiment = folder.join("experiment.toml");
+            if json {
+                print_json(&json!({"experiment": experiment}))?;
+            } else {
+                println!("ferntast lab diagnose {}", experiment.display());
+            }
+            Ok(ExitCode::SUCCESS)
+        }
+        Action::Reveal { folder, answer } => reveal(&folder, &answer, json),
+        Action::Blind {
+            repeats,
+            strengths,
+            nothing,
+            seed,
+        } => {
+            let plan = Plan {
+                seed,
+                repeats,
+                strengths,
+                nothing,
+            };
+            blind(&plan, json)
+        }
+    }
+}
+
+fn hidden(seed: u64, hide: &[String]) -> Result<Vec<HiddenEffect>, BenchError> {
+    match hide {
+        [] => Ok(challenge::hidden_by(seed).into_iter().collect()),
+        [none] if none == "none" => Ok(Vec::new()),
+        ids => ids.iter().map(|id| id.parse()).collect(),
+    }
+}
+
+fn reveal(folder: &std::path::Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {
+    let answer = challenge::reveal(folder).map_err(Failure::refused)?;
+    let outside = !answer.hidden.is_empty() && answer.accepted.is_empty();
+    let right = match guess {
+        "complete" | "none" => answer.hidden.is_empty(),
+        "unexplained" => outside,
+        effect => answer.accepted.iter().any(|own| own == effect),
+    };
+    if json {
+        print_json(&json!({"right": right, "answer": answer}))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let what = match answer.hidden.as_slice() {
+        [] => "nothing was hidden".to_owned(),
+        hidden => format!("hidden: {}", hidden.join(", ")),
+    };
+    let verdict = if right { "right" } else { "no" };
+    println!(
+        "{verdict}: {what}, strength {}, seed {}",
+        answer.strength, answer.seed
+    );
+    for (name, value, unit) in &answer.truth {
+        println!("  {name:<28} {value:>12.5} {unit}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn blind(plan: &Plan, json: bool) -> Result<ExitCode, Failure> {
+    let bar = ProgressBar::new(0);
+    let test = challenge::blind_test(plan, &|done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let test = test.map_err(Failure::refused)?;
+    if json {
+        print_json(&test)?;
+    } else {
+        print(&test);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn print(test: &BlindTest) {
+    let strengths: Vec<&String> = test.right_first.keys().rev().collect();
+    let row = |name: &str, counts: &std::collections::BTreeMap<String, Count>| {
+        print!("{name:<34}");
+        for strength in &strengths {
+            let count = counts.get(*strength).copied().unwrap_or_default();
+            let tried = format!("{}/{}", count.found, count.tried);
+            print!("{tried:>9} {:>5.1} %", count.share() * 100.0);
+        }
+        println!();
+    };
+    print!("{:<34}", "strength");
+    for strength in &strengths {
+        print!("{strength:>17}");
+    }
+    println!();
+    row("right effect first", &test.right_first);
+    row("  or in the family named", &test.in_family);
+    row("outside the catalogue: no name", &test.unknown_not_named);
+    let alarms = test.false_alarms;
+    println!(
+        "nothing hidden, yet named: {}/{} ({:.1} %)",
+        alarms.found,
+        alarms.tried,
+        alarms.share() * 100.0
+    );
+    println!();
+    for (effect, counts) in &test.by_effect {
+        row(effect, counts);
+    }
+    println!();
+    println!("misses");
+    for miss in &test.misses {
+        println!(
+            "  {:<28} strength {:<5} seed {:<9} {:?}: {}{}",
+            miss.hidden.as_deref().unwrap_or("nothing"),
+            miss.strength,
+            miss.seed,
+            miss.verdict,
+            miss.named.as_deref().unwrap_or("-"),
+            if miss.in_family {
+                " (in its family)"
+            } else {
+                ""
+            }
+        );
+    }
+}
