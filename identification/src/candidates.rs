@@ -5,7 +5,10 @@ use crate::effects::{self, EffectHandle};
 use crate::periodic;
 use crate::refine;
 use crate::setup::Setup;
-use crate::validation::{Score, between, left_out, trend, within};
+use crate::validation::{Score, between, disagreement, left_out, trend, within};
+
+/// Standard errors by which a coefficient within and between sessions may differ.
+const MOST_DISAGREEMENT: f64 = 3.0;
 
 /// One effect at its best shape.
 #[derive(Clone)]
@@ -91,11 +94,16 @@ pub fn score(
     let grams = design.with(&design.extra_columns(setup, effect, shape));
     let score = if effect.between_sessions() && setup.facts.sessions >= 3 {
         let mut score = between(design, &grams);
-        // What a session does to a coefficient is one number a session. Either
-        // test may be the sharper one; the price of two is a factor of two.
+        // What a session does to a coefficient is one number a session: a line
+        // through these is the honest test (G − 2 degrees of freedom), and the
+        // jackknife over sessions has to agree with it.
         let varied = effect.varies().and_then(|id| first_column(setup, id));
         if let Some(p) = varied.and_then(|column| trend(design, &grams, column)) {
-            score.p_value = (2.0 * score.p_value.min(p)).min(1.0);
+            score.p_value = score.p_value.max(p);
+        }
+        // What changes within a session has to change it there as much.
+        if disagreement(design, &grams) > MOST_DISAGREEMENT {
+            score.p_value = 1.0;
         }
         score
     } else {

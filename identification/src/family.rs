@@ -12,10 +12,8 @@ const LEAST_RATIO: f64 = 0.85;
 /// … and leaves at most this many times the mean square.
 const MOST_LEFT: f64 = 1.05;
 
-/// Degrees of freedom of an effect: what is fitted and what is searched over
-/// more than one value.
 fn freedom(candidate: &Candidate) -> usize {
-    candidate.effect.columns() + candidate.shape.len()
+    candidate.effect.freedom()
 }
 
 /// Difference of two gains in standard errors, paired fold by fold.
@@ -52,7 +50,7 @@ fn by_fold(design: &Design, gains: &[f64]) -> Vec<f64> {
 
 /// Whether `other` explains the data as well as `best` does: it leaves hardly
 /// more, or the difference is within its own error.
-fn as_good(design: &Design, best: &Candidate, other: &Candidate) -> bool {
+pub(crate) fn as_good(design: &Design, best: &Candidate, other: &Candidate) -> bool {
     let left = |c: &Candidate| (c.score.before - c.score.gain).max(1e-300);
     let ratio = other.score.gain / best.score.gain.max(1e-300);
     let (less, more) = if ratio < 1.0 {

@@ -221,6 +221,14 @@ impl Setup {
 
     fn spread(&mut self, coefficients: &DVector<f64>, terms: &[BoundTerm]) {
         let (inertia, sensor) = (self.facts.inertia.unwrap_or(0.0), self.facts.joint_torque);
+        let mut before = 0;
+        let mut load_slope = 0.0;
+        for term in terms {
+            if term.effect.description().id == "load_coulomb" {
+                load_slope = coefficients.get(before).copied().unwrap_or(0.0);
+            }
+            before += term.effect.columns();
+        }
         let nudge = 1e-3 * self.facts.speed[1];
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             let friction = working(signals, terms, coefficients, |e| {
@@ -236,6 +244,7 @@ impl Setup {
             });
             for (at, point) in signals.points.iter_mut().enumerate() {
                 point.friction_predicted = friction[at];
+                point.load_slope = load_slope;
                 point.friction_slope = if nudge > 0.0 {
                     point.sign() * (faster[at] - friction[at]) / nudge
                 } else {

@@ -11,7 +11,7 @@ use nalgebra::DVector;
 
 use crate::design::{BlockGrams, Design};
 use crate::gram::Gram;
-use crate::statistics::{f_tail, jackknife_wald, mean_error};
+use crate::statistics::{f_tail, jackknife_covariance, jackknife_wald, mean_error};
 
 /// What a candidate did.
 #[derive(Clone, Debug, PartialEq)]
@@ -208,6 +208,44 @@ pub fn trend(design: &Design, grams: &BlockGrams, column: usize) -> Option<f64> 
     }
     let rest = (syy - sxy * sxy / sxx).max(1e-300);
     Some(f_tail(sxy * sxy / sxx / (rest / (n - 2.0)), 1.0, n - 2.0))
+}
+
+/// Difference of the (single) extra column's coefficient within and between
+/// sessions, in standard errors; 0 where it hardly varies within a session.
+#[must_use]
+pub fn disagreement(design: &Design, grams: &BlockGrams) -> f64 {
+    let columns = grams.iter().flatten().next().map_or(0, Gram::columns);
+    if columns != design.base + 1 {
+        return 0.0;
+    }
+    let total = Gram::sum(grams.iter().flatten(), columns);
+    let last = |c: DVector<f64>| c.rows(columns - 1, 1).into_owned();
+    let without: Vec<DVector<f64>> = design
+        .folds
+        .iter()
+        .map(|fold| last(total.without(&fold_gram(grams, fold, columns)).solve()))
+        .collect();
+    let between = last(total.solve());
+    let reduced: Vec<Gram> = grams
+        .iter()
+        .map(|session| {
+            let own = Gram::sum(session, columns);
+            own.reduce(design.base, &own.explain(design.base))
+        })
+        .collect();
+    let inside = Gram::sum(&reduced, 1);
+    let within = inside.solve();
+    let inside_without: Vec<DVector<f64>> = reduced
+        .iter()
+        .map(|session| inside.without(session).solve())
+        .collect();
+    let variance = jackknife_covariance(&between, &without)[(0, 0)]
+        + jackknife_covariance(&within, &inside_without)[(0, 0)];
+    if variance > 0.0 && variance.is_finite() {
+        (within[0] - between[0]).abs() / variance.sqrt()
+    } else {
+        0.0
+    }
 }
 
 /// Mean square on rows left out, everything shared \[Nm²\].

@@ -25,6 +25,12 @@ impl Effect for AsymmetricViscous {
         }
     }
 
+    // A slope that differs by direction without a level that does is a
+    // part of an asymmetry: not simpler than one cause with one number.
+    fn freedom(&self) -> usize {
+        2
+    }
+
     fn own_signals(&self) -> OwnSignals {
         OwnSignals {
             names: &["velocity"],

@@ -73,6 +73,11 @@ impl Effect for ChannelDelay {
         vec![[0.0, 0.0], [0.0002, 0.2]]
     }
 
+    // The fitted delay is the shift, and the channel one of three.
+    fn freedom(&self) -> usize {
+        1
+    }
+
     fn needs_prediction(&self) -> bool {
         true
     }

@@ -73,6 +73,8 @@ pub struct Point {
     pub friction_predicted: f64,
     /// ∂τ_F/∂q̇ that the model predicts \[Nm s/rad\].
     pub friction_slope: f64,
+    /// ∂τ_F/∂|τ| that the model predicts for q̇ > 0 \[-\]: b_0T.
+    pub load_slope: f64,
 }
 
 impl Point {
@@ -265,6 +267,12 @@ pub trait Effect: Send + Sync {
     fn plausible(&self, shape: &[f64], coefficients: &[f64]) -> bool {
         let _ = (shape, coefficients);
         true
+    }
+
+    /// Numbers that it is free to choose: coefficients and shape, unless one
+    /// follows from the other. The fewer, the simpler.
+    fn freedom(&self) -> usize {
+        self.columns() + self.description().shape.len()
     }
 
     /// Names of extra signals that the effect reads, see [`Self::evaluate_with`].

@@ -1,13 +1,13 @@
 //! A joint torque sensor with an offset.
 
 use super::{
-    Direction, Effect, EffectDescription, Exact, Facts, Memory, OwnSignals, Point, TORQUE, describe,
+    Direction, Effect, EffectDescription, Facts, Memory, OwnSignals, Point, TORQUE, describe, sign,
 };
 
 describe!(
     TorqueSensorOffset,
     "torque_sensor_offset",
-    "τ_m = … + os",
+    "τ_m = … + os · (1 + b0T · sign(τ) · sign(q̇))",
     "sensor model",
     coefficients: ["os": TORQUE],
     shape: [],
@@ -21,13 +21,14 @@ impl Effect for TorqueSensorOffset {
         &self.0
     }
 
+    // The offset is no load: friction does not grow with it, to first order.
+    // This tells it from friction that differs by direction.
     fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
-        let _ = point;
-        columns.fill(1.0);
+        columns.fill(1.0 + point.load_slope * sign(point.load) * point.sign());
     }
 
-    fn exact(&self) -> &'static [Exact] {
-        &[Exact::One]
+    fn needs_prediction(&self) -> bool {
+        true
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {

@@ -65,6 +65,10 @@ enum Action {
         #[arg(long, default_value_t = 400)]
         nothing: usize,
 
+        /// Recordings that hide two effects at once.
+        #[arg(long, default_value_t = 40)]
+        two: usize,
+
         /// Seed of the first recording.
         #[arg(long, default_value_t = 1)]
         seed: u64,
@@ -102,6 +106,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             repeats,
             strengths,
             nothing,
+            two,
             seed,
         } => {
             let plan = Plan {
@@ -109,6 +114,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 repeats,
                 strengths,
                 nothing,
+                two,
             };
             blind(&plan, json)
         }
@@ -191,6 +197,11 @@ fn print(test: &BlindTest) {
         alarms.found,
         alarms.tried,
         alarms.share() * 100.0
+    );
+    let (both, one) = (test.both_of_two, test.one_of_two);
+    println!(
+        "two hidden at once, by adding what is named: both {}/{}, at least one {}/{}",
+        both.found, both.tried, one.found, one.tried
     );
     println!();
     for (effect, counts) in &test.by_effect {

@@ -287,6 +287,8 @@ fn blind_on_recordings_that_nobody_has_seen() {
         "1,0.5,0.25",
         "--nothing",
         "60",
+        "--two",
+        "6",
         "--seed",
         "424242",
         "--json",
@@ -318,6 +320,7 @@ fn blind_on_recordings_that_nobody_has_seen() {
         "{:#}",
         told["misses"]
     );
+    assert!(share(&told["one_of_two"]) >= 0.5, "{told:#}");
     assert!(share(&told["false_alarms"]) <= 0.07, "{:#}", told["misses"]);
 }
 

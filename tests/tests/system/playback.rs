@@ -2,7 +2,7 @@
 
 use ferntast_tests::{Process, Session};
 
-use crate::support::{PATIENCE, number, refused, run};
+use crate::support::{PATIENCE, attempts, number, refused, run};
 
 fn record(session: &Session, seconds: &str) {
     let arguments = ["lockstep", "--duration", seconds, "--record", "run"];
@@ -24,56 +24,60 @@ fn count(session: &Session, topic: &str, kind: &str, seconds: &str) -> Process {
 
 #[test]
 fn a_ros_client_gets_it_with_its_timing() {
-    let session = Session::new();
-    record(&session, "6");
-    let counter = count(
-        &session,
-        "/follower/measured_js",
-        "sensor_msgs/msg/JointState",
-        "4",
-    );
-    let played = play(&session, &[]).wait(PATIENCE).success().json();
-    assert!(
-        (number(&played, "played_s") - 6.0).abs() < 0.5,
-        "{played:#}"
-    );
-    let counted = counter.wait(PATIENCE).success().json();
-    // The gateway's rate on ROS 2 is 250 Hz; stamps are those of the recording.
-    let rate = number(&counted, "rate_hz");
-    assert!((230.0..=255.0).contains(&rate), "{counted:#}");
-    assert!(
-        (230.0..=255.0).contains(&number(&counted, "stamp_rate_hz")),
-        "{counted:#}"
-    );
-    assert_eq!(number(&counted, "stamps_back"), 0.0);
-    let year_2005 = 1_111_658_400e9;
-    assert!(
-        (number(&counted, "first_stamp_ns") - year_2005).abs() < 10e9,
-        "{counted:#}"
-    );
+    attempts(|| {
+        let session = Session::new();
+        record(&session, "6");
+        let counter = count(
+            &session,
+            "/follower/measured_js",
+            "sensor_msgs/msg/JointState",
+            "4",
+        );
+        let played = play(&session, &[]).wait(PATIENCE).success().json();
+        assert!(
+            (number(&played, "played_s") - 6.0).abs() < 0.5,
+            "{played:#}"
+        );
+        let counted = counter.wait(PATIENCE).success().json();
+        // The gateway's rate on ROS 2 is 250 Hz; stamps are those of the recording.
+        let rate = number(&counted, "rate_hz");
+        assert!((230.0..=255.0).contains(&rate), "{counted:#}");
+        assert!(
+            (230.0..=255.0).contains(&number(&counted, "stamp_rate_hz")),
+            "{counted:#}"
+        );
+        assert_eq!(number(&counted, "stamps_back"), 0.0);
+        let year_2005 = 1_111_658_400e9;
+        assert!(
+            (number(&counted, "first_stamp_ns") - year_2005).abs() < 10e9,
+            "{counted:#}"
+        );
+    });
 }
 
 #[test]
 fn twice_as_fast_is_twice_as_fast() {
-    let session = Session::new();
-    record(&session, "6");
-    let counter = count(
-        &session,
-        "/follower/measured_js",
-        "sensor_msgs/msg/JointState",
-        "2",
-    );
-    let played = play(&session, &["--rate", "2"])
-        .wait(PATIENCE)
-        .success()
-        .json();
-    assert!(
-        (number(&played, "played_s") - 3.0).abs() < 0.4,
-        "{played:#}"
-    );
-    let counted = counter.wait(PATIENCE).success().json();
-    let ratio = number(&counted, "stamp_rate_hz") / number(&counted, "rate_hz");
-    assert!((0.4..0.6).contains(&ratio), "{counted:#}");
+    attempts(|| {
+        let session = Session::new();
+        record(&session, "6");
+        let counter = count(
+            &session,
+            "/follower/measured_js",
+            "sensor_msgs/msg/JointState",
+            "2",
+        );
+        let played = play(&session, &["--rate", "2"])
+            .wait(PATIENCE)
+            .success()
+            .json();
+        assert!(
+            (number(&played, "played_s") - 3.0).abs() < 0.4,
+            "{played:#}"
+        );
+        let counted = counter.wait(PATIENCE).success().json();
+        let ratio = number(&counted, "stamp_rate_hz") / number(&counted, "rate_hz");
+        assert!((0.4..0.6).contains(&ratio), "{counted:#}");
+    });
 }
 
 #[test]

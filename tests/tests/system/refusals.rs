@@ -172,7 +172,10 @@ fn no_permission_for_real_time_priority_is_told_and_it_runs_on() {
         faults.contains(&serde_json::json!("no realtime priority")),
         "{summary:#}"
     );
-    assert_eq!(summary["states"]["follower"]["final"], "ENABLED");
+    // It runs on; how late it is then is the machine's affair.
+    let visited = summary["states"]["follower"]["visited"].as_array().expect("states");
+    assert!(visited.contains(&serde_json::json!("ENABLED")), "{summary:#}");
+    assert!(crate::support::number(&summary, "servo.rate_hz") > 300.0, "{summary:#}");
 }
 
 #[test]

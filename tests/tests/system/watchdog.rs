@@ -9,7 +9,9 @@ use ferntast_msgs::{
 };
 use ferntast_tests::{Process, Session, wait_until};
 
-use crate::support::{PATIENCE, await_enabled, messages, node, recording, signal, start, state};
+use crate::support::{
+    PATIENCE, attempts, await_enabled, messages, node, recording, signal, start, state,
+};
 
 /// Longest time from the last valid command to the hold \[s\].
 const HOLD_WITHIN: f64 = 0.030;
@@ -108,45 +110,51 @@ fn first(
 
 #[test]
 fn a_silent_master() {
-    falls_silent("master", "follower");
+    attempts(|| {
+        falls_silent("master", "follower");
+    });
 }
 
 #[test]
 fn a_silent_link() {
-    falls_silent("link_leader", "leader");
+    attempts(|| {
+        falls_silent("link_leader", "leader");
+    });
 }
 
 #[test]
 fn a_silent_operator_on_ros() {
-    // The last valid command of a client that is killed.
-    let session = Session::new();
-    let mut process = start(&session, &["--hand", "crtk", "--rtt", "0"]);
-    await_enabled(&session, &mut process);
-    let hand = ferntast_tests::data().join("hand/hand_2.csv");
-    let hand = hand.to_str().expect("a path in UTF-8");
-    let mut operator = Process::spawn(session.peer("ros_operator.py", &["--hand", hand]));
-    operator.await_stderr("ready", PATIENCE);
-    thread::sleep(Duration::from_secs(3));
-    operator.crash();
-    assert!(wait_until(PATIENCE, || is(&session, "PAUSED")));
-    drop(operator);
-    process.interrupt();
-    process.wait(PATIENCE).success();
+    attempts(|| {
+        // The last valid command of a client that is killed.
+        let session = Session::new();
+        let mut process = start(&session, &["--hand", "crtk", "--rtt", "0"]);
+        await_enabled(&session, &mut process);
+        let hand = ferntast_tests::data().join("hand/hand_2.csv");
+        let hand = hand.to_str().expect("a path in UTF-8");
+        let mut operator = Process::spawn(session.peer("ros_operator.py", &["--hand", hand]));
+        operator.await_stderr("ready", PATIENCE);
+        thread::sleep(Duration::from_secs(3));
+        operator.crash();
+        assert!(wait_until(PATIENCE, || is(&session, "PAUSED")));
+        drop(operator);
+        process.interrupt();
+        process.wait(PATIENCE).success();
 
-    let path = recording(&session);
-    let states = messages(&path, topics::FOLLOWER_OPERATING_STATE);
-    // A state is repeated: the hold began with the first PAUSED after the last ENABLED.
-    let enabled = states
-        .iter()
-        .rposition(|state| state.message.state == OperatingState::ENABLED)
-        .expect("enabled");
-    let paused = first(&states[enabled..], OperatingState::PAUSED);
-    let hand = messages(&path, topics::LEADER_SETPOINT_CP);
-    let last = hand
-        .iter()
-        .rfind(|pose| pose.message.stamp < paused.message.stamp)
-        .expect("the hand moved");
-    let after = paused.message.stamp.seconds_since(last.message.stamp);
-    // From the operator's side: the time over the link comes on top.
-    assert!((0.015..=HOLD_WITHIN + 0.010).contains(&after), "{after} s");
+        let path = recording(&session);
+        let states = messages(&path, topics::FOLLOWER_OPERATING_STATE);
+        // A state is repeated: the hold began with the first PAUSED after the last ENABLED.
+        let enabled = states
+            .iter()
+            .rposition(|state| state.message.state == OperatingState::ENABLED)
+            .expect("enabled");
+        let paused = first(&states[enabled..], OperatingState::PAUSED);
+        let hand = messages(&path, topics::LEADER_SETPOINT_CP);
+        let last = hand
+            .iter()
+            .rfind(|pose| pose.message.stamp < paused.message.stamp)
+            .expect("the hand moved");
+        let after = paused.message.stamp.seconds_since(last.message.stamp);
+        // From the operator's side: the time over the link comes on top.
+        assert!((0.015..=HOLD_WITHIN + 0.010).contains(&after), "{after} s");
+    });
 }

@@ -2,7 +2,7 @@
 
 use ferntast_tests::{Process, Session, data};
 
-use crate::support::{PATIENCE, await_enabled, number, recording, run, start};
+use crate::support::{PATIENCE, attempts, await_enabled, number, recording, run, start};
 
 const MIDDLEWARE: [&str; 2] = ["--middleware", "zenoh"];
 
@@ -44,53 +44,57 @@ fn it_lists_every_topic_with_its_true_hash() {
 
 #[test]
 fn it_receives_the_joint_states_at_their_rate() {
-    let session = Session::new();
-    let mut process = start(&session, &MIDDLEWARE);
-    await_enabled(&session, &mut process);
-    let arguments = [
-        "count",
-        "/follower/measured_js",
-        "sensor_msgs/msg/JointState",
-        "--seconds",
-        "6",
-        "--from-first",
-    ];
-    let counted = peer(&session, &arguments).wait(PATIENCE).success().json();
-    process.interrupt();
-    process.wait(PATIENCE).success();
-    let rate = number(&counted, "stamp_rate_hz");
-    assert!((0.95 * 250.0..=1.01 * 250.0).contains(&rate), "{counted:#}");
-    assert!(
-        number(&counted, "received") > 0.95 * 6.0 * 250.0,
-        "{counted:#}"
-    );
-    assert_eq!(counted["broken"], serde_json::json!([]));
-    // It subscribed by its own hash; the key that it got carries the same.
-    let key = counted["keys"][0].as_str().expect("a key");
-    let hash = counted["type_hash"].as_str().expect("a hash");
-    assert!(key.ends_with(hash), "{key}");
-    assert!(key.starts_with(&format!("{}/follower/measured_js/", session.domain())));
+    attempts(|| {
+        let session = Session::new();
+        let mut process = start(&session, &MIDDLEWARE);
+        await_enabled(&session, &mut process);
+        let arguments = [
+            "count",
+            "/follower/measured_js",
+            "sensor_msgs/msg/JointState",
+            "--seconds",
+            "6",
+            "--from-first",
+        ];
+        let counted = peer(&session, &arguments).wait(PATIENCE).success().json();
+        process.interrupt();
+        process.wait(PATIENCE).success();
+        let rate = number(&counted, "stamp_rate_hz");
+        assert!((0.95 * 250.0..=1.01 * 250.0).contains(&rate), "{counted:#}");
+        assert!(
+            number(&counted, "received") > 0.95 * 6.0 * 250.0,
+            "{counted:#}"
+        );
+        assert_eq!(counted["broken"], serde_json::json!([]));
+        // It subscribed by its own hash; the key that it got carries the same.
+        let key = counted["keys"][0].as_str().expect("a key");
+        let hash = counted["type_hash"].as_str().expect("a hash");
+        assert!(key.ends_with(hash), "{key}");
+        assert!(key.starts_with(&format!("{}/follower/measured_js/", session.domain())));
+    });
 }
 
 #[test]
 fn it_drives_the_arm_and_feels_the_contour() {
-    let session = Session::new();
-    let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
-    await_enabled(&session, &mut process);
-    let file = data().join("hand/hand_2.csv");
-    let file = file.to_str().expect("a path in UTF-8");
-    let arguments = ["operator", "--hand", file, "--duration", "15"];
-    let sent = peer(&session, &arguments).wait(PATIENCE).success().json();
-    process.interrupt();
-    let summary = process.wait(PATIENCE).success().json();
-    assert!(number(&sent["force"], "rate_hz") > 300.0, "{sent:#}");
-    assert_eq!(number(&sent["force"], "not_finite"), 0.0);
-    assert!(number(&sent["force"], "nonzero") > 50.0, "{sent:#}");
-    assert!(
-        number(&summary, "contact.peak_normal_force_N") > 5.0,
-        "{summary:#}"
-    );
-    assert!(recording(&session).is_dir());
+    attempts(|| {
+        let session = Session::new();
+        let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
+        await_enabled(&session, &mut process);
+        let file = data().join("hand/hand_2.csv");
+        let file = file.to_str().expect("a path in UTF-8");
+        let arguments = ["operator", "--hand", file, "--duration", "15"];
+        let sent = peer(&session, &arguments).wait(PATIENCE).success().json();
+        process.interrupt();
+        let summary = process.wait(PATIENCE).success().json();
+        assert!(number(&sent["force"], "rate_hz") > 300.0, "{sent:#}");
+        assert_eq!(number(&sent["force"], "not_finite"), 0.0);
+        assert!(number(&sent["force"], "nonzero") > 50.0, "{sent:#}");
+        assert!(
+            number(&summary, "contact.peak_normal_force_N") > 5.0,
+            "{summary:#}"
+        );
+        assert!(recording(&session).is_dir());
+    });
 }
 
 #[test]
