@@ -173,9 +173,17 @@ fn no_permission_for_real_time_priority_is_told_and_it_runs_on() {
         "{summary:#}"
     );
     // It runs on; how late it is then is the machine's affair.
-    let visited = summary["states"]["follower"]["visited"].as_array().expect("states");
-    assert!(visited.contains(&serde_json::json!("ENABLED")), "{summary:#}");
-    assert!(crate::support::number(&summary, "servo.rate_hz") > 300.0, "{summary:#}");
+    let visited = summary["states"]["follower"]["visited"]
+        .as_array()
+        .expect("states");
+    assert!(
+        visited.contains(&serde_json::json!("ENABLED")),
+        "{summary:#}"
+    );
+    assert!(
+        crate::support::number(&summary, "servo.rate_hz") > 300.0,
+        "{summary:#}"
+    );
 }
 
 #[test]
