@@ -301,27 +301,27 @@ fn blind_on_recordings_that_nobody_has_seen() {
     let share = |value: &Value| number(value, "found") / number(value, "tried");
     assert_eq!(number(&told["right_first"]["1"], "tried"), 48.0);
     assert!(
-        share(&told["right_first"]["1"]) >= 0.80,
+        share(&told["right_first"]["1"]) >= 0.90,
         "{:#}",
         told["misses"]
     );
     assert!(
-        share(&told["in_family"]["1"]) >= 0.90,
+        share(&told["in_family"]["1"]) >= 0.93,
         "{:#}",
         told["misses"]
     );
     assert!(
-        share(&told["right_first"]["0.5"]) >= 0.65,
+        share(&told["right_first"]["0.5"]) >= 0.75,
         "{:#}",
         told["misses"]
     );
     assert!(
-        share(&told["unknown_not_named"]["1"]) >= 0.85,
+        share(&told["unknown_not_named"]["1"]) >= 0.90,
         "{:#}",
         told["misses"]
     );
     assert!(share(&told["one_of_two"]) >= 0.5, "{told:#}");
-    assert!(share(&told["false_alarms"]) <= 0.07, "{:#}", told["misses"]);
+    assert!(share(&told["false_alarms"]) <= 0.04, "{:#}", told["misses"]);
 }
 
 #[test]
