@@ -5,16 +5,16 @@
 
 use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
 use ferntast_msgs::{
-    sample::{Faults, PoseSample},
+    sample::PoseSample,
     topics::{self, Delivery},
 };
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
     config::{GatewaySection, HandSource, Middleware},
-    node::{InputWatch, NodeHealth},
     pace,
     process::{PERIOD_NANOS, ProcessError, Surroundings},
+    relay::Relay,
 };
 
 /// Opens the ROS 2 side.
@@ -108,26 +108,10 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         )?;
     }
 
-    let mut meter = around.meter(PERIOD_NANOS, Faults::default());
-    let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;
-    let mut watch = InputWatch::default();
-    let mut failed = 0;
-    pace::run(
-        around.clock,
-        PERIOD_NANOS,
-        around.stop,
-        |now, late, missed| {
-            failed += carrier.carry(now).failed;
-            let mut health = NodeHealth {
-                lost: failed,
-                ..NodeHealth::default()
-            };
-            watch.note(|each| carrier.inputs(each), &mut health);
-            if let Some(sample) = meter.step(now, late, missed, &health) {
-                // What cannot be said now is said a tenth of a second later.
-                let _ = diagnostics.publish(now, &sample);
-            }
-        },
-    );
+    let mut relay = Relay::new(around, PERIOD_NANOS)?;
+    relay.begin(carrier);
+    pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
+        relay.round(wake.now, wake, |_, _| {})
+    });
     Ok(())
 }

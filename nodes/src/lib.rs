@@ -18,6 +18,7 @@ mod pace;
 mod player;
 pub mod process;
 mod recorder;
+mod relay;
 pub mod replay;
 mod say;
 pub mod servo;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use ferntast_bus::{Bus, CreateError, McapBus, MemoryBus, frames, mcap::BagOptions};
+use ferntast_lab::experiment::RECORD;
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Time,
@@ -35,8 +36,6 @@ use crate::{
 const SESSION: &str = "lockstep";
 /// When the arm is armed, after the start \[ns\].
 const ENABLE_AT_NANOS: i64 = 20_000_000;
-/// Name of the metadata record that holds what a recording was made of.
-pub const METADATA: &str = "ferntast";
 
 /// Why lockstep cannot run.
 #[derive(Debug, thiserror::Error)]
@@ -77,7 +76,7 @@ pub fn bag_options(loaded: &Loaded, mode: &str) -> BagOptions {
     ]
     .into();
     BagOptions {
-        custom: [(METADATA.to_owned(), record)].into(),
+        custom: [(RECORD.to_owned(), record)].into(),
         ..BagOptions::default()
     }
 }

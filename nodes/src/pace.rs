@@ -10,10 +10,21 @@ use crate::clock::Clock;
 /// interrupt threads at 50.
 const PRIORITY: libc::c_int = 40;
 
-/// Calls `tick(now, late_nanos, missed)` every `period_nanos` until `stop` is
+/// When a step began.
+#[derive(Clone, Copy, Debug)]
+pub struct Wake {
+    /// Now.
+    pub now: Time,
+    /// How late it is \[ns\].
+    pub late_nanos: i64,
+    /// Periods that were skipped before it.
+    pub missed: u64,
+}
+
+/// Calls `tick` every `period_nanos` until `stop` is
 /// set. Late steps are not caught up: whole periods that passed are counted as
 /// missed and skipped.
-pub fn run(clock: Clock, period_nanos: i64, stop: &AtomicBool, tick: impl FnMut(Time, i64, u64)) {
+pub fn run(clock: Clock, period_nanos: i64, stop: &AtomicBool, tick: impl FnMut(Wake)) {
     run_while(clock, period_nanos, || !stop.load(Ordering::Relaxed), tick);
 }
 
@@ -22,7 +33,7 @@ pub fn run_while(
     clock: Clock,
     period_nanos: i64,
     go_on: impl Fn() -> bool,
-    mut tick: impl FnMut(Time, i64, u64),
+    mut tick: impl FnMut(Wake),
 ) {
     let mut due = clock.now().plus_nanos(period_nanos);
     while go_on() {
@@ -36,7 +47,11 @@ pub fn run_while(
             continue; // a signal woke us
         }
         let missed = late / period_nanos;
-        tick(now, late, missed as u64);
+        tick(Wake {
+            now,
+            late_nanos: late,
+            missed: missed as u64,
+        });
         due = due.plus_nanos((missed + 1) * period_nanos);
     }
 }

@@ -1,15 +1,15 @@
 //! The player: puts a recording back on the topics with its timing.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use ferntast_bus::{Bus, McapBus, mcap};
-use ferntast_msgs::{Time, sample::Faults, topics};
+use ferntast_msgs::Time;
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    node::{InputWatch, NodeHealth},
     pace,
     process::{PERIOD_NANOS, ProcessError, Surroundings},
+    relay::Relay,
 };
 
 /// Opens `McapBus` readers on the recording with the lanes to play it.
@@ -52,29 +52,19 @@ fn open(
 pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     let path = around.context.bag.as_deref().ok_or(ProcessError::NoBag)?;
     let rate = around.context.play.rate;
-    let mut meter = around.meter(PERIOD_NANOS, Faults::default());
-    let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;
+    let mut relay = Relay::new(around, PERIOD_NANOS)?;
     loop {
-        let (mut carrier, start, end) = open(around, path)?;
+        let (carrier, start, end) = open(around, path)?;
+        relay.begin(carrier);
         let begun = around.clock.now();
-        let done = std::sync::atomic::AtomicBool::new(false);
-        let mut watch = InputWatch::default();
-        let mut failed = 0;
+        let done = AtomicBool::new(false);
         pace::run_while(
             around.clock,
             PERIOD_NANOS,
             || !around.stop.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed),
-            |now, late, missed| {
-                let at = start.plus_seconds(now.seconds_since(begun) * rate);
-                failed += carrier.carry(at).failed;
-                let mut health = NodeHealth {
-                    lost: failed,
-                    ..NodeHealth::default()
-                };
-                watch.note(|each| carrier.inputs(each), &mut health);
-                if let Some(sample) = meter.step(now, late, missed, &health) {
-                    let _ = diagnostics.publish(now, &sample);
-                }
+            |wake| {
+                let at = start.plus_seconds(wake.now.seconds_since(begun) * rate);
+                relay.round(at, wake, |_, _| {});
                 done.store(at > end, Ordering::Relaxed);
             },
         );

@@ -116,8 +116,8 @@ impl Surroundings<'_> {
     fn run<P: Ports>(&self, standing: Faults, node: P::Node, ports: P) -> Result<(), ProcessError> {
         let meter = self.meter(PERIOD_NANOS, standing);
         let mut runner = Runner::new(&self.bus, node, ports, meter)?;
-        pace::run(self.clock, PERIOD_NANOS, self.stop, |now, late, missed| {
-            runner.tick(now, late, missed);
+        pace::run(self.clock, PERIOD_NANOS, self.stop, |wake| {
+            runner.tick(wake.now, wake.late_nanos, wake.missed)
         });
         Ok(())
     }

@@ -2,20 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use ferntast_bus::{
-    Bus, McapBus, SharedMemoryBus,
-    mcap::{self, BagOptions},
-};
-use ferntast_msgs::{
-    sample::{Fault, Faults, Level},
-    topics,
-};
+use ferntast_bus::{Bus, McapBus, SharedMemoryBus, mcap::BagOptions};
+use ferntast_msgs::sample::{Fault, Level};
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    node::{InputWatch, NodeHealth},
     pace,
     process::{ProcessError, Surroundings},
+    relay::Relay,
 };
 
 /// The recorder looks this often \[ns\].
@@ -50,13 +44,6 @@ pub fn folder(bag: &Path, generation: u32) -> PathBuf {
 /// The recording cannot be made, a topic not opened; the recording cannot be closed.
 pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     let bag = around.context.bag.as_deref().ok_or(ProcessError::NoBag)?;
-    if around.generation > 0 {
-        let broken = folder(bag, around.generation - 1);
-        match mcap::repair(&broken, None) {
-            Ok(_) => eprintln!("recorder: mended {}", broken.display()),
-            Err(error) => eprintln!("recorder: {} was not mended: {error}", broken.display()),
-        }
-    }
     let path = folder(bag, around.generation);
     let recording = create(
         &path,
@@ -69,34 +56,19 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
             queue: SharedMemoryBus::max_queue(delivery),
         }
     })?;
-    let mut meter = around.meter(PERIOD_NANOS, Faults::default());
-    let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;
-    let mut watch = InputWatch::default();
-    let mut failed = 0;
-    pace::run(
-        around.clock,
-        PERIOD_NANOS,
-        around.stop,
-        |now, late, missed| {
-            failed += carrier.carry(now).failed;
-            let mut health = NodeHealth {
-                lost: failed,
-                ..NodeHealth::default()
-            };
-            watch.note(|each| carrier.inputs(each), &mut health);
+    let mut relay = Relay::new(around, PERIOD_NANOS)?;
+    relay.begin(carrier);
+    pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
+        relay.round(wake.now, wake, |health, failed| {
             if health.lost > 0 {
                 health.raise(Fault::RecordingLost, Level::WARN);
             }
             if failed > 0 {
                 health.raise(Fault::RecordingFailed, Level::ERROR);
             }
-            if let Some(sample) = meter.step(now, late, missed, &health) {
-                let _ = diagnostics.publish(now, &sample);
-            }
-        },
-    );
-    carrier.carry(around.clock.now());
-    drop(carrier);
+        });
+    });
+    relay.end(around.clock.now());
     recording
         .finish()
         .map(|_| ())

@@ -6,6 +6,7 @@ use ferntast_bus::{
     Bus, CreateError, Depth, MemoryBus, Subscriber,
     mcap::{self, BagReader},
 };
+use ferntast_lab::experiment::RECORD;
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Message, Time,
@@ -18,7 +19,6 @@ use crate::{
     carry::{Carrier, Carry, Stamp},
     config::Scenario,
     estimator::{EstimatorNode, EstimatorPorts},
-    lockstep::METADATA,
     node::{HealthMeter, Runner},
     node_name::NodeName,
     process::PERIOD_NANOS,
@@ -138,8 +138,8 @@ pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, Rep
     };
     let origin = info
         .metadata
-        .get(METADATA)
-        .ok_or_else(|| ReplayError::Origin(format!("no metadata record {METADATA:?}")))?;
+        .get(RECORD)
+        .ok_or_else(|| ReplayError::Origin(format!("no metadata record {RECORD:?}")))?;
     let entry = |key: &str| origin.get(key).map(String::as_str).unwrap_or_default();
     if entry("mode") != "lockstep" {
         return Err(ReplayError::Origin(format!(

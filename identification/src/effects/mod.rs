@@ -133,6 +133,15 @@ pub struct Facts {
 }
 
 impl Facts {
+    /// Why nothing can be said of temperature, if nothing can.
+    #[must_use]
+    pub fn no_temperature(&self) -> Option<String> {
+        (!self.temperature || self.temperature_range < 2.0)
+            .then(|| "the temperature is not measured or varies by less than 2 K".to_owned())
+    }
+}
+
+impl Facts {
     /// Length \[rad\] of the range of positions.
     #[must_use]
     pub fn travel(&self) -> f64 {

@@ -28,8 +28,7 @@ impl Effect for TemperatureViscous {
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        (!facts.temperature || facts.temperature_range < 2.0)
-            .then(|| "the temperature is not measured or varies by less than 2 K".to_owned())
+        facts.no_temperature()
     }
 
     fn between_sessions(&self) -> bool {

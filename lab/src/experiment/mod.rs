@@ -40,6 +40,7 @@ use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, Term}
 
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
+pub use own::RECORD;
 pub use write::{AddedEffect, write_child};
 
 /// What stands for the folder of shared recordings in a path.

@@ -10,8 +10,9 @@ use ferntast_msgs::topics;
 use super::{Experiment, ExperimentError, Signals};
 use crate::recording::numbers_of;
 
-/// Name of the metadata record that a recording of ours carries.
-const RECORD: &str = "ferntast";
+/// Name of the metadata record that a recording of ours carries: what it was
+/// made of.
+pub const RECORD: &str = "ferntast";
 
 /// One experiment a joint: the session's own topics, and the model that the
 /// servo believed in.

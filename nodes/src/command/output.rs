@@ -8,6 +8,8 @@ use std::{
 
 use serde::Serialize;
 
+use crate::session::SessionError;
+
 /// Why a command failed: a message, and whose turn it is.
 #[derive(Debug)]
 pub struct Failure {
@@ -29,6 +31,15 @@ impl Failure {
         Failure {
             message: error.to_string(),
             code: 1,
+        }
+    }
+
+    /// What kept a session from running: refused before anything moved, or
+    /// failed on the way.
+    pub fn of_session(error: SessionError) -> Failure {
+        match error.is_refusal() {
+            true => Failure::refused(error),
+            false => Failure::failed(error),
         }
     }
 

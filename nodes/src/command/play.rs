@@ -57,14 +57,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         except: Vec::new(),
     };
     let stop = stop::on_signals().map_err(Failure::failed)?;
-    let played =
-        session::play(context, arguments.estimate, info.duration_s, &stop).map_err(|error| {
-            if error.is_refusal() {
-                Failure::refused(error)
-            } else {
-                Failure::failed(error)
-            }
-        })?;
+    let played = session::play(context, arguments.estimate, info.duration_s, &stop)
+        .map_err(Failure::of_session)?;
     if json {
         print_json(&played)?;
     } else {

@@ -54,13 +54,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         duration: arguments.duration,
         enable: !arguments.no_enable,
     };
-    let (summary, outcome) = session::run(context, &options, &stop).map_err(|error| {
-        if error.is_refusal() {
-            Failure::refused(error)
-        } else {
-            Failure::failed(error)
-        }
-    })?;
+    let (summary, outcome) = session::run(context, &options, &stop).map_err(Failure::of_session)?;
     if json {
         print_json(&summary)?;
     } else {

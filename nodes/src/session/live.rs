@@ -54,16 +54,16 @@ impl LiveLine {
 
     /// Shows where the session stands, `elapsed` \[s\] after arming.
     pub fn show(&mut self, now: Time, elapsed: f64, monitor: &Monitor, supervisor: &Supervisor) {
-        let text = describe(now, elapsed, monitor, supervisor);
+        let text = || describe(now, elapsed, monitor, supervisor);
         if self.on_terminal {
             self.bar.set_position((elapsed * 10.0) as u64);
-            self.bar.set_message(text);
+            self.bar.set_message(text());
         } else if self
             .last
             .is_none_or(|last| now.seconds_since(last) >= QUIET_PERIOD)
         {
             self.last = Some(now);
-            eprintln!("{text}");
+            eprintln!("{}", text());
         }
     }
 
@@ -109,13 +109,7 @@ fn describe(now: Time, elapsed: f64, monitor: &Monitor, supervisor: &Supervisor)
     text.push_str(&format!(" · hand {:.1} N", monitor.hand_force));
     let dead: Vec<String> = supervisor
         .nodes()
-        .filter(|(node, process, _)| {
-            process.is_none()
-                || !monitor
-                    .nodes
-                    .get(node.as_str())
-                    .is_some_and(|view| view.is_alive(now))
-        })
+        .filter(|(node, process, _)| process.is_none() || !monitor.is_alive(*node, now))
         .map(|(node, _, _)| node.to_string())
         .collect();
     if dead.is_empty() {

@@ -12,6 +12,8 @@ use ferntast_msgs::{
     topics::{self, Topic},
 };
 
+use crate::node_name::NodeName;
+
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
 };
@@ -134,6 +136,13 @@ impl Monitor {
             refused_masters: 0,
             servo_rates: (0.0, 0),
         })
+    }
+
+    /// Whether `node` was heard of lately.
+    pub fn is_alive(&self, node: NodeName, now: Time) -> bool {
+        self.nodes
+            .get(node.as_str())
+            .is_some_and(|view| view.is_alive(now))
     }
 
     /// Takes in what arrived until `now`.

@@ -284,13 +284,10 @@ impl Running {
 
     /// Gives the command to arm once every node is alive; notes when it is.
     fn arm(&mut self, now: Time, monitor: &Monitor, arming: &mut Arming, options: &SessionOptions) {
-        let all_alive = self.supervisor.nodes().all(|(node, process, _)| {
-            process.is_some()
-                && monitor
-                    .nodes
-                    .get(node.as_str())
-                    .is_some_and(|view| view.is_alive(now))
-        });
+        let all_alive = self
+            .supervisor
+            .nodes()
+            .all(|(node, process, _)| process.is_some() && monitor.is_alive(node, now));
         if !all_alive {
             return;
         }
@@ -316,12 +313,7 @@ impl Running {
         let silent: Vec<String> = self
             .supervisor
             .nodes()
-            .filter(|(node, _, _)| {
-                !monitor
-                    .nodes
-                    .get(node.as_str())
-                    .is_some_and(|view| view.is_alive(now))
-            })
+            .filter(|(node, _, _)| !monitor.is_alive(*node, now))
             .map(|(node, _, _)| node.to_string())
             .collect();
         if !silent.is_empty() {

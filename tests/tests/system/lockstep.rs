@@ -82,8 +82,7 @@ fn it_runs_faster_than_real_time_with_all_nodes() {
 fn a_recorded_hand_moves_the_arm_with_its_bursts_and_gaps() {
     for name in ["hand_1", "hand_2", "hand_3"] {
         let session = Session::new();
-        let hand = ferntast_tests::data().join(format!("hand/{name}.csv"));
-        let hand = hand.to_str().expect("a path in UTF-8");
+        let hand = &crate::support::hand(&format!("{name}.csv"));
         let arguments = ["lockstep", "--hand", hand, "--duration", "50", "--json"];
         let summary = run(&session, &arguments).success().json();
         assert!(

@@ -9,8 +9,7 @@ use ferntast_tests::{Process, Session};
 use crate::support::{PATIENCE, attempts, await_enabled, messages, number, recording, start};
 
 fn operator(session: &Session, hand: &str, seconds: &str) -> Process {
-    let hand = ferntast_tests::data().join("hand").join(hand);
-    let hand = hand.to_str().expect("a path in UTF-8");
+    let hand = &crate::support::hand(hand);
     let arguments = ["--hand", hand, "--duration", seconds];
     Process::spawn(session.peer("ros_operator.py", &arguments))
 }

@@ -6,10 +6,11 @@ use ferntast_msgs::{
     sample::{Fault, OperatingState},
     topics,
 };
-use ferntast_tests::{Process, Session, data};
+use ferntast_tests::{Process, Session};
 
 use crate::support::{
     PATIENCE, attempts, await_enabled, messages, number, recording, run, start, state,
+    state_of_follower,
 };
 
 #[test]
@@ -85,8 +86,7 @@ fn drives_the_arm(hand: &str) {
     let session = Session::new();
     let mut process = start(&session, &["--hand", "crtk"]);
     await_enabled(&session, &mut process);
-    let file = data().join("hand").join(hand);
-    let file = file.to_str().expect("a path in UTF-8");
+    let file = &crate::support::hand(hand);
     let mut operator = Process::spawn(session.peer("ros_operator.py", &["--hand", file]));
     operator.await_stderr("ready", PATIENCE);
     // On a busy machine Python may itself be silent for 30 ms, or the arm for
@@ -119,12 +119,6 @@ fn drives_the_arm(hand: &str) {
     );
     follows(&recording(&session));
     holds_have_a_reason(&recording(&session));
-}
-
-fn state_of_follower(session: &Session) -> String {
-    let arguments = ["state", "follower", "--session", session.name(), "--json"];
-    let told = run(session, &arguments).success().json();
-    told["state"].as_str().unwrap_or("").to_owned()
 }
 
 /// The tip covers most of what the hand covers; the contour is in the way of the rest.
@@ -199,8 +193,7 @@ fn spoiled(spoil: &str, fault: Fault, words: &str) {
     let session = Session::new();
     let mut process = start(&session, &["--hand", "crtk"]);
     await_enabled(&session, &mut process);
-    let file = data().join("hand/hand_2.csv");
-    let file = file.to_str().expect("a path in UTF-8");
+    let file = &crate::support::hand("hand_2.csv");
     let arguments = [
         "--hand",
         file,

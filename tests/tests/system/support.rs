@@ -82,6 +82,19 @@ pub fn state(session: &Session, device: &str, word: &str) -> ferntast_tests::End
     )
 }
 
+/// The state that the arm of the session is in.
+pub fn state_of_follower(session: &Session) -> String {
+    let arguments = ["state", "follower", "--session", session.name(), "--json"];
+    let told = run(session, &arguments).success().json();
+    told["state"].as_str().unwrap_or("").to_owned()
+}
+
+/// Path of a recorded hand, such as `hand_2.csv`.
+pub fn hand(name: &str) -> String {
+    let path = ferntast_tests::data().join("hand").join(name);
+    path.to_str().expect("a path in UTF-8").to_owned()
+}
+
 /// Runs `ferntast` with these arguments; it has to refuse its input: exit
 /// code 2, nothing on stdout, one line on stderr with all of these words.
 pub fn refused(session: &Session, arguments: &[&str], words: &[&str]) {

@@ -11,24 +11,14 @@ use ferntast_tests::{Process, Session, wait_until};
 
 use crate::support::{
     PATIENCE, attempts, await_enabled, messages, node, recording, signal, start, state,
+    state_of_follower,
 };
 
 /// Longest time from the last valid command to the hold \[s\].
 const HOLD_WITHIN: f64 = 0.030;
 
 fn is(session: &Session, wanted: &str) -> bool {
-    state_of(session) == wanted
-}
-
-fn state_of(session: &Session) -> String {
-    let told = crate::support::run(
-        session,
-        &["state", "follower", "--session", session.name(), "--json"],
-    );
-    told.success().json()["state"]
-        .as_str()
-        .unwrap_or("")
-        .to_owned()
+    state_of_follower(session) == wanted
 }
 
 /// Stops `silent` and lets it go on; the arm has to pause, stay paused, and
@@ -45,7 +35,7 @@ fn falls_silent(silent: &str, device: &str) {
     // Commands come again, but the hold is latched.
     signal(victim, libc::SIGCONT);
     thread::sleep(Duration::from_secs(1));
-    assert_eq!(state_of(&session), "PAUSED", "{silent}");
+    assert_eq!(state_of_follower(&session), "PAUSED", "{silent}");
     // Re-armed.
     state(&session, device, "resume");
     assert!(wait_until(PATIENCE, || is(&session, "ENABLED")), "{silent}");
@@ -129,8 +119,7 @@ fn a_silent_operator_on_ros() {
         let session = Session::new();
         let mut process = start(&session, &["--hand", "crtk", "--rtt", "0"]);
         await_enabled(&session, &mut process);
-        let hand = ferntast_tests::data().join("hand/hand_2.csv");
-        let hand = hand.to_str().expect("a path in UTF-8");
+        let hand = &crate::support::hand("hand_2.csv");
         let mut operator = Process::spawn(session.peer("ros_operator.py", &["--hand", hand]));
         operator.await_stderr("ready", PATIENCE);
         thread::sleep(Duration::from_secs(3));

@@ -1,6 +1,6 @@
 //! A peer over rmw_zenoh's protocol that matches on type hashes does what rclpy does.
 
-use ferntast_tests::{Process, Session, data};
+use ferntast_tests::{Process, Session};
 
 use crate::support::{PATIENCE, attempts, await_enabled, number, recording, run, start};
 
@@ -80,8 +80,7 @@ fn it_drives_the_arm_and_feels_the_contour() {
         let session = Session::new();
         let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
         await_enabled(&session, &mut process);
-        let file = data().join("hand/hand_2.csv");
-        let file = file.to_str().expect("a path in UTF-8");
+        let file = &crate::support::hand("hand_2.csv");
         let arguments = ["operator", "--hand", file, "--duration", "15"];
         let sent = peer(&session, &arguments).wait(PATIENCE).success().json();
         process.interrupt();

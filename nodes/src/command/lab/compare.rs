@@ -4,10 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_identification::compare;
 
-use super::{
-    super::{Failure, output::print_json},
-    open, table,
-};
+use super::{super::Failure, open, table};
 
 /// Fit the model, tell its error on data it was not fitted to, and where it fails.
 #[derive(Debug, clap::Args)]
@@ -29,11 +26,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         results.push(result);
     }
     if json {
-        // One joint, one object; a recording of both joints, a list.
-        match results.as_slice() {
-            [result] => print_json(result)?,
-            results => print_json(&results)?,
-        }
+        open::print_results(&results)?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -5,7 +5,7 @@ use std::{path::PathBuf, process::ExitCode};
 use ferntast_identification::{Diagnosis, diagnose};
 
 use super::{
-    super::{Failure, output::print_json},
+    super::Failure,
     open::{self, Opened},
     table,
 };
@@ -43,10 +43,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         results.push(result);
     }
     if json {
-        match results.as_slice() {
-            [result] => print_json(result)?,
-            results => print_json(&results)?,
-        }
+        open::print_results(&results)?;
     }
     Ok(ExitCode::SUCCESS)
 }

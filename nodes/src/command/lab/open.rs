@@ -9,7 +9,9 @@ use ferntast_lab::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::super::Failure;
+use serde::Serialize;
+
+use super::super::{Failure, output::print_json};
 
 /// An experiment with its recordings read.
 pub struct Opened {
@@ -70,4 +72,12 @@ pub fn bar(label: &str) -> ProgressBar {
 /// What the data or the model lack, with the experiment's name.
 pub fn refuse(opened: &Opened, error: impl std::fmt::Display) -> Failure {
     Failure::refused(format!("{}: {error}", opened.experiment.title))
+}
+
+/// Prints results as JSON: of one joint an object, of a recording of both a list.
+pub fn print_results<T: Serialize>(results: &[T]) -> Result<(), Failure> {
+    match results {
+        [result] => print_json(result),
+        results => print_json(&results),
+    }
 }

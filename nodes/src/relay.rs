@@ -1,0 +1,76 @@
+//! What gateway, recorder and player are: a carrier whose rounds are told on
+//! `/diagnostics`.
+
+use ferntast_bus::{CreateError, Publisher};
+use ferntast_msgs::{
+    Time,
+    sample::{Faults, HealthSample},
+    topics,
+};
+
+use crate::{
+    carry::Carrier,
+    node::{HealthMeter, InputWatch, NodeHealth},
+    pace::Wake,
+    process::Surroundings,
+};
+
+/// A carrier, and how it is doing.
+pub struct Relay {
+    carrier: Carrier,
+    watch: InputWatch,
+    /// Messages that could not be sent on.
+    failed: u64,
+    meter: HealthMeter,
+    diagnostics: Publisher<HealthSample>,
+}
+
+impl Relay {
+    /// A relay that steps every `period_nanos` \[ns\] and carries nothing yet.
+    ///
+    /// # Errors
+    ///
+    /// `/diagnostics` cannot be opened.
+    pub fn new(around: &Surroundings, period_nanos: i64) -> Result<Relay, CreateError> {
+        Ok(Relay {
+            carrier: Carrier::default(),
+            watch: InputWatch::default(),
+            failed: 0,
+            meter: around.meter(period_nanos, Faults::default()),
+            diagnostics: around.bus.publisher(topics::DIAGNOSTICS)?,
+        })
+    }
+
+    /// Carries by `carrier` from now on, and counts anew.
+    pub fn begin(&mut self, carrier: Carrier) {
+        self.carrier = carrier;
+        self.watch = InputWatch::default();
+        self.failed = 0;
+    }
+
+    /// One round: carries what is visible at `at`, and tells how it went.
+    /// `judge` may raise faults; it is given the health and the number of
+    /// messages that could not be sent on.
+    pub fn round(&mut self, at: Time, wake: Wake, judge: impl FnOnce(&mut NodeHealth, u64)) {
+        self.failed += self.carrier.carry(at).failed;
+        let mut health = NodeHealth {
+            lost: self.failed,
+            ..NodeHealth::default()
+        };
+        self.watch
+            .note(|each| self.carrier.inputs(each), &mut health);
+        judge(&mut health, self.failed);
+        let sample = self
+            .meter
+            .step(wake.now, wake.late_nanos, wake.missed, &health);
+        if let Some(sample) = sample {
+            // What cannot be said now is said a tenth of a second later.
+            let _ = self.diagnostics.publish(wake.now, &sample);
+        }
+    }
+
+    /// Carries what is visible at `now`, for the last time, and closes both sides.
+    pub fn end(mut self, now: Time) {
+        self.carrier.carry(now);
+    }
+}
