@@ -14,6 +14,7 @@ pub mod friction;
 pub mod joint;
 pub mod kinematics;
 mod parameter;
+pub mod recursive_least_squares;
 
 pub use nalgebra::{Matrix2, Vector2};
 pub use parameter::{Parameter, ParameterError, check};
