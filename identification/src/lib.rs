@@ -26,6 +26,7 @@ pub mod extrapolation;
 pub mod family;
 pub mod filter;
 pub mod fit;
+pub mod flexible_joint;
 pub mod gram;
 pub mod noise_floor;
 pub mod periodic;

@@ -2,6 +2,7 @@
 
 pub mod arm;
 pub mod channel;
+pub mod flexible_joint_bench;
 pub mod hand;
 pub mod joint_bench;
 pub mod lockstep;

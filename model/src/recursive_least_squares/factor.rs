@@ -1,7 +1,7 @@
 //! A covariance as P = U D Uᵀ: U unit upper triangular, D diagonal and never negative.
 //!
 //! Bierman, *Factorization Methods for Discrete Sequential Estimation*,
-//! Academic Press 1977, chapters III.4 and V.3. P stays symmetric and
+//! Academic Press 1977, chapter V.3. P stays symmetric and
 //! positive semidefinite whatever rounding does.
 
 /// The factors of an n×n matrix. Nothing is allocated after [`Factor::diagonal`].
@@ -80,44 +80,6 @@ impl Factor {
                 self.scratch[i] += u * v;
             }
             alpha = next;
-        }
-    }
-
-    /// φᵀ P⁻¹ φ: how much is known along φ.
-    pub(super) fn information_along(&mut self, phi: &[f64]) -> f64 {
-        let n = self.n;
-        let mut information = 0.0;
-        for i in (0..n).rev() {
-            let right: f64 = (i + 1..n)
-                .map(|j| self.u[i * n + j] * self.scratch[j])
-                .sum();
-            self.scratch[i] = phi[i] - right;
-            if self.scratch[i] != 0.0 {
-                information += self.scratch[i].powi(2) / self.d[i];
-            }
-        }
-        information
-    }
-
-    /// P ← P + c φ φᵀ; c ≥ 0.
-    pub(super) fn widen(&mut self, c: f64, phi: &[f64]) {
-        let n = self.n;
-        let mut c = c;
-        self.scratch.copy_from_slice(phi);
-        for j in (0..n).rev() {
-            let w = self.scratch[j];
-            let old = self.d[j];
-            let new = old + c * w * w;
-            if new <= 0.0 {
-                continue;
-            }
-            let beta = c * w / new;
-            for i in 0..j {
-                self.scratch[i] -= w * self.u[i * n + j];
-                self.u[i * n + j] += beta * self.scratch[i];
-            }
-            c *= old / new;
-            self.d[j] = new;
         }
     }
 

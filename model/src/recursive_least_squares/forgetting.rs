@@ -18,21 +18,17 @@ pub enum Forgetting {
         factor: f64,
     },
     /// λ falls with the error, such that the information kept is that of
-    /// `memory` samples: λ = 1 − e² / ((1 + φᵀPφ) σ² memory).
+    /// `memory` samples: λ = 1 − w e² / ((1 + ζ) σ² memory), ζ = φᵀPφ, after
     /// Fortescue, Kershenbaum, Ydstie, "Implementation of self-tuning
     /// regulators with variable forgetting factors", Automatica 17(6), 1981.
+    ///
+    /// The weight w = min(1, ζ memory / n)² checks the excitation: in steady
+    /// motion ζ is about n / memory for n parameters; at rest ζ goes as one over
+    /// the number of samples, and the sum of all that is forgotten converges. Forgetting along φ only (Kulhavý 1987; Cao
+    /// and Schwartz 2000) does not wind up either, but after a step in one of
+    /// two correlated parameters it still was a third off when this rule had
+    /// arrived.
     Variable {
-        /// N₀ \[samples\].
-        memory: f64,
-        /// Smallest λ \[1\].
-        least: f64,
-    },
-    /// Forgets only along φ, where something new is learned, by the same law
-    /// times the number of parameters: it neither winds up nor forgets when
-    /// the motion is poor.
-    /// Cao, Schwartz, "A directional forgetting algorithm based on the
-    /// decomposition of the information matrix", Automatica 36(11), 2000.
-    Directional {
         /// N₀ \[samples\].
         memory: f64,
         /// Smallest λ \[1\].
@@ -42,7 +38,7 @@ pub enum Forgetting {
 
 impl Default for Forgetting {
     fn default() -> Self {
-        Self::Directional {
+        Self::Variable {
             memory: 1000.0,
             least: 0.95,
         }
@@ -54,14 +50,13 @@ impl Forgetting {
     /// σ² \[unit of y squared\] and the number of parameters.
     #[must_use]
     pub fn factor(&self, error: f64, zeta: f64, noise_variance: f64, parameters: usize) -> f64 {
-        let share = |memory| error * error / ((1.0 + zeta) * noise_variance * memory);
         match *self {
             Self::None => 1.0,
             Self::Exponential { factor } => factor,
-            Self::Variable { memory, least } => (1.0 - share(memory)).clamp(least, 1.0),
-            // One sample in `parameters` goes along any one direction.
-            Self::Directional { memory, least } => {
-                (1.0 - parameters as f64 * share(memory)).clamp(least, 1.0)
+            Self::Variable { memory, least } => {
+                let weight = (zeta * memory / parameters as f64).min(1.0).powi(2);
+                let share = weight * error * error / ((1.0 + zeta) * noise_variance * memory);
+                (1.0 - share).clamp(least, 1.0)
             }
         }
     }
@@ -72,7 +67,7 @@ impl Forgetting {
         match *self {
             Self::None => f64::INFINITY,
             Self::Exponential { factor } => 1.0 / (1.0 - factor).max(f64::MIN_POSITIVE),
-            Self::Variable { memory, .. } | Self::Directional { memory, .. } => memory,
+            Self::Variable { memory, .. } => memory,
         }
     }
 
@@ -85,7 +80,7 @@ impl Forgetting {
         match *self {
             Self::None => Ok(()),
             Self::Exponential { factor } => check("factor", factor, 0.5, 1.0, "-"),
-            Self::Variable { memory, least } | Self::Directional { memory, least } => {
+            Self::Variable { memory, least } => {
                 check("memory", memory, 2.0, 1e9, "samples")?;
                 check("least", least, 0.5, 1.0, "-")
             }

@@ -208,6 +208,14 @@ impl RecursiveLeastSquares {
         (self.variance(index) * self.error_variance * inflation).sqrt()
     }
 
+    /// Standard deviation of parameter `index` by the covariance alone, over
+    /// the prior's: 1 at the start; above 1 the estimator has wound up \[1\].
+    #[must_use]
+    pub fn uncertainty(&self, index: usize) -> f64 {
+        let start = self.start.get(index).copied().unwrap_or(1.0);
+        (self.variance(index) / start).sqrt()
+    }
+
     /// Share of the prior's variance that the samples have removed: 0 where
     /// they told nothing, towards 1 where they told all \[1\].
     #[must_use]
@@ -259,33 +267,19 @@ impl RecursiveLeastSquares {
             Forgetting::None => return zeta,
             Forgetting::Exponential { .. } => self.covariance.scale(1.0 / factor),
             Forgetting::Variable { .. } => {
-                let room = self.room(|i, covariance| covariance.at(i, i));
-                self.covariance
-                    .scale(1.0 + (1.0 / factor - 1.0).min(room).max(0.0));
-            }
-            Forgetting::Directional { .. } => {
-                let information = self.covariance.information_along(phi);
-                let growth = (1.0 - factor) / (factor * information);
-                let room = self.room(|i, _| phi[i] * phi[i]);
-                let growth = growth.min(room);
-                if growth.is_finite() && growth > 0.0 {
-                    self.covariance.widen(growth, phi);
-                }
+                self.covariance.scale((1.0 / factor).min(self.room()));
             }
         }
         self.covariance.look_along(phi)
     }
 
-    /// How many times `growth` of P_ii fits before a parameter would be less
-    /// certain than at the start.
-    fn room(&self, growth: impl Fn(usize, &Factor) -> f64) -> f64 {
+    /// By how much P may grow before a parameter is less certain than at the
+    /// start; 1 or more.
+    fn room(&self) -> f64 {
         (0..self.start.len())
-            .filter_map(|i| {
-                let growth = growth(i, &self.covariance);
-                let left = self.start[i] - self.covariance.at(i, i);
-                (growth > 0.0).then(|| left / growth)
-            })
+            .map(|i| self.start[i] / self.covariance.at(i, i).max(f64::MIN_POSITIVE))
             .fold(f64::INFINITY, f64::min)
+            .max(1.0)
     }
 
     /// Moves an estimate that left its bounds onto them, and the others along
