@@ -83,9 +83,11 @@ impl Factor {
         }
     }
 
-    /// P ← s P.
+    /// P ← s P; what was looked along is scaled with it.
     pub(super) fn scale(&mut self, s: f64) {
-        self.d.iter_mut().for_each(|d| *d *= s);
+        for part in [&mut self.d, &mut self.v, &mut self.projected] {
+            part.iter_mut().for_each(|x| *x *= s);
+        }
     }
 
     /// P_ij.

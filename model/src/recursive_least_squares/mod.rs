@@ -170,7 +170,7 @@ impl RecursiveLeastSquares {
         let factor = self
             .forgetting
             .factor(error, zeta, self.noise_variance, self.theta.len());
-        let zeta_forgotten = self.forget(phi, zeta, factor);
+        let zeta_forgotten = self.forget(zeta, factor);
         let gain = error / (1.0 + zeta_forgotten);
         for (theta, direction) in self.theta.iter_mut().zip(self.covariance.projected()) {
             *theta += direction * gain;
@@ -258,19 +258,15 @@ impl RecursiveLeastSquares {
         }
     }
 
-    /// Widens P by what is forgotten, looks along φ again and returns ζ.
-    fn forget(&mut self, phi: &[f64], zeta: f64, factor: f64) -> f64 {
-        if factor >= 1.0 {
-            return zeta;
-        }
-        match self.forgetting {
-            Forgetting::None => return zeta,
-            Forgetting::Exponential { .. } => self.covariance.scale(1.0 / factor),
-            Forgetting::Variable { .. } => {
-                self.covariance.scale((1.0 / factor).min(self.room()));
-            }
-        }
-        self.covariance.look_along(phi)
+    /// Widens P by what is forgotten; returns ζ as it is then.
+    fn forget(&mut self, zeta: f64, factor: f64) -> f64 {
+        let growth = match self.forgetting {
+            Forgetting::Exponential { .. } => 1.0 / factor,
+            Forgetting::Variable { .. } if factor < 1.0 => (1.0 / factor).min(self.room()),
+            Forgetting::None | Forgetting::Variable { .. } => 1.0,
+        };
+        self.covariance.scale(growth);
+        zeta * growth
     }
 
     /// By how much P may grow before a parameter is less certain than at the
