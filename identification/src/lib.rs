@@ -36,6 +36,7 @@ pub mod setup;
 pub mod signals;
 pub mod simulate;
 pub mod statistics;
+pub mod twin;
 pub mod validation;
 
 pub use add::{Addition, add};
