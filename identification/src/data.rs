@@ -26,6 +26,10 @@ pub struct Session {
     pub temperature: Option<Vec<f64>>,
     /// Anything else by name: searched for dependence, usable in expressions.
     pub extra: BTreeMap<String, Vec<f64>>,
+    /// Known to have been run free of load: beyond the torque sensor there is
+    /// nothing but the link, so that the sensor's own zero shows.
+    #[serde(default)]
+    pub unloaded: bool,
 }
 
 /// Kind of joint: it decides the units in which results are told.

@@ -12,14 +12,21 @@ use crate::error::PrepareError;
 use crate::family;
 use crate::fit::{Fit, Parameter, fit};
 use crate::noise_floor::{self, NoiseFloor};
+use crate::proposal::Proposal;
+use crate::reversal;
+use crate::sensor_zero;
 use crate::setup::{BoundTerm, Setup};
 
 /// A named effect explains this share of the mean square at least.
 const LEAST_SHARE: f64 = 0.01;
 /// Standard errors by which its prediction of rows left out is right.
 const LEAST_CERTAINTY: f64 = 3.0;
-/// Chance of a false alarm over all variants tried.
+/// Chance of a false alarm over all variants tried that show within a session …
 const SIGNIFICANCE: f64 = 0.01;
+/// … and over those that show between sessions, of which there are few.
+const SIGNIFICANCE_BETWEEN: f64 = 0.02;
+/// What has the shape of a map that passed explains this share of it at least.
+const SAME_AS_MAP: f64 = 0.85;
 /// A free map counts where it explains this share.
 const LEAST_MAP_SHARE: f64 = 0.03;
 /// If a free map over a named effect's own signals still explains this share of
@@ -32,6 +39,9 @@ const UNNAMED_SHARE: f64 = 0.45;
 const UNNAMED_NOTABLE: f64 = 0.12;
 /// and with it this share of all that the name leaves.
 const UNNAMED_OF_REST: f64 = 0.6;
+/// A name that leaves out more than this of what a map over one signal explains
+/// has not got its shape.
+const LEAST_OF_MAP: f64 = 0.92;
 /// Effects named on top of each other before giving up.
 const MOST_EFFECTS: usize = 3;
 
@@ -73,8 +83,24 @@ pub struct NamedCandidate {
     pub parameters: BTreeMap<String, Parameter>,
     /// Effects that explain these data as well.
     pub indistinguishable_from: Vec<String>,
-    /// Motion or condition that would tell them apart, or confirm the one.
+    /// Motion or condition that would tell them apart, or confirm the one: the
+    /// id of `next_experiment`, and what it is.
     pub separate_by: String,
+    /// What to record next.
+    pub next_experiment: Proposal,
+}
+
+/// An effect that may be there, but is not proven.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Suspect {
+    /// Its id.
+    pub effect: String,
+    /// p-value by leaving sessions out in turn, not corrected for what was tried.
+    pub p_value: f64,
+    /// Share of the residual's mean square that it explains on rows left out.
+    pub share: f64,
+    /// What to record to be sure.
+    pub next_experiment: Proposal,
 }
 
 /// The answer.
@@ -94,6 +120,9 @@ pub struct Diagnosis {
     pub noise: NoiseFloor,
     /// Best first; only such as pass.
     pub candidates: Vec<NamedCandidate>,
+    /// Where nothing passes: effects that show between sessions, for which these
+    /// are too few to tell them from scatter. Best first.
+    pub suspected: Vec<Suspect>,
     /// What the residual depends on, strongest first.
     pub residual_depends_on: Vec<Dependence>,
     /// Variants tried.
@@ -120,7 +149,12 @@ pub fn diagnose(
     let noise = noise_floor::find(&setup, &design, base.held_out * base.held_out);
     let mut passing = passing(&trial);
     family::order(&design, &mut passing);
+    reversal::settle(&setup, &mut passing, &trial.candidates);
+    sensor_zero::settle(&setup, &mut passing);
     let maps = maps(&setup, &design);
+    if passing.is_empty() {
+        passing.extend(named_by_map(&trial, &maps));
+    }
     progress(0.75);
     let verdict = judge(&setup, &passing, &maps, &mut |done| {
         progress(0.75 + 0.2 * done)
@@ -130,6 +164,10 @@ pub fn diagnose(
         &passing
     } else {
         &[]
+    };
+    let suspected = match named.is_empty() {
+        true => suspected(&trial),
+        false => Vec::new(),
     };
     let candidates = named
         .iter()
@@ -147,6 +185,7 @@ pub fn diagnose(
         noise_floor: noise.repeats,
         noise,
         candidates,
+        suspected,
         residual_depends_on: maps,
         tried: trial.variants + trial.variants_between,
     })
@@ -166,7 +205,37 @@ fn passes(candidate: &Candidate, trial: &Trial) -> bool {
     candidate.plausible
         && candidate.score.share() > LEAST_SHARE
         && (candidate.score.certainty > LEAST_CERTAINTY || candidate.effect.between_sessions())
-        && corrected(candidate, trial) < SIGNIFICANCE
+        && corrected(candidate, trial)
+            < match candidate.effect.between_sessions() {
+                true => SIGNIFICANCE_BETWEEN,
+                false => SIGNIFICANCE,
+            }
+}
+
+/// A free map has many coefficients, and few sessions prove it sooner than the
+/// one coefficient of an effect. What explains as much as a map over its own
+/// signal is the map's name, and as certain.
+fn named_by_map(trial: &Trial, maps: &[Dependence]) -> Option<Candidate> {
+    let best = family::suspects(&trial.candidates).next()?;
+    let names = best.effect.own_signals().names;
+    let map = maps.iter().find(|map| {
+        let own = |signal: &String| names.contains(&signal.as_str());
+        map.signals.iter().any(own) && best.score.gain > SAME_AS_MAP * map.gain
+    })?;
+    let mut named = best.clone();
+    named.score.p_value = map.p_value / trial.variants_between.max(1) as f64;
+    Some(named)
+}
+
+fn suspected(trial: &Trial) -> Vec<Suspect> {
+    family::suspects(&trial.candidates)
+        .map(|candidate| Suspect {
+            effect: candidate.id().to_owned(),
+            p_value: candidate.score.p_value,
+            share: candidate.score.share(),
+            next_experiment: family::proposal(candidate, &[]),
+        })
+        .collect()
 }
 
 /// p-value times the number of variants of its kind.
@@ -201,6 +270,10 @@ fn judge(
             Verdict::Unexplained
         };
     };
+    let most_by_one = maps_first
+        .iter()
+        .filter(|map| map.signals.len() == 1)
+        .fold(0.0, |most, map| f64::max(most, map.gain));
     let mut named = 0.0;
     let mut best = first.clone();
     let mut setup = setup.extended(BoundTerm {
@@ -220,7 +293,8 @@ fn judge(
         let share = unnamed / (unnamed + named).max(1e-300);
         progress((step as f64 + 1.0) / MOST_EFFECTS as f64);
         let notable = share > UNNAMED_NOTABLE && of_rest > UNNAMED_OF_REST;
-        if share <= UNNAMED_SHARE && !notable {
+        let has_shape = named >= LEAST_OF_MAP * most_by_one;
+        if share <= UNNAMED_SHARE && !notable && has_shape {
             return Verdict::Missing;
         }
         let trial = try_all(&setup, &design, &mut |_| ());
@@ -266,6 +340,7 @@ fn describe(
             .filter(|(_, p)| p.effect == id)
             .collect(),
         separate_by: family::separate_by(setup, candidate, &like),
+        next_experiment: family::proposal(candidate, &like),
         indistinguishable_from: like.iter().map(|c| c.id().to_owned()).collect(),
     }
 }

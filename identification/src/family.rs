@@ -2,6 +2,7 @@
 
 use crate::candidates::Candidate;
 use crate::design::{Design, columns};
+use crate::proposal::Proposal;
 use crate::setup::Setup;
 use crate::statistics::mean_error;
 
@@ -11,6 +12,16 @@ const SAME: f64 = 2.0;
 const LEAST_RATIO: f64 = 0.85;
 /// … and leaves at most this many times the mean square.
 const MOST_LEFT: f64 = 1.05;
+
+/// A suspect explains this share of the mean square at least …
+const SUSPECT_SHARE: f64 = 0.2;
+/// … and scatter does as much with this chance at most.
+const SUSPECT_CHANCE: f64 = 0.1;
+/// A suspect that explains this share of what the best does is in its family …
+const SUSPECT_RATIO: f64 = 0.5;
+/// … unless the best one is better by this many standard errors: 5 % with the
+/// five degrees of freedom of six sessions.
+const SUSPECT_SAME: f64 = 2.571;
 
 fn freedom(candidate: &Candidate) -> usize {
     candidate.effect.freedom()
@@ -81,6 +92,24 @@ pub fn order(design: &Design, passing: &mut Vec<Candidate>) {
     }
 }
 
+/// Effects that show between sessions, which may be there though they are not
+/// proven: a handful of sessions proves little.
+pub fn suspects(tried: &[Candidate]) -> impl Iterator<Item = &Candidate> {
+    tried.iter().filter(|c| {
+        c.effect.between_sessions()
+            && c.plausible
+            && c.score.share() > SUSPECT_SHARE
+            && c.score.p_value < SUSPECT_CHANCE
+    })
+}
+
+/// Whether scatter between sessions may have put `other` behind `best`.
+fn may_be(design: &Design, best: &Candidate, other: &Candidate) -> bool {
+    best.effect.between_sessions()
+        && other.score.gain > SUSPECT_RATIO * best.score.gain
+        && difference(design, best, other).abs() < SUSPECT_SAME
+}
+
 /// The candidates that explain these data as well as `candidate` does.
 #[must_use]
 pub fn of<'a>(
@@ -94,7 +123,7 @@ pub fn of<'a>(
         "nonlinear_viscous" => &["quadratic_viscous", "cubic_viscous"],
         _ => &[],
     };
-    passing
+    let mut like: Vec<&Candidate> = passing
         .iter()
         .filter(|other| {
             other.id() != candidate.id()
@@ -102,23 +131,33 @@ pub fn of<'a>(
                 && as_good(design, candidate, other)
         })
         .chain(tried.iter().filter(|other| parts.contains(&other.id())))
-        .collect()
+        .collect();
+    for other in suspects(tried) {
+        let new = other.id() != candidate.id() && !like.iter().any(|c| c.id() == other.id());
+        if new && may_be(design, candidate, other) {
+            like.push(other);
+        }
+    }
+    like
 }
 
 /// What to record next.
 #[must_use]
+pub fn proposal(candidate: &Candidate, like: &[&Candidate]) -> Proposal {
+    let rivals: Vec<&str> = like.iter().map(|c| c.id()).collect();
+    let alone = candidate.effect.description().shown_by;
+    Proposal::between(candidate.id(), &rivals, alone)
+}
+
+/// The same in words.
+#[must_use]
 pub fn separate_by(setup: &Setup, candidate: &Candidate, like: &[&Candidate]) -> String {
-    let own = &candidate.effect.description().excited_by;
+    let proposal = proposal(candidate, like);
+    let what = format!("{}: {}", proposal.id(), proposal.instruction());
     let Some(other) = like.first() else {
-        return own.clone();
+        return format!("{what}; {}", candidate.effect.description().excited_by);
     };
-    let theirs = &other.effect.description().excited_by;
     let place = farthest_apart(setup, candidate, other);
-    let what = if own == theirs {
-        own.clone()
-    } else {
-        format!("{own}; and {theirs}")
-    };
     format!(
         "{what}. On these data {} and {} differ most at {place}",
         candidate.id(),

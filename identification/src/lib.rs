@@ -30,8 +30,11 @@ pub mod flexible_joint;
 pub mod gram;
 pub mod noise_floor;
 pub mod periodic;
+pub mod proposal;
 pub mod refine;
 pub mod residual_map;
+pub mod reversal;
+pub mod sensor_zero;
 pub mod setup;
 pub mod signals;
 pub mod simulate;
@@ -42,9 +45,10 @@ pub mod validation;
 pub use add::{Addition, add};
 pub use compare::{Comparison, compare};
 pub use data::{CustomEffect, Dataset, Inertia, JointType, ModelSpec, Session, Term};
-pub use diagnose::{Diagnosis, Verdict, diagnose};
+pub use diagnose::{Diagnosis, Suspect, Verdict, diagnose};
 pub use effects::EffectDescription;
 pub use error::{ExpressionError, PrepareError};
+pub use proposal::Proposal;
 
 /// Every effect that a model can be given by id, and that [`diagnose()`] tries.
 #[must_use]

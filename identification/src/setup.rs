@@ -148,6 +148,37 @@ impl Setup {
         self.terms.iter().any(|t| t.effect.description().id == id)
     }
 
+    /// First coefficient of the model's effect `id`, fitted to everything; 0
+    /// where the model does not have it.
+    #[must_use]
+    pub fn coefficient(&self, id: &str) -> f64 {
+        let mut at = 0;
+        for term in &self.terms {
+            if term.effect.description().id == id {
+                let all = Design::new(self).total().solve();
+                return all.get(at).copied().unwrap_or(0.0);
+            }
+            at += term.effect.columns();
+        }
+        0.0
+    }
+
+    /// The same with the rows near rest and just after reversals.
+    #[must_use]
+    pub fn with_reversals(&self) -> Self {
+        let mut whole = Self {
+            facts: self.facts.clone(),
+            filters: self.filters,
+            sessions: self.sessions.clone(),
+            held_out: Vec::new(),
+            terms: self.terms.clone(),
+        };
+        for signals in &mut whole.sessions {
+            signals.rows.clone_from(&signals.all_rows);
+        }
+        whole
+    }
+
     /// Finds the shape of the model's own effects, one after the other, twice.
     fn find_shapes(&mut self) {
         let searched: Vec<usize> = (0..self.terms.len())

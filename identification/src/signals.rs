@@ -48,6 +48,8 @@ pub struct Signals {
     pub raw: Channels,
     /// Working sample of each row, in order of time; near rest there is none.
     pub rows: Vec<usize>,
+    /// See [`Session::unloaded`].
+    pub unloaded: bool,
     /// The same rows without regard to rest and reversal, for the eye.
     pub all_rows: Vec<usize>,
 }
@@ -176,6 +178,7 @@ impl Signals {
                 .map(|(k, v)| (k.clone(), smooth.everywhere(&thin(v))))
                 .collect(),
             raw,
+            unloaded: session.unloaded,
             rows,
             all_rows,
         }

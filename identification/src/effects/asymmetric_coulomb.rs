@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "levels differ by direction",
     excited_by: "motion in both directions at two positions and without load",
+    shown_by: WidePosition,
     taken_for: ["torque_sensor_offset", "gravity"]
 );
 

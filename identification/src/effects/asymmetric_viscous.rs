@@ -11,6 +11,7 @@ describe!(
     shape: [],
     shows_as: "slopes over q̇ differ by direction",
     excited_by: "several speeds in both directions",
+    shown_by: WideSpeedRange,
     taken_for: ["asymmetric_coulomb"]
 );
 

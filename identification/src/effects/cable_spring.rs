@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "straight line over q, whatever the sign of q̇",
     excited_by: "slow motion over the whole range of positions without load",
+    shown_by: WidePosition,
     taken_for: ["gravity", "torque_sensor_gain"]
 );
 

@@ -11,6 +11,7 @@ describe!(
     shape: ["channel": ONE, "shift": Unit::new("s", "s")],
     shows_as: "proportional to d(signal)/dt",
     excited_by: "fast accelerations and changes of load",
+    shown_by: Accelerations,
     taken_for: ["inertia", "viscous", "elasticity"]
 );
 

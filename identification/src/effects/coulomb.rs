@@ -11,6 +11,7 @@ describe!(
     shape: [],
     shows_as: "step at q̇ = 0",
     excited_by: "motion in both directions",
+    shown_by: WideSpeedRange,
     taken_for: ["presliding_hysteresis", "stribeck"]
 );
 

@@ -11,6 +11,7 @@ describe!(
     shape: [],
     shows_as: "S over q̇",
     excited_by: "constant speeds over the widest range that the joint allows",
+    shown_by: WideSpeedRange,
     taken_for: ["quadratic_viscous"]
 );
 

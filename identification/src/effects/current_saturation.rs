@@ -11,6 +11,7 @@ describe!(
     shape: ["L": TORQUE, "place": ONE],
     shows_as: "only at the limit",
     excited_by: "torque up to the limit and well below it",
+    shown_by: FastUnloaded,
     taken_for: []
 );
 

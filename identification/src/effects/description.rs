@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::data::JointType;
+use crate::proposal::Proposal;
 
 /// A unit, for both kinds of joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -73,6 +74,8 @@ pub struct EffectDescription {
     pub shows_as: String,
     /// Motion or condition that makes it visible.
     pub excited_by: String,
+    /// The recording that shows it best.
+    pub shown_by: Proposal,
     /// Effects that look alike.
     pub taken_for: Vec<String>,
 }
@@ -82,7 +85,7 @@ macro_rules! describe {
     ($name:ident, $id:literal, $equation:literal, $source:literal,
      coefficients: [$($coefficient:literal: $coefficient_unit:expr),* $(,)?],
      shape: [$($shape:literal: $shape_unit:expr),* $(,)?],
-     shows_as: $shows:literal, excited_by: $excited:literal,
+     shows_as: $shows:literal, excited_by: $excited:literal, shown_by: $shown:ident,
      taken_for: [$($other:literal),* $(,)?]) => {
         #[doc = $equation]
         pub struct $name($crate::effects::EffectDescription);
@@ -99,6 +102,7 @@ macro_rules! describe {
                         name: $shape.to_owned(), unit: $shape_unit }),*],
                     shows_as: $shows.to_owned(),
                     excited_by: $excited.to_owned(),
+                    shown_by: $crate::proposal::Proposal::$shown,
                     taken_for: vec![$($other.to_owned()),*],
                 })
             }

@@ -11,6 +11,7 @@ describe!(
     shape: [],
     shows_as: "over τ and τ̇",
     excited_by: "load that changes fast while the joint hardly moves",
+    shown_by: Accelerations,
     taken_for: ["presliding_hysteresis", "channel_delay"]
 );
 

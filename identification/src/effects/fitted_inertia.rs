@@ -11,6 +11,7 @@ describe!(
     shape: [],
     shows_as: "slope over q̈",
     excited_by: "fast accelerations at low speed",
+    shown_by: FastUnloaded,
     taken_for: ["channel_delay"]
 );
 

@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "over q, whatever the sign of q̇",
     excited_by: "slow motion over the widest arc that the joint allows",
+    shown_by: WidePosition,
     taken_for: ["cable_spring"]
 );
 

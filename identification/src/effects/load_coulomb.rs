@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "step that grows with load",
     excited_by: "slow motion in both directions under loads from none to full",
+    shown_by: LoadSteps,
     taken_for: ["torque_sensor_gain", "motor_constant"]
 );
 

@@ -13,6 +13,7 @@ describe!(
     shape: ["ql": ANGLE, "wl": ANGLE],
     shows_as: "bump at one q, sign by direction",
     excited_by: "slow motion in both directions past the spot",
+    shown_by: WidePosition,
     taken_for: ["ripple"]
 );
 

@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "proportional to τ_m",
     excited_by: "fast accelerations without load, beside loads at constant speed",
+    shown_by: FastUnloaded,
     taken_for: ["load_coulomb", "torque_sensor_gain", "inertia"]
 );
 

@@ -13,6 +13,7 @@ describe!(
     shape: ["delta": ANGLE],
     shows_as: "loop after each reversal, over travel not time",
     excited_by: "reversals at several amplitudes, slow and fast",
+    shown_by: SlowReversals,
     taken_for: ["elasticity", "backlash"]
 );
 

@@ -11,6 +11,7 @@ describe!(
     shape: ["k": Unit::new("1/rad", "1/m")],
     shows_as: "periodic in q",
     excited_by: "slow constant speed, so slow that the ripple is not aliased",
+    shown_by: WidePosition,
     taken_for: ["local_friction"]
 );
 

@@ -14,6 +14,7 @@ describe!(
     shape: ["vs": SPEED],
     shows_as: "bump near q̇ = 0",
     excited_by: "slow constant speeds in small steps, down to the slowest",
+    shown_by: WideSpeedRange,
     taken_for: ["coulomb", "presliding_hysteresis"]
 );
 

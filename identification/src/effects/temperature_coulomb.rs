@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "step changes with T",
     excited_by: "slow motion at several temperatures, on dates out of order with temperature",
+    shown_by: TemperatureSweep,
     taken_for: ["wear_drift"]
 );
 

@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "slope changes with T",
     excited_by: "slow and fast motion at several temperatures",
+    shown_by: TemperatureSweep,
     taken_for: ["temperature_coulomb"]
 );
 

@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "over τ, whatever the sign of q̇",
     excited_by: "loads in both directions at constant speed, at positions that differ for the same load",
+    shown_by: LoadSteps,
     taken_for: ["cable_spring", "motor_constant"]
 );
 

@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "constant, whatever the sign of q̇",
     excited_by: "a reading of the sensor with the joint free of load",
+    shown_by: WidePosition,
     taken_for: ["asymmetric_coulomb", "cable_spring"]
 );
 

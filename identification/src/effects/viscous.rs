@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "slope over q̇",
     excited_by: "constant speeds over the whole range",
+    shown_by: WideSpeedRange,
     taken_for: ["channel_delay"]
 );
 

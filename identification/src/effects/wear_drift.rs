@@ -13,6 +13,7 @@ describe!(
     shape: [],
     shows_as: "step changes with date",
     excited_by: "the same motion at one temperature on many dates",
+    shown_by: DateSweep,
     taken_for: ["temperature_coulomb"]
 );
 

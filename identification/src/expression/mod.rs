@@ -310,6 +310,7 @@ fn describe(custom: &CustomEffect) -> EffectDescription {
         shape: Vec::new(),
         shows_as: "as the expression says".to_owned(),
         excited_by: "motion over which the expression varies".to_owned(),
+        shown_by: crate::proposal::Proposal::LoadSteps,
         taken_for: Vec::new(),
     }
 }

@@ -1,29 +1,33 @@
 //! The joint bench's recordings as the identification wants them.
 
 use ferntast_identification::{Dataset, Inertia, JointType, ModelSpec, Session, Term};
-use ferntast_sim::joint_bench::{BenchRecording, HiddenEffect, LOG_PERIOD};
+use ferntast_sim::joint_bench::{BenchRecording, BenchSession, HiddenEffect, LOG_PERIOD};
 
 /// The recording's sessions.
 pub fn dataset(recording: &BenchRecording) -> Dataset {
-    let sessions = recording
-        .sessions
-        .iter()
-        .enumerate()
-        .map(|(index, own)| Session {
-            name: format!("session {}", index + 1),
-            start: own.start,
-            period: LOG_PERIOD,
-            position: own.position.clone(),
-            motor_torque: own.motor_torque.clone(),
-            joint_torque: Some(own.joint_torque.clone()),
-            temperature: Some(own.temperature.clone()),
-            extra: Default::default(),
-        })
-        .collect();
+    let sessions = recording.sessions.iter().enumerate();
     Dataset {
-        sessions,
+        sessions: sessions
+            .map(|(index, own)| session(own, index + 1))
+            .collect(),
         held_out: Vec::new(),
         joint: JointType::Revolute,
+    }
+}
+
+/// Session `number` of a recording. Whoever runs it knows whether there are
+/// springs to pull.
+pub fn session(own: &BenchSession, number: usize) -> Session {
+    Session {
+        name: format!("session {number}"),
+        start: own.start,
+        period: LOG_PERIOD,
+        position: own.position.clone(),
+        motor_torque: own.motor_torque.clone(),
+        joint_torque: Some(own.joint_torque.clone()),
+        temperature: Some(own.temperature.clone()),
+        unloaded: own.motion.is_some_and(|motion| !motion.has_springs()),
+        ..Session::default()
     }
 }
 

@@ -5,5 +5,5 @@ mod blind;
 mod folder;
 
 pub use bench::{dataset, hidden_by, model};
-pub use blind::{BlindTest, Count, Miss, Plan, run as blind_test};
+pub use blind::{BlindTest, Count, FollowedUp, Miss, Plan, run as blind_test};
 pub use folder::{Answer, ChallengeError, create, reveal};

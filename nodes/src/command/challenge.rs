@@ -190,7 +190,18 @@ fn print(test: &BlindTest) {
     println!();
     row("right effect first", &test.right_first);
     row("  or in the family named", &test.in_family);
+    row("  or suspected, not proven", &test.at_least_suspected);
     row("outside the catalogue: no name", &test.unknown_not_named);
+    row("error within 5 % of the truth's", &test.as_good_as_true);
+    let (family, suspicion) = (test.resolved, test.suspicion_proven);
+    println!(
+        "after the experiment proposed: {}/{} families resolved ({:.1} %), {}/{} suspicions proven",
+        family.found,
+        family.tried,
+        family.share() * 100.0,
+        suspicion.found,
+        suspicion.tried
+    );
     let alarms = test.false_alarms;
     println!(
         "nothing hidden, yet named: {}/{} ({:.1} %)",
@@ -210,18 +221,36 @@ fn print(test: &BlindTest) {
     println!();
     println!("misses");
     for miss in &test.misses {
+        let mut more = String::new();
+        if miss.in_family && miss.followed_up.as_ref().is_none_or(|own| own.resolved) {
+            more += " (in its family)";
+        }
+        if miss.suspected {
+            more += " (suspected)";
+        }
+        if let Some(own) = &miss.followed_up {
+            let after = own.named.as_deref().unwrap_or("-");
+            let verdict = if own.resolved { "resolved" } else { "open" };
+            more += &format!("; after {}: {after}, {verdict}", own.experiment);
+        }
         println!(
-            "  {:<28} strength {:<5} seed {:<9} {:?}: {}{}",
+            "  {:<28} strength {:<5} seed {:<9} {:?}: {}{more}",
             miss.hidden.as_deref().unwrap_or("nothing"),
             miss.strength,
             miss.seed,
             miss.verdict,
             miss.named.as_deref().unwrap_or("-"),
-            if miss.in_family {
-                " (in its family)"
-            } else {
-                ""
-            }
+        );
+    }
+    println!();
+    println!("named rightly, error above the true model's by more than 5 %");
+    for own in &test.above_true {
+        println!(
+            "  {:<28} strength {:<5} seed {:<9} {:.1} %",
+            own.hidden,
+            own.strength,
+            own.seed,
+            (own.over_true - 1.0) * 100.0
         );
     }
 }

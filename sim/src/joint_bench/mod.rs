@@ -150,7 +150,10 @@ impl Bench {
         let sessions = conditions
             .iter()
             .enumerate()
-            .map(|(index, conditions)| self.session(index, conditions))
+            .map(|(index, conditions)| {
+                let motion = config.motions[index % config.motions.len()];
+                self.session(index, motion, conditions)
+            })
             .collect::<Result<_, _>>()?;
         Ok(BenchRecording {
             hidden: config.hidden.clone(),
@@ -196,9 +199,43 @@ impl Bench {
             .collect()
     }
 
-    fn session(&self, index: usize, conditions: &Conditions) -> Result<BenchSession, BenchError> {
+    /// Runs `sessions` more with the same joint, a month after `recorded`: what
+    /// is hidden stays, dates, temperatures, scatter and noise are new.
+    ///
+    /// # Errors
+    ///
+    /// As [`record`](Self::record).
+    pub fn follow_up(
+        &self,
+        recorded: &BenchRecording,
+        motion: Motion,
+        sessions: usize,
+    ) -> Result<Vec<BenchSession>, BenchError> {
+        let before = recorded.sessions.len();
+        let last = recorded.sessions.last().map_or(0.0, |last| last.start);
+        let conditions = Conditions::draw(
+            sessions,
+            motion == Motion::TemperatureSweep,
+            motion == Motion::DateSweep,
+            &mut random(self.config.seed, Stream::Conditions, before),
+        );
+        conditions
+            .into_iter()
+            .enumerate()
+            .map(|(index, mut conditions)| {
+                conditions.start += last + 30.0 * SECONDS_A_DAY;
+                self.session(before + index, motion, &conditions)
+            })
+            .collect()
+    }
+
+    fn session(
+        &self,
+        index: usize,
+        motion: Motion,
+        conditions: &Conditions,
+    ) -> Result<BenchSession, BenchError> {
         let config = &self.config;
-        let motion = config.motions[index % config.motions.len()];
         let programme = motion.programme(&mut random(config.seed, Stream::Motion, index));
         let mut scatter = random(config.seed, Stream::Session, index);
         let joint = self.joint.scattered(config.scatter, &mut scatter);

@@ -71,7 +71,7 @@ impl Motion {
     }
 
     /// True where the joint pulls the contour's springs.
-    pub(super) fn has_springs(self) -> bool {
+    pub fn has_springs(self) -> bool {
         !matches!(
             self,
             Motion::FastUnloaded | Motion::WideSpeedRange | Motion::WidePosition

@@ -1,0 +1,208 @@
+//! What to record next: the motion or condition that shows what these data
+//! leave open.
+
+use serde::{Serialize, Serializer};
+
+/// A motion or condition of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Proposal {
+    /// Strong and fast moves, free of load.
+    FastUnloaded,
+    /// Short slow strokes with many reversals, at several loads.
+    SlowReversals,
+    /// Constant speeds from the slowest to the fastest, free of load.
+    WideSpeedRange,
+    /// Slow sweeps over the whole range of positions, free of load.
+    WidePosition,
+    /// The same few speeds at several loads.
+    LoadSteps,
+    /// Fast changes of speed and load.
+    Accelerations,
+    /// The same motion over the whole range of temperature, within one day.
+    TemperatureSweep,
+    /// The same motion at one temperature, on dates far apart.
+    DateSweep,
+}
+
+use Proposal::{
+    Accelerations, DateSweep, FastUnloaded, LoadSteps, SlowReversals, TemperatureSweep,
+    WidePosition, WideSpeedRange,
+};
+
+/// Which effects a motion tells from each other, the most telling motion first.
+const TELLS_APART: [(Proposal, &[&str]); 7] = [
+    (
+        TemperatureSweep,
+        &["temperature_coulomb", "temperature_viscous", "wear_drift"],
+    ),
+    (
+        SlowReversals,
+        &[
+            "presliding_hysteresis",
+            "backlash",
+            "elasticity",
+            "coulomb",
+            "stribeck",
+        ],
+    ),
+    (
+        WideSpeedRange,
+        &[
+            "coulomb",
+            "stribeck",
+            "viscous",
+            "quadratic_viscous",
+            "cubic_viscous",
+            "nonlinear_viscous",
+            "asymmetric_viscous",
+        ],
+    ),
+    (
+        FastUnloaded,
+        &[
+            "motor_constant",
+            "torque_sensor_gain",
+            "load_coulomb",
+            "inertia",
+        ],
+    ),
+    (
+        WidePosition,
+        &[
+            "gravity",
+            "cable_spring",
+            "ripple",
+            "local_friction",
+            "torque_sensor_gain",
+            "torque_sensor_offset",
+            "asymmetric_coulomb",
+        ],
+    ),
+    (
+        LoadSteps,
+        &["load_coulomb", "cable_spring", "gravity", "coulomb"],
+    ),
+    (
+        Accelerations,
+        &[
+            "channel_delay",
+            "inertia",
+            "viscous",
+            "elasticity",
+            "ripple",
+        ],
+    ),
+];
+
+impl Proposal {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        FastUnloaded,
+        SlowReversals,
+        WideSpeedRange,
+        WidePosition,
+        LoadSteps,
+        Accelerations,
+        TemperatureSweep,
+        DateSweep,
+    ];
+
+    /// Name in files and results.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            FastUnloaded => "fast_unloaded",
+            SlowReversals => "slow_reversals",
+            WideSpeedRange => "wide_speed_range",
+            WidePosition => "wide_position",
+            LoadSteps => "load_steps",
+            Accelerations => "accelerations",
+            TemperatureSweep => "temperature_sweep",
+            DateSweep => "date_sweep",
+        }
+    }
+
+    /// What to do, for people.
+    #[must_use]
+    pub const fn instruction(self) -> &'static str {
+        match self {
+            FastUnloaded => "strong and fast moves, the joint free of load",
+            SlowReversals => "short slow strokes with many reversals, at several loads",
+            WideSpeedRange => {
+                "constant speeds from the slowest to the fastest, both directions, the joint free of load"
+            }
+            WidePosition => {
+                "slow sweeps over the widest range of positions, the joint free of load"
+            }
+            LoadSteps => "the same few speeds at several loads",
+            Accelerations => "fast changes of speed and load",
+            TemperatureSweep => {
+                "the same motion over the whole range of temperature, all within a day"
+            }
+            DateSweep => "the same motion at one temperature, on dates far apart",
+        }
+    }
+
+    /// True where the joint is free of load, so that the torque sensor's own
+    /// zero shows (list such recordings as `unloaded`).
+    #[must_use]
+    pub const fn is_unloaded(self) -> bool {
+        matches!(self, FastUnloaded | WideSpeedRange | WidePosition)
+    }
+
+    /// What tells the effect `own` from its `rivals`, from as many as one
+    /// recording can; `alone` is what shows `own` by itself.
+    #[must_use]
+    pub fn between(own: &str, rivals: &[&str], alone: Self) -> Self {
+        let tells =
+            |effects: &[&str], rival: &str| effects.contains(&own) && effects.contains(&rival);
+        let mut best = (alone, 0);
+        for (proposal, effects) in TELLS_APART {
+            let told = rivals.iter().filter(|rival| tells(effects, rival)).count();
+            if told > best.1 {
+                best = (proposal, told);
+            }
+        }
+        best.0
+    }
+}
+
+impl Serialize for Proposal {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.id())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_family_is_put_to_the_motion_that_tells_most_of_it_apart() {
+        let between = |own, rivals: &[&str]| Proposal::between(own, rivals, LoadSteps);
+        assert_eq!(
+            between("wear_drift", &["temperature_coulomb"]),
+            TemperatureSweep
+        );
+        assert_eq!(between("gravity", &["cable_spring"]), WidePosition);
+        assert_eq!(
+            between("quadratic_viscous", &["cubic_viscous", "nonlinear_viscous"]),
+            WideSpeedRange
+        );
+        assert_eq!(
+            between("backlash", &["presliding_hysteresis"]),
+            SlowReversals
+        );
+        assert_eq!(between("inertia", &["channel_delay"]), Accelerations);
+        // One rival each way: the first.
+        assert_eq!(
+            between("load_coulomb", &["motor_constant", "cable_spring"]),
+            FastUnloaded
+        );
+        assert_eq!(between("ripple", &[]), LoadSteps);
+        assert_eq!(
+            between("ripple", &["an effect of the user's own"]),
+            LoadSteps
+        );
+    }
+}

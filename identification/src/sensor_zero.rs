@@ -1,0 +1,71 @@
+//! The torque sensor's own zero: a friction that differs by direction and a
+//! sensor with an offset leave the same constant in equation (2), but only one
+//! of them shows in the sensor while the joint is free of load.
+
+use nalgebra::DVector;
+
+use crate::candidates::Candidate;
+use crate::gram::Gram;
+use crate::setup::Setup;
+use crate::statistics::mean_error;
+
+const OFFSET: &str = "torque_sensor_offset";
+const ASYMMETRY: &str = "asymmetric_coulomb";
+/// The offset that the fit asks for has to be this many standard errors of the
+/// sensor's zero.
+const CERTAIN: f64 = 4.0;
+
+/// What the sensor reads \[Nm\] with the joint at rest and free of load, and its
+/// standard error over sessions; `None` for fewer than two such sessions.
+///
+/// In each session the reading is fitted by a constant, the link's inertia
+/// (q̈) and its damping (q̇).
+#[must_use]
+pub fn reading(setup: &Setup) -> Option<(f64, f64)> {
+    if !setup.facts.joint_torque {
+        return None;
+    }
+    let zeros: Vec<f64> = setup
+        .sessions
+        .iter()
+        .filter(|signals| signals.unloaded)
+        .filter_map(|signals| {
+            let column = |of: fn(&crate::effects::Point) -> f64| -> Vec<f64> {
+                let rows = signals.all_rows.iter();
+                rows.map(|at| of(&signals.points[*at])).collect()
+            };
+            let ones = vec![1.0; signals.all_rows.len()];
+            let (velocity, acceleration) = (column(|p| p.velocity), column(|p| p.acceleration));
+            let load = column(|p| p.load);
+            let gram = Gram::of(&[&ones, &velocity, &acceleration], &load, 0, ones.len());
+            let fitted: DVector<f64> = gram.solve();
+            fitted.get(0).copied().filter(|zero| zero.is_finite())
+        })
+        .collect();
+    (zeros.len() >= 2).then(|| mean_error(&zeros))
+}
+
+/// Where both are among `passing` and the sensor's zero is known, the one that
+/// it speaks against is left out.
+pub fn settle(setup: &Setup, passing: &mut Vec<Candidate>) {
+    let Some((zero, error)) = reading(setup) else {
+        return;
+    };
+    let wanted = |id: &str| {
+        let candidate = passing.iter().find(|c| c.id() == id)?;
+        candidate.score.coefficients.first().copied()
+    };
+    let (Some(offset), Some(_)) = (wanted(OFFSET), wanted(ASYMMETRY)) else {
+        return;
+    };
+    // y = τ_m − J q̈ − τ: a reading that is too large leaves a constant below zero.
+    let expected = -offset;
+    if expected.abs() < CERTAIN * error {
+        return;
+    }
+    let wrong = match (zero - expected).abs() < zero.abs() {
+        true => ASYMMETRY,
+        false => OFFSET,
+    };
+    passing.retain(|c| c.id() != wrong);
+}

@@ -1,0 +1,107 @@
+//! The blind test: many recordings, each with an effect hidden, one with two,
+//! or none, put to the diagnosis.
+
+mod ask;
+mod tally;
+mod two;
+
+use std::{
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
+};
+
+use ferntast_sim::joint_bench::HiddenEffect;
+
+pub use tally::{BlindTest, Count, FollowedUp, Miss};
+
+/// What is tried.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Seed of the first recording.
+    pub seed: u64,
+    /// Recordings of each effect at each strength.
+    pub repeats: usize,
+    /// Strengths of the hidden effects.
+    pub strengths: Vec<f64>,
+    /// Recordings that hide nothing.
+    pub nothing: usize,
+    /// Recordings that hide two effects of the catalogue at once, at full strength.
+    pub two: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Case {
+    hidden: Option<HiddenEffect>,
+    strength: f64,
+    seed: u64,
+}
+
+impl Plan {
+    fn cases(&self) -> Vec<Case> {
+        let mut cases = Vec::new();
+        for repeat in 0..self.repeats as u64 {
+            for &hidden in HiddenEffect::ALL {
+                for &strength in &self.strengths {
+                    // Every recording has a joint of its own.
+                    let seed = self.seed.wrapping_add(cases.len() as u64 + repeat);
+                    let hidden = Some(hidden);
+                    cases.push(Case {
+                        hidden,
+                        strength,
+                        seed,
+                    });
+                }
+            }
+        }
+        let first = self.seed.wrapping_add(1_000_000);
+        cases.extend((0..self.nothing as u64).map(|index| Case {
+            hidden: None,
+            strength: 1.0,
+            seed: first.wrapping_add(index),
+        }));
+        cases
+    }
+}
+
+/// Puts every recording of `plan` to the diagnosis, on all processors.
+/// `progress` is told how many of how many are done.
+///
+/// # Errors
+///
+/// A recording that cannot be made or diagnosed, with what it hid.
+pub fn run(plan: &Plan, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<BlindTest, String> {
+    let cases = plan.cases();
+    let next = AtomicUsize::new(0);
+    let answers = Mutex::new(Vec::new());
+    let workers = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let answer = ask::ask(case);
+                    let mut answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
+                    answers.push((*case, answer));
+                    progress(answers.len(), cases.len() + plan.two);
+                }
+            });
+        }
+    });
+    let mut answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
+    // The order in which workers ended does not matter.
+    answers.sort_by_key(|(case, _)| (case.seed, case.hidden));
+    let mut test = BlindTest::default();
+    for (case, answer) in answers {
+        test.note(&case, answer?);
+    }
+    for index in 0..plan.two {
+        let seed = plan.seed.wrapping_add(2_000_000 + index as u64);
+        let found = two::two_at_once(seed)?;
+        test.both_of_two.note(found == 2);
+        test.one_of_two.note(found >= 1);
+        progress(cases.len() + index + 1, cases.len() + plan.two);
+    }
+    Ok(test)
+}
