@@ -364,6 +364,35 @@ proptest! {
         prop_assert_ne!(run(seed), run(seed ^ 1));
     }
 
+    /// Without friction, damping, contact and input energy is kept to 1e-4 of
+    /// what moves in the arm, whatever the motion, gravity and cubic stiffness.
+    #[test]
+    fn energy_is_kept_in_any_motion(
+        kick in (-15.0..15.0f64, -15.0..15.0f64), x in -10.0..10.0f64, y in -10.0..10.0f64,
+        cubic in 0.0..2e7f64, q2 in 0.3..2.5f64,
+    ) {
+        let mut config = lossless();
+        config.arm.gravity = [x, y];
+        config.truth.start_position[1] = q2;
+        for joint in &mut config.truth.joint {
+            joint.cubic_stiffness = cubic;
+        }
+        let mut arm = SimulatedArm::new(&config, 1).unwrap();
+        let rest = arm.truth().energy;
+        for _ in 0..50 {
+            arm.advance([kick.0, kick.1], TICK);
+        }
+        let first = arm.truth().energy;
+        // With gravity the arm may go on to swing through more than the kick gave.
+        let weight = 9.0 * x.hypot(y) * 0.25;
+        let scale = (first - rest).abs() + 0.1 * weight + 0.01;
+        for _ in 0..2000 {
+            arm.advance([0.0, 0.0], TICK);
+            let error = (arm.truth().energy - first).abs() / scale;
+            prop_assert!(error < 1e-4, "{} of {} J", error, scale);
+        }
+    }
+
     /// Whatever the drives do, nothing blows up, and the surfaces never pull.
     #[test]
     fn no_torque_breaks_the_arm(torques in prop::collection::vec(-80.0..80.0f64, 40)) {
