@@ -176,6 +176,14 @@ impl Arm {
         (self.inertia_at(cosine), bias)
     }
 
+    /// ∂L/∂q = ½ q̇ᵀ (∂M/∂q) q̇ − g(q) \[Nm\], with the Lagrangian L = T − V of
+    /// equation (5); d/dt (M q̇) − ∂L/∂q = M q̈ + C q̇ + g.
+    pub fn lagrangian_slope(&self, q: &Vector2<f64>, qd: &Vector2<f64>) -> Vector2<f64> {
+        // M depends on q₂ alone.
+        let second = -self.coupling * q.y.sin() * qd.x * (qd.x + qd.y);
+        Vector2::new(0.0, second) - self.gravity(q)
+    }
+
     /// Joint torques \[Nm\] that the motion q, q̇, q̈ takes without contact:
     /// M q̈ + C q̇ + g.
     pub fn inverse_dynamics(
@@ -293,6 +301,29 @@ mod tests {
             let h = 1e-6;
             let slope = (arm().potential_energy(&(q + qd * h)) - arm().potential_energy(&(q - qd * h))) / (2.0 * h);
             prop_assert!((arm().gravity(&q).dot(&qd) - slope).abs() < 1e-6);
+        }
+
+        #[test]
+        fn the_lagrangian_has_the_slope_it_is_said_to_have((q, qd) in state()) {
+            let h = 1e-6;
+            let lagrangian = |q| arm().kinetic_energy(&q, &qd) - arm().potential_energy(&q);
+            let slope = arm().lagrangian_slope(&q, &qd);
+            for (joint, step) in [(0, Vector2::new(h, 0.0)), (1, Vector2::new(0.0, h))] {
+                let difference = (lagrangian(q + step) - lagrangian(q - step)) / (2.0 * h);
+                prop_assert!((slope[joint] - difference).abs() < 1e-6);
+            }
+        }
+
+        /// Equation (5), left side: d/dt ∂L/∂q̇ − ∂L/∂q.
+        #[test]
+        fn inverse_dynamics_is_the_left_side_of_equation_5((q, qd) in state(), a in -9.0..9.0f64, b in -9.0..9.0f64) {
+            let (qdd, h) = (Vector2::new(a, b), 1e-5);
+            let momentum = |t: f64| {
+                let (q, qd) = (q + qd * t + qdd * (0.5 * t * t), qd + qdd * t);
+                arm().inertia(&q) * qd
+            };
+            let left = (momentum(h) - momentum(-h)) / (2.0 * h) - arm().lagrangian_slope(&q, &qd);
+            prop_assert!((left - arm().inverse_dynamics(&q, &qd, &qdd)).norm() < 1e-5);
         }
 
         /// Ṁ − 2C is skew symmetric: Coriolis torques do the work ½ q̇ᵀ Ṁ q̇.

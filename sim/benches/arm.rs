@@ -1,7 +1,7 @@
 //! What one tick of 1 ms costs in the simulated arm and in the estimator.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use ferntast_control::estimator::{ContactEstimator, JointMeasurement};
+use ferntast_control::estimator::{ContactEstimator, Form, JointMeasurement};
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 use std::hint::black_box;
 
@@ -19,16 +19,34 @@ fn tick(criterion: &mut Criterion) {
             black_box(arm.measure())
         });
     });
-    let mut estimator = ContactEstimator::new(&config.model(), &config.estimator)
-        .expect("the shipped estimator is valid");
-    let measured = arm.measure();
-    let measurement = JointMeasurement {
-        motor_position: measured.motor_position,
-        joint_torque: measured.joint_torque,
-    };
-    criterion.bench_function("estimator: step", |bencher| {
-        bencher.iter(|| black_box(estimator.step(1e-3, black_box(&measurement))));
-    });
+    // A measurement that changes from step to step, as one does.
+    let measurements: Vec<_> = (0..1000)
+        .map(|step| {
+            let torque = [20.0 * (0.003 * f64::from(step)).sin(), 10.0];
+            arm.advance(torque, 1e-3);
+            let measured = arm.measure();
+            JointMeasurement {
+                motor_position: measured.motor_position,
+                joint_torque: measured.joint_torque,
+            }
+        })
+        .collect();
+    for (form, name) in [
+        (Form::Direct, "estimator, direct form: step"),
+        (Form::MomentumObserver, "estimator, momentum observer: step"),
+    ] {
+        let mut parameters = config.estimator;
+        parameters.form = form;
+        let mut estimator = ContactEstimator::new(&config.model(), &parameters)
+            .expect("the shipped estimator is valid");
+        let mut next = measurements.iter().cycle();
+        criterion.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                next.next()
+                    .map(|measurement| estimator.step(1e-3, black_box(measurement)))
+            });
+        });
+    }
 }
 
 criterion_group!(benches, tick);

@@ -157,7 +157,9 @@ fn energy_never_grows_with_friction() {
 
 #[test]
 fn below_stiction_the_motor_stands_exactly_still() {
-    let mut arm = SimulatedArm::new(&rokviss(), 1).unwrap();
+    let mut config = rokviss();
+    config.truth.environment.temperature = Some([10.0, 10.0]);
+    let mut arm = SimulatedArm::new(&config, 1).unwrap();
     let start = arm.truth();
     for _ in 0..1000 {
         arm.advance([12.3, -12.3], TICK);
@@ -198,8 +200,8 @@ fn a_pressed_tip_rests_on_the_edge_and_stays() {
 }
 
 /// Turns joint 2 freely at a constant speed; mean of τ_m − τ, as the sensors give it.
-fn measured_friction(degrees_per_second: f64) -> f64 {
-    let mut arm = SimulatedArm::new(&lossy_and_free(), 9).expect("valid");
+fn measured_friction(config: &ArmConfig, degrees_per_second: f64) -> f64 {
+    let mut arm = SimulatedArm::new(config, 9).expect("valid");
     let speed = degrees_per_second.to_radians();
     let start = arm.measure().motor_position;
     let ticks = (0.6 / speed / TICK) as u32;
@@ -225,19 +227,36 @@ fn lossy_and_free() -> ArmConfig {
     let mut config = rokviss();
     config.contour.edge.clear();
     config.contour.spring.clear();
+    config.truth.environment.temperature = Some([10.0, 10.0]);
     config
 }
 
 /// Equation (2) and Table 1 (spring 2005-03-24), as an experimenter would see them.
 #[test]
 fn currents_and_torques_show_the_friction_of_table_1() {
+    let config = lossy_and_free();
     for (speed, expected) in [(1.0, 15.05), (5.0, 22.58), (10.0, 26.15)] {
-        let found = measured_friction(speed);
+        let found = measured_friction(&config, speed);
         println!("{speed} deg/s: {found:.2} Nm of {expected} Nm");
         assert!(
             (found - expected).abs() < 0.03 * expected,
             "{speed}: {found}"
         );
+    }
+}
+
+/// Figs. 12 to 14, as an experimenter would see them.
+#[test]
+fn damping_depends_on_temperature_as_published() {
+    let at = |temperature, speed| {
+        let mut config = lossy_and_free();
+        config.truth.environment.temperature = Some([temperature; 2]);
+        measured_friction(&config, speed)
+    };
+    for (speed, warm, ratio) in [(1.0, 20.0, 0.6), (5.0, 20.0, 1.0), (30.0, 25.0, 1.4)] {
+        let found = at(warm, speed) / at(-5.0, speed);
+        println!("{speed} deg/s: {warm} against -5 degC {found:.3}");
+        assert!((found - ratio).abs() < 0.05, "{speed}: {found}");
     }
 }
 
@@ -264,14 +283,61 @@ fn torques_that_are_no_numbers_are_taken_as_zero_and_told() {
 
 #[test]
 fn moving_warms_the_joints() {
-    let mut driver = Driver::new(&rokviss(), 2);
+    let mut config = rokviss();
+    config.truth.environment.temperature = Some([10.0, -5.0]);
+    let mut driver = Driver::new(&config, 2);
     let before = driver.arm.truth().temperature;
     for tick in 0..4000 {
         let swing = 0.02 * (f64::from(tick) * TICK * 3.0).sin();
         driver.step([swing, swing]);
     }
     let after = driver.arm.truth().temperature;
+    assert_eq!(before, [10.0, -5.0]);
     assert!(after[1] > before[1] && after[1] < before[1] + 1.0);
+}
+
+#[test]
+fn on_the_ground_it_is_the_reference_of_table_1() {
+    let ground = rokviss().on_ground().unwrap();
+    ground.validate().unwrap();
+    assert_eq!(ground.arm.gravity, [0.0, -9.80665]);
+    let truth = &ground.truth.joint[1];
+    assert_eq!(
+        (truth.stiffness, ground.joint[1].stiffness),
+        (4400.0, 4400.0)
+    );
+    let friction = truth.friction;
+    assert_eq!(
+        [
+            friction.b_0,
+            friction.b_0t,
+            friction.b_1,
+            friction.b_2,
+            friction.b_3
+        ],
+        [7.573, 0.127, 168.388, -544.193, 516.421]
+    );
+    let table = Preset::named("on_ground").unwrap().parameters();
+    assert_eq!(ground.joint[1].friction.effects, table.effects);
+    let arm = SimulatedArm::new(&ground, 1).unwrap();
+    assert_eq!(arm.truth().temperature, [20.0, 20.0]);
+    let mut without = rokviss();
+    without.ground = None;
+    assert_eq!(without.on_ground().unwrap_err().key(), "ground");
+}
+
+#[test]
+fn the_day_decides_on_temperature_and_wear() {
+    let mut config = rokviss();
+    let today = SimulatedArm::new(&config, 1).unwrap().truth().temperature;
+    // Table 1's set of that day is to be found where nothing else is asked for.
+    assert!(
+        (today[0] - 10.0).abs() < 2.0 && (today[1] - 10.0).abs() < 2.0,
+        "{today:?}"
+    );
+    config.truth.environment.day = 72.0;
+    let cold = SimulatedArm::new(&config, 1).unwrap().truth().temperature;
+    assert!(cold[0] < today[0] - 5.0, "{cold:?}");
 }
 
 proptest! {
@@ -296,6 +362,35 @@ proptest! {
         };
         prop_assert_eq!(run(seed), run(seed));
         prop_assert_ne!(run(seed), run(seed ^ 1));
+    }
+
+    /// Without friction, damping, contact and input energy is kept to 1e-4 of
+    /// what moves in the arm, whatever the motion, gravity and cubic stiffness.
+    #[test]
+    fn energy_is_kept_in_any_motion(
+        kick in (-15.0..15.0f64, -15.0..15.0f64), x in -10.0..10.0f64, y in -10.0..10.0f64,
+        cubic in 0.0..2e7f64, q2 in 0.3..2.5f64,
+    ) {
+        let mut config = lossless();
+        config.arm.gravity = [x, y];
+        config.truth.start_position[1] = q2;
+        for joint in &mut config.truth.joint {
+            joint.cubic_stiffness = cubic;
+        }
+        let mut arm = SimulatedArm::new(&config, 1).unwrap();
+        let rest = arm.truth().energy;
+        for _ in 0..50 {
+            arm.advance([kick.0, kick.1], TICK);
+        }
+        let first = arm.truth().energy;
+        // With gravity the arm may go on to swing through more than the kick gave.
+        let weight = 9.0 * x.hypot(y) * 0.25;
+        let scale = (first - rest).abs() + 0.1 * weight + 0.01;
+        for _ in 0..2000 {
+            arm.advance([0.0, 0.0], TICK);
+            let error = (arm.truth().energy - first).abs() / scale;
+            prop_assert!(error < 1e-4, "{} of {} J", error, scale);
+        }
     }
 
     /// Whatever the drives do, nothing blows up, and the surfaces never pull.

@@ -1,5 +1,6 @@
 //! Parameters of the contact-force estimator.
 
+use super::Form;
 use ferntast_model::{ParameterError, check};
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +8,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EstimatorParameters {
-    /// Cut-off of the filter on all channels \[Hz\].
+    /// How the contact's torque is found.
+    #[serde(default)]
+    pub form: Form,
+    /// Cut-off of the filter on all channels \[Hz\]; its delay is 1/(π cut_off).
     pub cut_off: f64,
     /// Normal force from which on there is contact \[N\].
     pub contact_on: f64,

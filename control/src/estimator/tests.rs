@@ -1,6 +1,6 @@
 use super::*;
 use ferntast_model::arm::ArmParameters;
-use ferntast_model::contour::Contour;
+use ferntast_model::contour::{Contour, Surface};
 use proptest::prelude::*;
 
 /// The sections of the shipped arm that matter here.
@@ -92,6 +92,73 @@ fn in_the_corner_the_split_is_not_trusted() {
     assert!((Vector2::from(estimate.force) - Vector2::new(-20.0, 16.0)).norm() < 1e-9);
 }
 
+/// Both forms of equation (5), else as `parameters`.
+fn forms(parameters: &EstimatorParameters) -> [EstimatorParameters; 2] {
+    [Form::Direct, Form::MomentumObserver].map(|form| EstimatorParameters {
+        form,
+        ..*parameters
+    })
+}
+
+#[test]
+fn a_sensor_that_is_lost_for_long_leaves_no_contact() {
+    let (model, parameters) = shipped([0.0, 0.0]);
+    for parameters in forms(&parameters) {
+        let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
+        let tip = Vector2::from(model.contour.nominal_tip) + Vector2::new(0.0305, 0.01);
+        let kinematics = model.arm.kinematics();
+        let elbow = model.contour.nominal_elbow;
+        let q = kinematics.inverse(&tip, elbow).unwrap();
+        let good = at_rest(&model, q, Vector2::new(-20.0, 5.0));
+        let lost = JointMeasurement {
+            joint_torque: [good.joint_torque[0], f64::NAN],
+            ..good
+        };
+        let mut run = |measurement, ticks| {
+            (0..ticks)
+                .map(|_| estimator.step(1e-3, measurement))
+                .last()
+                .unwrap()
+        };
+        let seen = run(&good, 100);
+        assert!(seen.in_contact && seen.valid);
+        let held = run(&lost, 10);
+        assert!(held.in_contact && !held.valid && held.input_invalid);
+        assert_eq!(held.force, seen.force);
+        let gone = run(&lost, 100);
+        assert!(!gone.in_contact && !gone.valid && gone.input_invalid);
+        assert_eq!((gone.force, gone.tip), ([0.0, 0.0], seen.tip));
+        let back = run(&good, 100);
+        assert!(back.in_contact && back.valid && !back.input_invalid);
+    }
+}
+
+#[test]
+fn a_torque_sensor_that_is_stuck_is_told_from_one_at_rest() {
+    let (model, parameters) = shipped([0.0, 0.0]);
+    for parameters in forms(&parameters) {
+        let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
+        let mut measurement = at_rest(&model, Vector2::new(-0.785, 1.571), Vector2::zeros());
+        for _ in 0..1000 {
+            assert!(!estimator.step(1e-3, &measurement).stuck.contains(&true));
+        }
+        // Joint 2 turns at 5 °/s; the torque of joint 1 changes, that of joint 2 does not.
+        let mut estimate = ContactEstimate::UNKNOWN;
+        for tick in 0..200 {
+            measurement.motor_position[1] += 8.7e-5;
+            measurement.joint_torque[0] = 0.01 * f64::from(tick % 2);
+            estimate = estimator.step(1e-3, &measurement);
+        }
+        assert_eq!(estimate.stuck, [false, true]);
+        assert!(!estimate.valid && !estimate.input_invalid);
+        for tick in 0..200 {
+            measurement.joint_torque = [0.01 * f64::from(tick % 2); 2];
+            estimate = estimator.step(1e-3, &measurement);
+        }
+        assert!(estimate.valid && estimate.stuck == [false, false]);
+    }
+}
+
 #[test]
 fn it_recovers_from_broken_time() {
     let (model, parameters) = shipped([0.0, 0.0]);
@@ -112,9 +179,10 @@ proptest! {
     /// Equation (5) at rest: the torque sensors bear the tip's force and the links' weight.
     #[test]
     fn a_force_at_rest_is_found(
-        q1 in -1.5..1.0f64, q2 in 0.3..2.4f64, x in -30.0..30.0f64, y in -30.0..30.0f64, ground: bool,
+        q1 in -1.5..1.0f64, q2 in 0.3..2.4f64, x in -30.0..30.0f64, y in -30.0..30.0f64, ground: bool, observer: bool,
     ) {
         let (model, parameters) = shipped([0.0, if ground { -9.80665 } else { 0.0 }]);
+        let parameters = forms(&parameters)[usize::from(observer)];
         let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
         let (q, force) = (Vector2::new(q1, q2), Vector2::new(x, y));
         let measurement = at_rest(&model, q, force);
@@ -125,10 +193,14 @@ proptest! {
         prop_assert!((Vector2::from(estimate.tip) - tip).norm() < 1e-12);
     }
 
-    /// Whatever numbers come, the estimate stays finite.
+    /// Whatever numbers come, the estimate stays finite, and what cannot be used is not called valid.
     #[test]
-    fn it_stays_finite(inputs in prop::collection::vec((any::<f64>(), any::<f64>(), any::<f64>(), any::<f64>(), any::<f64>()), 1..50)) {
+    fn it_stays_finite(
+        inputs in prop::collection::vec((prop_oneof![any::<f64>(), Just(1e-3)], number(), number(), number(), number()), 1..50),
+        observer: bool,
+    ) {
         let (model, parameters) = shipped([0.0, 0.0]);
+        let parameters = forms(&parameters)[usize::from(observer)];
         let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
         for (dt, a, b, c, d) in inputs {
             let measurement = JointMeasurement { motor_position: [a, b], joint_torque: [c, d] };
@@ -136,6 +208,15 @@ proptest! {
             let numbers = [e.position, e.velocity, e.tip, e.tip_velocity, e.force, e.contact_force];
             prop_assert!(numbers.iter().flatten().all(|x| x.is_finite()));
             prop_assert!(e.normal_force >= 0.0 && e.tangential_force.is_finite() && e.friction.value.is_finite());
+            prop_assert!(!e.friction.error.is_nan());
+            let broken = [a, b, c, d].iter().any(|x| !x.is_finite()) || !dt.is_finite() || dt <= 0.0;
+            prop_assert!(!broken || (e.input_invalid && !e.valid));
+            prop_assert!(!(e.valid && (e.singular || e.saturated || e.stuck.contains(&true))));
         }
     }
+}
+
+/// Any number, or one that an arm may give.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![any::<f64>(), -50.0..50.0f64, -1.0..1.0f64]
 }

@@ -44,11 +44,15 @@ pub enum Fault {
     JointLimit,
     /// The joint is faster than allowed.
     JointOverspeed,
+    /// The tip touches two surfaces: the force's split along one is not defined.
+    ContactAmbiguous,
+    /// A torque sensor gives the same number while its joint turns.
+    TorqueStuck,
 }
 
 impl Fault {
     /// Every fault.
-    pub const ALL: [Fault; 20] = [
+    pub const ALL: [Fault; 22] = [
         Fault::CommandSilent,
         Fault::MeasurementSilent,
         Fault::CommandInvalid,
@@ -69,6 +73,8 @@ impl Fault {
         Fault::StateCommandRefused,
         Fault::JointLimit,
         Fault::JointOverspeed,
+        Fault::ContactAmbiguous,
+        Fault::TorqueStuck,
     ];
 
     /// Every name, for error texts.
@@ -77,7 +83,8 @@ impl Fault {
         measurement invalid, torque saturated, effort limited, \
         velocity limited, force limited, singular configuration, link down, \
         deadline missed, no realtime priority, recording lost, \
-        recording failed, state command refused, joint limit, joint overspeed";
+        recording failed, state command refused, joint limit, joint overspeed, \
+        contact ambiguous, torque sensor stuck";
 
     /// The fault in words, as on the wire.
     pub const fn name(self) -> &'static str {
@@ -102,6 +109,8 @@ impl Fault {
             Fault::StateCommandRefused => "state command refused",
             Fault::JointLimit => "joint limit",
             Fault::JointOverspeed => "joint overspeed",
+            Fault::ContactAmbiguous => "contact ambiguous",
+            Fault::TorqueStuck => "torque sensor stuck",
         }
     }
 

@@ -7,7 +7,8 @@ use ferntast_model::{ArmModel, ParameterError, contour::Surface};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Edge, Fault, Frame, JointSample, Level, PoseSample, WrenchSample,
+        ContactStateSample, Edge, Fault, Frame, JointFields, JointSample, Level, PoseSample,
+        WrenchSample,
     },
 };
 
@@ -78,25 +79,67 @@ impl Node for EstimatorNode {
         let Some(dt) = passed.filter(|&dt| dt > 0.0) else {
             return;
         };
+        let needed = JointFields::POSITION.with(JointFields::EFFORT);
         let estimate = self.estimator.step(
             dt,
-            &JointMeasurement {
-                motor_position: measured.position,
-                joint_torque: measured.effort,
+            &if measured.fields.has(needed) {
+                JointMeasurement {
+                    motor_position: measured.position,
+                    joint_torque: measured.effort,
+                }
+            } else {
+                // The estimator takes it for what it is: no measurement.
+                JointMeasurement {
+                    motor_position: [f64::NAN; 2],
+                    joint_torque: [f64::NAN; 2],
+                }
             },
         );
         let health = &mut output.health;
-        for (active, fault) in [
-            (estimate.singular, Fault::Singular),
-            (estimate.saturated, Fault::TorqueSaturated),
-            (estimate.input_invalid, Fault::MeasurementInvalid),
-        ] {
+        for (active, fault, reason) in reasons(&estimate) {
             if active {
                 health.raise(fault, Level::WARN);
+                health.message = Text::new(reason);
             }
         }
         publish(stamp, &estimate, output);
     }
+}
+
+/// What makes an estimate unusable, with a reason for people; the last one that holds is told.
+fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
+    [
+        (
+            estimate.corner,
+            Fault::ContactAmbiguous,
+            "the tip touches two surfaces: only measured_cf holds",
+        ),
+        (
+            estimate.singular,
+            Fault::Singular,
+            "the elbow is stretched or folded: no force can be told; bend it",
+        ),
+        (
+            estimate.stuck[0],
+            Fault::TorqueStuck,
+            "joint_1 turns, but its torque stays the same: check its torque sensor",
+        ),
+        (
+            estimate.stuck[1],
+            Fault::TorqueStuck,
+            "joint_2 turns, but its torque stays the same: check its torque sensor",
+        ),
+        (
+            estimate.saturated,
+            Fault::TorqueSaturated,
+            "a torque sensor is at the end of its range: press less",
+        ),
+        (
+            estimate.input_invalid,
+            Fault::MeasurementInvalid,
+            "/follower/measured_js lacks position or effort, or they are no numbers",
+        ),
+    ]
 }
 
 fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput) {

@@ -4,6 +4,7 @@
 //! a bristle: it bends elastically while the tip sticks, and slips when
 //! Coulomb's limit is reached, so a tip can rest on the surface under load.
 
+use super::wear::SurfaceWear;
 use ferntast_model::contour::Feature;
 use ferntast_model::{ParameterError, Vector2, check};
 use serde::{Deserialize, Serialize};
@@ -16,12 +17,15 @@ pub struct TrueSurface {
     pub stiffness: f64,
     /// Damping along the normal \[N·s/m\].
     pub damping: f64,
-    /// Coulomb coefficient \[-\].
+    /// Coulomb coefficient \[-\]; where the surface wears, that of day 0.
     pub friction: f64,
     /// Stiffness of the bristle \[N/m\].
     pub tangential_stiffness: f64,
     /// Damping of the bristle \[N·s/m\].
     pub tangential_damping: f64,
+    /// What the days do to it; nothing when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wear: Option<SurfaceWear>,
 }
 
 impl TrueSurface {
@@ -47,7 +51,16 @@ impl TrueSurface {
             0.0,
             1e3,
             "N·s/m",
-        )
+        )?;
+        match &self.wear {
+            Some(wear) => wear.validate().map_err(|error| error.within("wear")),
+            None => Ok(()),
+        }
+    }
+
+    /// The surface as it is on `day` of the mission.
+    pub(super) fn on_day(&self, day: f64) -> TrueSurface {
+        self.wear.map_or(*self, |wear| wear.worn(self, day))
     }
 }
 
@@ -160,6 +173,7 @@ mod tests {
         friction: 0.4,
         tangential_stiffness: 3e4,
         tangential_damping: 50.0,
+        wear: None,
     };
 
     fn floor() -> Front {
@@ -174,6 +188,20 @@ mod tests {
             },
         };
         Front::new(edge.feature(), SURFACE, &Vector2::new(0.0, 0.1))
+    }
+
+    /// Fig. 17: the lubricant wears off.
+    #[test]
+    fn a_lubricated_surface_comes_near_the_bare_one() {
+        let wear = Some(SurfaceWear {
+            worn_friction: 0.45,
+            days: 300.0,
+        });
+        let surface = TrueSurface { wear, ..SURFACE };
+        let on_day = |day| surface.on_day(day).friction;
+        assert_eq!((on_day(-100.0), on_day(0.0)), (0.4, 0.4));
+        assert!((on_day(300.0) - (0.45 - 0.05 * (-1.0_f64).exp())).abs() < 1e-12);
+        assert!(on_day(3000.0) < 0.45 && on_day(3000.0) > 0.449);
     }
 
     #[test]

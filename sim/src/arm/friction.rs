@@ -4,6 +4,9 @@
 //! identification. It shares no code with the friction that servo, estimator
 //! and model lab believe in, so that a fault there cannot hide here.
 
+use super::temperature::{TemperatureDependence, TemperatureShare};
+use super::wear::GearWear;
+use ferntast_model::friction::FrictionParameters;
 use ferntast_model::{ParameterError, check};
 use serde::{Deserialize, Serialize};
 
@@ -25,15 +28,13 @@ pub struct TrueFriction {
     /// Speed from which on the viscous part goes on straight, with the slope
     /// it has there \[rad/s\].
     pub linear_from: f64,
-    /// Change of the Coulomb part per kelvin above 20 °C, as a share of it
-    /// \[1/K\]; 0 switches it off.
-    pub coulomb_per_kelvin: f64,
-    /// Change of the viscous part per kelvin above 20 °C \[1/K\]; 0 switches it off.
-    pub viscous_per_kelvin: f64,
+    /// What temperature does to it; nothing when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<TemperatureDependence>,
+    /// What the days do to it; nothing when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wear: Option<GearWear>,
 }
-
-/// Temperature at which the parameters hold as they are \[degC\].
-const REFERENCE_TEMPERATURE: f64 = 20.0;
 
 impl TrueFriction {
     /// Checks every value against its bounds, and that no speed gains energy.
@@ -48,20 +49,14 @@ impl TrueFriction {
         check("b_2", self.b_2, -1e4, 1e4, "Nm·s²/rad²")?;
         check("b_3", self.b_3, -1e4, 1e4, "Nm·s³/rad³")?;
         check("linear_from", self.linear_from, 0.01, 100.0, "rad/s")?;
-        check(
-            "coulomb_per_kelvin",
-            self.coulomb_per_kelvin,
-            -0.02,
-            0.02,
-            "1/K",
-        )?;
-        check(
-            "viscous_per_kelvin",
-            self.viscous_per_kelvin,
-            -0.02,
-            0.02,
-            "1/K",
-        )?;
+        if let Some(dependence) = &self.temperature {
+            dependence
+                .validate()
+                .map_err(|error| error.within("temperature"))?;
+        }
+        if let Some(wear) = &self.wear {
+            wear.validate().map_err(|error| error.within("wear"))?;
+        }
         let edge = self.linear_from;
         let slope = self.b_1 + 2.0 * self.b_2 * edge + 3.0 * self.b_3 * edge * edge;
         let gains = (0..=1000)
@@ -81,6 +76,32 @@ impl TrueFriction {
         })
     }
 
+    /// Takes the five parameters of equation (4) from a file's `parameters`;
+    /// what is not in there is zero.
+    pub(super) fn set(&mut self, parameters: &FrictionParameters) {
+        let value = |effect: &str, name: &str| {
+            let effect = parameters.effects.get(effect);
+            effect
+                .and_then(|values| values.get(name))
+                .copied()
+                .unwrap_or(0.0)
+        };
+        self.b_0 = value("coulomb", "b_0");
+        self.b_0t = value("load_coulomb", "b_0T");
+        self.b_1 = value("viscous", "b_1");
+        self.b_2 = value("quadratic_viscous", "b_2");
+        self.b_3 = value("cubic_viscous", "b_3");
+    }
+
+    /// The gear as it is on `day` of the mission.
+    pub(super) fn on_day(&self, day: f64) -> Gear {
+        let friction = self.wear.map_or(*self, |wear| wear.worn(self, day));
+        Gear {
+            friction,
+            temperature: self.temperature.as_ref().map(TemperatureShare::new),
+        }
+    }
+
     /// Viscous torque divided by velocity, at `speed` = |θ̇| \[rad/s\]: \[Nm·s/rad\].
     fn viscosity(&self, speed: f64) -> f64 {
         let inside = speed.min(self.linear_from);
@@ -96,7 +117,16 @@ impl TrueFriction {
     fn stiction(&self, load: f64) -> f64 {
         (self.b_0 + self.b_0t * load.abs()).max(0.0)
     }
+}
 
+/// The friction of one gear on one day.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gear {
+    friction: TrueFriction,
+    temperature: Option<TemperatureShare>,
+}
+
+impl Gear {
     /// Velocity \[rad/s\] after friction has acted for `dt` \[s\] on the motor of
     /// `inertia` \[kg m²\], which would have `velocity` without it; joint torque
     /// `load` \[Nm\], `temperature` \[degC\].
@@ -112,16 +142,22 @@ impl TrueFriction {
         load: f64,
         temperature: f64,
     ) -> f64 {
-        let warmer = temperature - REFERENCE_TEMPERATURE;
-        let coulomb = self.stiction(load) * (1.0 + self.coulomb_per_kelvin * warmer).max(0.0);
-        let impulse = coulomb * dt / inertia;
-        if velocity.abs() <= impulse {
+        let share = |speed: f64| {
+            self.temperature
+                .map_or(1.0, |dependence| dependence.at(speed, temperature))
+        };
+        let impulse = self.friction.stiction(load) * dt / inertia;
+        // The stiction at rest first: it holds most motors most of the time.
+        if velocity.abs() <= impulse * share(0.0) {
             return 0.0;
         }
-        let sliding = velocity - impulse.copysign(velocity);
-        let viscosity =
-            self.viscosity(sliding.abs()) * (1.0 + self.viscous_per_kelvin * warmer).max(0.0);
-        sliding / (1.0 + viscosity * dt / inertia)
+        let share = share(velocity.abs());
+        let sliding = velocity.abs() - impulse * share;
+        if sliding <= 0.0 {
+            return 0.0;
+        }
+        let viscosity = self.friction.viscosity(sliding) * share;
+        (sliding / (1.0 + viscosity * dt / inertia)).copysign(velocity)
     }
 }
 
@@ -137,14 +173,27 @@ mod tests {
         b_2: -578.954,
         b_3: 547.449,
         linear_from: 0.698,
-        coulomb_per_kelvin: 0.0,
-        viscous_per_kelvin: 0.0,
+        temperature: None,
+        wear: None,
     };
 
     /// Torque that `brake` takes away at `velocity`.
     fn torque(friction: &TrueFriction, velocity: f64, load: f64, temperature: f64) -> f64 {
+        torque_on(57.0, friction, velocity, load, temperature)
+    }
+
+    fn torque_on(
+        day: f64,
+        friction: &TrueFriction,
+        velocity: f64,
+        load: f64,
+        temperature: f64,
+    ) -> f64 {
         let (inertia, dt) = (0.5, 1e-9);
-        inertia * (velocity - friction.brake(velocity, inertia, dt, load, temperature)) / dt
+        let braked = friction
+            .on_day(day)
+            .brake(velocity, inertia, dt, load, temperature);
+        inertia * (velocity - braked) / dt
     }
 
     #[test]
@@ -166,7 +215,11 @@ mod tests {
     #[test]
     fn below_its_stiction_it_stands_exactly_still() {
         let (inertia, dt) = (0.5, 1e-4);
-        let kick = |torque: f64| SPACE.brake(torque * dt / inertia, inertia, dt, 0.0, 20.0);
+        let kick = |torque: f64| {
+            SPACE
+                .on_day(0.0)
+                .brake(torque * dt / inertia, inertia, dt, 0.0, 20.0)
+        };
         assert_eq!(kick(12.37), 0.0);
         assert_eq!(kick(-12.37), 0.0);
         assert!(kick(12.38) > 0.0);
@@ -180,19 +233,44 @@ mod tests {
         SPACE.validate().unwrap();
     }
 
-    /// Figs. 12 and 14: with temperature Coulomb friction falls, damping grows.
+    /// Figs. 12, 13, 14: −40 % near rest, nothing around 5 °/s, +40 % when fast.
     #[test]
-    fn temperature_acts_on_both_parts_when_switched_on() {
-        let warm = TrueFriction {
-            coulomb_per_kelvin: -0.016,
-            viscous_per_kelvin: 0.013,
+    fn temperature_acts_as_in_the_paper() {
+        let joint = TrueFriction {
+            temperature: Some(TemperatureDependence {
+                reference: 10.0,
+                slow: -0.031,
+                fast: 0.0111,
+                neutral_speed: 0.0873,
+            }),
             ..SPACE
         };
-        assert!(torque(&warm, 0.001, 0.0, 25.0) < torque(&warm, 0.001, 0.0, -5.0));
-        assert!(torque(&warm, 0.69, 0.0, 25.0) - torque(&SPACE, 0.69, 0.0, 25.0) < 2.0);
+        let ratio = |degrees: f64, warm, cold| {
+            let speed = degrees.to_radians();
+            torque(&joint, speed, 3.0, warm) / torque(&joint, speed, 3.0, cold)
+        };
+        assert!((ratio(1.0, 20.0, -5.0) - 0.6).abs() < 0.02);
+        assert!((ratio(5.0, 20.0, -5.0) - 1.0).abs() < 0.02);
+        assert!((ratio(31.0, 25.0, -5.0) - 1.4).abs() < 0.02);
         assert_eq!(
             torque(&SPACE, 0.1, 0.0, 25.0),
             torque(&SPACE, 0.1, 0.0, -5.0)
         );
+    }
+
+    #[test]
+    fn friction_grows_with_the_days() {
+        let joint = TrueFriction {
+            wear: Some(GearWear {
+                per_year: 0.1,
+                reference_day: 57.0,
+            }),
+            ..SPACE
+        };
+        let unworn = torque(&SPACE, 0.1, 5.0, 0.0);
+        assert_eq!(torque_on(57.0, &joint, 0.1, 5.0, 0.0), unworn);
+        let later = torque_on(57.0 + 730.5, &joint, 0.1, 5.0, 0.0);
+        assert!((later / unworn - 1.2).abs() < 1e-4);
+        assert_eq!(torque_on(1e4, &SPACE, 0.1, 5.0, 0.0), unworn);
     }
 }

@@ -11,18 +11,25 @@
 //! seed: same seed and same inputs, same bytes.
 
 mod contact;
+mod elasticity;
+mod environment;
 mod friction;
 mod noise;
 mod parameters;
 mod plant;
 mod sensors;
+mod temperature;
 mod thermal;
+mod wear;
 
 pub use contact::TrueSurface;
+pub use environment::{Environment, GroundJoint, GroundParameters, Sun};
 pub use friction::TrueFriction;
 pub use parameters::{ArmConfig, TrueJoint, TrueSpringHead, TrueSurfaces, TruthParameters};
 pub use sensors::SensorParameters;
+pub use temperature::TemperatureDependence;
 pub use thermal::{TEMPERATURE_SENSORS, ThermalParameters};
+pub use wear::{GearWear, SurfaceWear};
 
 use ferntast_model::contour::Surface;
 use ferntast_model::joint::JointParameters;
@@ -157,9 +164,10 @@ impl SimulatedArm {
         }
         let mut noise = Noise::new(seed);
         let truth = config.truth.clone();
-        let thermal = truth
-            .joint
-            .map(|joint| Thermal::new(&joint.thermal, &mut noise));
+        let thermal = std::array::from_fn(|joint| {
+            let parameters = &truth.joint[joint].thermal;
+            Thermal::new(parameters, &truth.environment, joint, &mut noise)
+        });
         let encoders = std::array::from_fn(|joint| {
             let parameters = &truth.joint[joint];
             Encoder::new(

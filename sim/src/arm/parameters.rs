@@ -1,6 +1,8 @@
 //! Configuration of the simulated arm: a file in `config/arms/`.
 
 use super::contact::TrueSurface;
+use super::elasticity::Elasticity;
+use super::environment::{Environment, GroundParameters};
 use super::friction::TrueFriction;
 use super::sensors::SensorParameters;
 use super::thermal::ThermalParameters;
@@ -26,6 +28,9 @@ pub struct ArmConfig {
     pub estimator: EstimatorParameters,
     /// What the simulated arm really is like.
     pub truth: TruthParameters,
+    /// What is different on the ground.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground: Option<GroundParameters>,
 }
 
 impl ArmConfig {
@@ -42,6 +47,9 @@ impl ArmConfig {
         self.truth
             .validate()
             .map_err(|error| error.within("truth"))?;
+        if let Some(ground) = &self.ground {
+            ground.validate().map_err(|error| error.within("ground"))?;
+        }
         self.check_substep()
     }
 
@@ -61,10 +69,13 @@ impl ArmConfig {
             .chain(heads)
             .map(|s| s.stiffness.max(s.tangential_stiffness))
             .fold(0.0, f64::max);
-        let gear = truth.joint.iter().map(|joint| joint.stiffness);
+        let gear = truth.joint.iter().map(TrueJoint::largest_stiffness);
         let gear = Matrix2::identity() * gear.fold(0.0, f64::max);
         let arm = Arm::new(links);
-        let joints = truth.joint.iter().map(|j| j.stiffness / j.motor_inertia);
+        let joints = truth
+            .joint
+            .iter()
+            .map(|joint| joint.largest_stiffness() / joint.motor_inertia);
         // Stretched to folded, with a surface that pushes along normal and tangent.
         let square = (0..=16)
             .map(|step| {
@@ -109,6 +120,8 @@ pub struct TruthParameters {
     pub substep: f64,
     /// Joint positions at the start \[rad\].
     pub start_position: [f64; JOINTS],
+    /// Date, sun and temperature.
+    pub environment: Environment,
     /// The links, where they are not as `[arm]` says.
     #[serde(default)]
     pub arm: Option<ArmParameters>,
@@ -156,6 +169,7 @@ impl TrueSpringHead {
             friction: self.friction,
             tangential_stiffness: self.tangential_stiffness,
             tangential_damping: self.tangential_damping,
+            wear: None,
         }
     }
 }
@@ -170,6 +184,9 @@ pub struct TrueJoint {
     pub gear_ratio: f64,
     /// Stiffness of flex spline and torque sensor \[Nm/rad\].
     pub stiffness: f64,
+    /// Cubic stiffness K₃: τ = K (θ − q) + K₃ (θ − q)³ \[Nm/rad³\]; zero when left out.
+    #[serde(default)]
+    pub cubic_stiffness: f64,
     /// Damping of the same \[Nm·s/rad\].
     pub damping: f64,
     /// k_m of equation (1), at the motor \[A/Nm\].
@@ -187,10 +204,25 @@ pub struct TrueJoint {
 }
 
 impl TrueJoint {
+    /// The joint's elasticity.
+    pub(super) fn elasticity(&self) -> Elasticity {
+        Elasticity {
+            stiffness: self.stiffness,
+            cubic_stiffness: self.cubic_stiffness,
+        }
+    }
+
+    /// Slope of its torque at the end of the torque sensor's range \[Nm/rad\].
+    fn largest_stiffness(&self) -> f64 {
+        let wound = self.elasticity().wound_by(self.torque_sensor_range);
+        self.stiffness + 3.0 * self.cubic_stiffness * wound * wound
+    }
+
     fn validate(&self) -> Result<(), ParameterError> {
         check("motor_inertia", self.motor_inertia, 1e-2, 1000.0, "kg m²")?;
         check("gear_ratio", self.gear_ratio, 1.0, 10_000.0, "-")?;
         check("stiffness", self.stiffness, 10.0, 1e5, "Nm/rad")?;
+        check("cubic_stiffness", self.cubic_stiffness, 0.0, 1e9, "Nm/rad³")?;
         check("damping", self.damping, 0.0, 100.0, "Nm·s/rad")?;
         check("motor_constant", self.motor_constant, 1e-3, 1e4, "A/Nm")?;
         check(
@@ -236,6 +268,9 @@ impl TruthParameters {
             6.3,
             "rad",
         )?;
+        self.environment
+            .validate()
+            .map_err(|error| error.within("environment"))?;
         if let Some(arm) = &self.arm {
             arm.validate().map_err(|error| error.within("arm"))?;
         }

@@ -1,7 +1,7 @@
 //! The equations of motion of motors, gears, links and contact, and their integration.
 //!
 //! Motor side, equation (2): J θ̈ = τ_m − τ − τ_F.
-//! Elasticity: τ = K (θ − q) + D (θ̇ − q̇).
+//! Elasticity: τ = K (θ − q) + K₃ (θ − q)³ + D (θ̇ − q̇).
 //! Link side, equation (5): M(q) q̈ + C(q, q̇) q̇ + g(q) = τ + Jᵀ F.
 //!
 //! One substep drifts half a step with the old velocities, changes the
@@ -11,16 +11,27 @@
 //! not creep. Friction is applied to the velocities last, so rest is exact.
 
 use super::contact::Front;
-use super::parameters::{ArmConfig, TrueJoint};
+use super::elasticity::Elasticity;
+use super::friction::Gear;
+use super::parameters::ArmConfig;
 use ferntast_model::arm::{Arm, solve_symmetric};
 use ferntast_model::contour::Surface;
 use ferntast_model::{JOINTS, Vector2};
+
+/// One joint's mechanics.
+#[derive(Clone, Copy, Debug)]
+struct Joint {
+    motor_inertia: f64,
+    damping: f64,
+    elasticity: Elasticity,
+    gear: Gear,
+}
 
 /// State and parameters of the mechanics.
 #[derive(Clone, Debug)]
 pub(super) struct Plant {
     arm: Arm,
-    joints: [TrueJoint; JOINTS],
+    joints: [Joint; JOINTS],
     pub(super) fronts: Vec<Front>,
     /// Link positions q \[rad\].
     pub(super) q: Vector2<f64>,
@@ -42,6 +53,7 @@ impl Plant {
         let contour = truth.contour.as_ref().unwrap_or(&config.contour);
         let q = Vector2::from(truth.start_position);
         let gravity = arm.gravity(&q);
+        let day = truth.environment.day;
         let tip = arm.kinematics().forward(&q);
         let fronts = contour
             .features()
@@ -52,17 +64,25 @@ impl Plant {
                     Surface::Unlubricated => truth.surface.unlubricated,
                     Surface::Spring => truth.surface.spring.surface(feature.contact.stiffness),
                 };
-                Front::new(feature, surface, &tip)
+                Front::new(feature, surface.on_day(day), &tip)
             })
             .collect();
-        let wound = |joint: usize| q[joint] + gravity[joint] / truth.joint[joint].stiffness;
+        let joints = truth.joint.each_ref().map(|joint| Joint {
+            motor_inertia: joint.motor_inertia,
+            damping: joint.damping,
+            elasticity: joint.elasticity(),
+            gear: joint.friction.on_day(day),
+        });
+        let theta = Vector2::from_fn(|joint, _| {
+            q[joint] + joints[joint].elasticity.wound_by(gravity[joint])
+        });
         Self {
             arm,
-            joints: truth.joint,
+            joints,
             fronts,
             q,
             qd: Vector2::zeros(),
-            theta: Vector2::new(wound(0), wound(1)),
+            theta,
             thetad: Vector2::zeros(),
             force: Vector2::zeros(),
         }
@@ -80,7 +100,9 @@ impl Plant {
     pub(super) fn joint_torque(&self) -> Vector2<f64> {
         Vector2::from_fn(|joint, _| {
             let parameters = &self.joints[joint];
-            parameters.stiffness * (self.theta[joint] - self.q[joint])
+            parameters
+                .elasticity
+                .torque(self.theta[joint] - self.q[joint])
                 + parameters.damping * (self.thetad[joint] - self.qd[joint])
         })
     }
@@ -92,8 +114,8 @@ impl Plant {
             .map(|joint| {
                 let parameters = &self.joints[joint];
                 let wound = self.theta[joint] - self.q[joint];
-                0.5 * (parameters.motor_inertia * self.thetad[joint].powi(2)
-                    + parameters.stiffness * wound * wound)
+                0.5 * parameters.motor_inertia * self.thetad[joint].powi(2)
+                    + parameters.elasticity.energy(wound)
             })
             .sum();
         let contact: f64 = self.fronts.iter().map(|front| front.energy(&tip)).sum();
@@ -138,7 +160,7 @@ impl Plant {
             let free = self.thetad[joint] + (motor_torque[joint] - torque[joint]) * dt / inertia;
             let braked =
                 parameters
-                    .friction
+                    .gear
                     .brake(free, inertia, dt, torque[joint], temperature[joint]);
             heat[joint] = 0.5 * inertia * (free * free - braked * braked);
             self.thetad[joint] = braked;

@@ -1,5 +1,9 @@
-//! A joint's temperature: one heat capacity, warmed by friction, cooled by its surroundings.
+//! A joint's temperature: one heat capacity, warmed by friction, sun and
+//! heater, cooled by its surroundings.
+//!
+//! C Ṫ = P_friction + P_sun(t) + P_heater(T) − G (T − T_shade)
 
+use super::environment::{Environment, SECONDS_PER_DAY, Sun};
 use super::noise::Noise;
 use ferntast_model::{ParameterError, check};
 use serde::{Deserialize, Serialize};
@@ -11,10 +15,16 @@ pub const TEMPERATURE_SENSORS: usize = 5;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThermalParameters {
-    /// Temperature of the surroundings, held by heater and sun \[degC\].
-    pub ambient: f64,
-    /// Temperature at the start \[degC\].
-    pub initial: f64,
+    /// Temperature T_shade that it would come to without sun and heater \[degC\].
+    pub shade: f64,
+    /// Mean power of the sun while it shines on it \[W\].
+    pub sun_power: f64,
+    /// Power of the heater \[W\].
+    pub heater_power: f64,
+    /// Temperature below which the heater is switched on \[degC\].
+    pub heater_on: f64,
+    /// Temperature above which it is switched off \[degC\].
+    pub heater_off: f64,
     /// Heat capacity \[J/K\].
     pub capacity: f64,
     /// Conductance to the surroundings \[W/K\].
@@ -34,8 +44,11 @@ impl ThermalParameters {
     ///
     /// The first value that is out of bounds.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        check("ambient", self.ambient, -150.0, 150.0, "degC")?;
-        check("initial", self.initial, -150.0, 150.0, "degC")?;
+        check("shade", self.shade, -150.0, 150.0, "degC")?;
+        check("sun_power", self.sun_power, 0.0, 1e4, "W")?;
+        check("heater_power", self.heater_power, 0.0, 1e4, "W")?;
+        check("heater_off", self.heater_off, -150.0, 150.0, "degC")?;
+        check("heater_on", self.heater_on, -150.0, self.heater_off, "degC")?;
         check("capacity", self.capacity, 1.0, 1e6, "J/K")?;
         check("conductance", self.conductance, 0.0, 1e3, "W/K")?;
         check("sensor_offset", self.sensor_offset, 0.0, 20.0, "K")?;
@@ -44,26 +57,67 @@ impl ThermalParameters {
     }
 }
 
+/// How the surroundings keep a joint.
+#[derive(Clone, Copy, Debug)]
+enum Surroundings {
+    /// At a temperature \[degC\].
+    Held(f64),
+    /// With sun and heater, `seconds` after the start of the mission.
+    Outside { sun: Sun, seconds: f64, heats: bool },
+}
+
 /// One joint's temperature and its sensors.
 #[derive(Clone, Debug)]
 pub(super) struct Thermal {
     parameters: ThermalParameters,
+    surroundings: Surroundings,
     temperature: f64,
     offsets: [f64; TEMPERATURE_SENSORS],
     reading: f64,
     since_reading: f64,
 }
 
+/// Before the start the joint is left to sun and heater for this long \[s\],
+/// many of its time constants, in steps of [`SOAK_STEP`].
+const SOAK: f64 = 40_000.0;
+const SOAK_STEP: f64 = 20.0;
+
 impl Thermal {
-    pub(super) fn new(parameters: &ThermalParameters, noise: &mut Noise) -> Self {
+    /// Joint `joint` at rest in `environment`.
+    pub(super) fn new(
+        parameters: &ThermalParameters,
+        environment: &Environment,
+        joint: usize,
+        noise: &mut Noise,
+    ) -> Self {
         let offsets = std::array::from_fn(|_| noise.normal(parameters.sensor_offset));
+        let held = environment
+            .temperature
+            .and_then(|both| both.get(joint).copied());
+        let (surroundings, temperature) = match held {
+            Some(temperature) => (Surroundings::Held(temperature), temperature),
+            None => {
+                let outside = Surroundings::Outside {
+                    sun: environment.sun,
+                    seconds: environment.day * SECONDS_PER_DAY - SOAK,
+                    heats: false,
+                };
+                (outside, parameters.heater_off)
+            }
+        };
         let mut thermal = Self {
             parameters: *parameters,
-            temperature: parameters.initial,
+            surroundings,
+            temperature,
             offsets,
             reading: 0.0,
             since_reading: 0.0,
         };
+        if held.is_none() {
+            for _ in 0..(SOAK / SOAK_STEP) as usize {
+                thermal.advance(0.0, SOAK_STEP);
+            }
+        }
         thermal.read(noise);
         thermal
     }
@@ -75,8 +129,21 @@ impl Thermal {
     /// Takes in `heat` \[J\] and moves on by `dt` \[s\].
     pub(super) fn advance(&mut self, heat: f64, dt: f64) {
         let p = &self.parameters;
-        let loss = p.conductance * (self.temperature - p.ambient) * dt;
-        self.temperature += (heat - loss) / p.capacity;
+        let (around, power) = match &mut self.surroundings {
+            Surroundings::Held(temperature) => (*temperature, 0.0),
+            Surroundings::Outside {
+                sun,
+                seconds,
+                heats,
+            } => {
+                *seconds += dt;
+                *heats = self.temperature < if *heats { p.heater_off } else { p.heater_on };
+                let heater = if *heats { p.heater_power } else { 0.0 };
+                (p.shade, p.sun_power * sun.share(*seconds) + heater)
+            }
+        };
+        let gain = power - p.conductance * (self.temperature - around);
+        self.temperature += (heat + gain * dt) / p.capacity;
         self.since_reading += dt;
     }
 
@@ -106,8 +173,11 @@ mod tests {
     use super::*;
 
     const JOINT: ThermalParameters = ThermalParameters {
-        ambient: 10.0,
-        initial: 10.0,
+        shade: -50.0,
+        sun_power: 48.0,
+        heater_power: 30.0,
+        heater_on: -12.0,
+        heater_off: -9.0,
         capacity: 100.0,
         conductance: 0.5,
         sensor_offset: 0.3,
@@ -115,10 +185,27 @@ mod tests {
         sensor_period: 0.1,
     };
 
+    const SUN: Sun = Sun {
+        orbit_period: 5500.0,
+        sunlit: 0.6,
+        season_period: 60.0,
+        season_peak: 42.0,
+        season_share: 0.28,
+    };
+
+    fn environment(day: f64, temperature: Option<[f64; 2]>) -> Environment {
+        Environment {
+            day,
+            temperature,
+            sun: SUN,
+        }
+    }
+
     #[test]
     fn five_watts_warm_it_by_ten_kelvin_in_the_end() {
         let mut noise = Noise::new(1);
-        let mut joint = Thermal::new(&JOINT, &mut noise);
+        let held = environment(0.0, Some([10.0, 10.0]));
+        let mut joint = Thermal::new(&JOINT, &held, 0, &mut noise);
         // One time constant of 200 s, then many.
         for _ in 0..2000 {
             joint.advance(0.5, 0.1);
@@ -136,5 +223,30 @@ mod tests {
             reading,
             "held until the next reading"
         );
+    }
+
+    /// The paper: −20 … +30 °C by heater and sun, and only slight changes in a contact of minutes.
+    #[test]
+    fn sun_and_heater_keep_it_within_the_published_range() {
+        let slow = ThermalParameters {
+            capacity: 6000.0,
+            ..JOINT
+        };
+        let mut noise = Noise::new(1);
+        let (mut coldest, mut warmest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for step in 0..1440 {
+            let outside = environment(f64::from(step) * 0.513, None);
+            let mut joint = Thermal::new(&slow, &outside, 1, &mut noise);
+            let begin = joint.temperature();
+            coldest = begin.min(coldest);
+            warmest = begin.max(warmest);
+            for _ in 0..300 {
+                joint.advance(0.0, 1.0);
+            }
+            assert!((joint.temperature() - begin).abs() < 3.0);
+        }
+        println!("{coldest:.1} … {warmest:.1} °C");
+        assert!(coldest > -20.0 && coldest < -10.0);
+        assert!(warmest < 30.0 && warmest > 20.0);
     }
 }

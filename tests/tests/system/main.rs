@@ -2,9 +2,12 @@
 
 mod crashes;
 mod delay;
+mod dynamics;
+mod estimator;
 mod lab;
 mod lockstep;
 mod masters;
+mod paper;
 mod playback;
 mod refusals;
 mod ros;

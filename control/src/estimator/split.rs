@@ -1,0 +1,135 @@
+//! Which surface is touched, and what the force is along and across it.
+
+use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters};
+use ferntast_model::Vector2;
+use ferntast_model::contour::{Feature, Surface, nearest};
+
+/// How far behind the front of a feature the tip is still taken to push it \[m\].
+const REACH: f64 = 0.1;
+
+/// How many times the filter's delay a turn of the tip is seen in the forces.
+const TURN_DELAYS: f64 = 5.0;
+
+/// How the tip moves, base frame.
+pub(super) struct Motion {
+    /// Newest position \[m\].
+    pub(super) tip: Vector2<f64>,
+    /// Filtered velocity \[m/s\], as late as the forces.
+    pub(super) velocity: Vector2<f64>,
+    /// Velocity \[m/s\] predicted over the filter's delay.
+    pub(super) present_velocity: Vector2<f64>,
+    /// How late forces and filtered velocity are \[s\].
+    pub(super) delay: f64,
+}
+
+/// Splits forces, and remembers how the tip slid.
+#[derive(Clone, Debug)]
+pub(super) struct Split {
+    features: Vec<Feature>,
+    /// One a surface: lubricated, unlubricated.
+    coefficients: [CoefficientEstimator; 2],
+    /// Way slid since the last turn or rest \[m\].
+    travel: f64,
+    /// Time since then \[s\].
+    sliding_for: f64,
+    /// Direction of the last motion along the tangent: ±1.
+    direction: f64,
+}
+
+impl Split {
+    pub(super) fn new(features: Vec<Feature>) -> Self {
+        Self {
+            features,
+            coefficients: Default::default(),
+            travel: 0.0,
+            sliding_for: 0.0,
+            direction: 1.0,
+        }
+    }
+
+    /// Finds the surface touched, and splits the force along it.
+    pub(super) fn step(
+        &mut self,
+        parameters: &EstimatorParameters,
+        last: &ContactEstimate,
+        dt: f64,
+        motion: &Motion,
+        force: &Vector2<f64>,
+        estimate: &mut ContactEstimate,
+    ) {
+        let tip = &motion.tip;
+        let near = nearest(&self.features, tip, REACH)
+            .filter(|near| near.distance <= parameters.contact_distance);
+        let threshold = if last.in_contact {
+            parameters.contact_off
+        } else {
+            parameters.contact_on
+        };
+        let touched = near.and_then(|near| {
+            let feature = self.features.get(near.index)?;
+            (force.dot(&feature.normal) > threshold).then_some((near.index, *feature))
+        });
+        let Some((index, feature)) = touched else {
+            self.travel = 0.0;
+            self.sliding_for = 0.0;
+            return;
+        };
+        let sliding = motion.velocity.dot(&feature.tangent());
+        let (normal, tangential) = (force.dot(&feature.normal), force.dot(&feature.tangent()));
+        let turned = sliding * self.direction < 0.0;
+        if sliding.abs() < parameters.rest_speed || turned || last.feature != Some(index) {
+            self.travel = 0.0;
+            self.sliding_for = 0.0;
+        } else {
+            self.travel += sliding.abs() * dt;
+            self.sliding_for += dt;
+        }
+        if sliding.abs() >= parameters.rest_speed {
+            self.direction = sliding.signum();
+        }
+        let present = motion.present_velocity.dot(&feature.tangent());
+        let stopping = present * self.direction < parameters.rest_speed;
+        estimate.in_contact = true;
+        estimate.surface = Some(feature.surface);
+        estimate.feature = Some(index);
+        estimate.contact_force = [tangential, normal];
+        estimate.normal_force = normal;
+        estimate.tangential_force = -tangential * self.direction;
+        estimate.corner = self.features.iter().enumerate().any(|(other, f)| {
+            other != index && f.faces(tip) && (-REACH..=0.0).contains(&f.distance(tip))
+        });
+        // Two normals, two tangents: the split is no more defined than at rest.
+        // At a turn first arm and surface wind up the other way, then the filters follow.
+        let turned_lately =
+            self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
+        estimate.near_rest = stopping || turned_lately || estimate.corner;
+        self.identify(parameters, dt, feature.surface, estimate);
+    }
+
+    /// Equation (6), where the tip slides.
+    fn identify(
+        &mut self,
+        parameters: &EstimatorParameters,
+        dt: f64,
+        surface: Surface,
+        estimate: &mut ContactEstimate,
+    ) {
+        let slot = match surface {
+            Surface::Lubricated => 0,
+            Surface::Unlubricated => 1,
+            // The head of a spring gives way: equation (6) is not about it.
+            Surface::Spring => return,
+        };
+        let coefficient = &mut self.coefficients[slot];
+        if estimate.valid && !estimate.near_rest {
+            coefficient.step(
+                estimate.normal_force,
+                estimate.tangential_force,
+                dt,
+                parameters.friction_memory,
+                parameters.cut_off,
+            );
+        }
+        estimate.friction = coefficient.coefficient();
+    }
+}

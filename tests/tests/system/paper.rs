@@ -1,0 +1,147 @@
+//! Experiments on the arm, and the paper's table and figures out of their recordings.
+
+use std::{collections::BTreeMap, fs};
+
+use ferntast_tests::Session;
+use serde_json::Value;
+
+use crate::support::{number, refused, run};
+
+/// Table 1 of the paper, joint 2: b_0, b_0T, b_1, b_2, b_3.
+const TABLE_1: [(&str, [f64; 5]); 3] = [
+    ("on_ground", [7.573, 0.127, 168.388, -544.193, 516.421]),
+    (
+        "spring_2005_03_24",
+        [12.372, 0.146, 163.301, -578.954, 547.449],
+    ),
+    (
+        "spring_2005_05_12",
+        [10.850, -0.178, 194.957, -608.227, 570.378],
+    ),
+];
+
+fn number_of(item: &Value, key: &str) -> f64 {
+    item[key].as_f64().unwrap_or(f64::NAN)
+}
+
+#[test]
+fn the_paper_holds_item_by_item_from_recordings() {
+    let session = Session::new();
+    let told = run(&session, &["paper", "-o", "paper", "--json"])
+        .success()
+        .json();
+    let list = told.as_array().expect("a list");
+    let items: BTreeMap<&str, &Value> = list
+        .iter()
+        .map(|item| (item["item"].as_str().expect("a name"), item))
+        .collect();
+    assert_eq!(items.len(), list.len(), "names are unique");
+    for item in list {
+        assert_eq!(item["holds"], true, "{item:#}");
+        assert!(number_of(item, "here").is_finite(), "{item:#}");
+    }
+    for (set, values) in TABLE_1 {
+        for (parameter, value) in ["b0", "b0T", "b1", "b2", "b3"].into_iter().zip(values) {
+            let item = items[format!("table1/{set}/{parameter}").as_str()];
+            assert_eq!(number_of(item, "paper"), value);
+            // Found from noisy recordings, not copied: near, but never the same.
+            let away = (number_of(item, "here") / value - 1.0).abs();
+            assert!(away > 1e-9 && away < 0.2, "{item:#}");
+            assert!(number_of(item, "std_error") > 0.0, "{item:#}");
+        }
+    }
+    for figure in 4..=17 {
+        let prefix = format!("fig{figure}/");
+        assert!(
+            items.keys().any(|name| name.starts_with(&prefix)),
+            "{prefix}"
+        );
+    }
+    let page = fs::read_to_string(session.folder().join("paper/paper.html")).expect("the page");
+    assert!(page.contains("Fig. 17") && !page.contains("src=\"http") && !page.contains("@DATA@"));
+    let recording = session
+        .folder()
+        .join("paper/recordings/2005-03-24_spring_joint_2");
+    let recording = recording.to_str().expect("a path in UTF-8");
+    let compared = run(&session, &["lab", "compare", recording, "--json"])
+        .success()
+        .json();
+    assert_eq!(compared.as_array().map(Vec::len), Some(2), "both joints");
+}
+
+#[test]
+fn an_experiment_is_the_same_for_the_same_seed_and_the_lab_reads_it() {
+    let session = Session::new();
+    let spring = |folder: &str, seed: &str| {
+        let arguments = [
+            "experiment",
+            "spring",
+            "--speeds",
+            "5,20",
+            "--time-per-speed",
+            "4",
+            "--temperature",
+            "10",
+            "--day",
+            "57",
+            "--seed",
+            seed,
+            "-o",
+            folder,
+            "--json",
+        ];
+        let told = run(&session, &arguments).success().json();
+        assert!(number(&told, "duration_s") > 8.0);
+        let path = session.folder().join(folder);
+        let file = fs::read_dir(&path)
+            .expect("a folder")
+            .filter_map(Result::ok)
+            .map(|entry| entry.path())
+            .find(|path| path.extension().is_some_and(|end| end == "mcap"));
+        fs::read(file.expect("an MCAP file")).expect("its bytes")
+    };
+    let first = spring("first", "3");
+    assert_eq!(first, spring("second", "3"));
+    assert_ne!(first, spring("third", "4"));
+    let folder = session.folder().join("first");
+    let folder = folder.to_str().expect("a path in UTF-8");
+    let told = run(&session, &["lab", "compare", folder, "--json"])
+        .success()
+        .json();
+    // 5 and 20 deg/s alone tell little of each parameter, but all of the torque.
+    assert!(
+        number(&told[1]["rms"], "held_out") < 1.0,
+        "{:#}",
+        told[1]["rms"]
+    );
+}
+
+#[test]
+fn experiments_that_the_arm_cannot_do_are_refused() {
+    let session = Session::new();
+    refused(
+        &session,
+        &["experiment", "spring", "--speeds", "41", "-o", "a"],
+        &["speed", "40 deg/s"],
+    );
+    refused(
+        &session,
+        &["experiment", "contact", "--forces", "500", "-o", "a"],
+        &["force", "100 N"],
+    );
+    refused(
+        &session,
+        &["experiment", "sine", "--frequencies", "0", "-o", "a"],
+        &["frequency", "Hz"],
+    );
+    refused(
+        &session,
+        &["experiment", "campaign", "no_such", "-o", "a"],
+        &["no_such", "mission"],
+    );
+    refused(
+        &session,
+        &["experiment", "spring", "--temperature", "900", "-o", "a"],
+        &["temperature", "degC"],
+    );
+}
