@@ -6,3 +6,4 @@ pub mod hand;
 pub mod joint_bench;
 pub mod lockstep;
 mod random;
+pub mod teleoperation;

@@ -1,0 +1,290 @@
+//! Wave variables, their integrals in packets, impedance matched, drift corrected.
+//!
+//! u = (b v_h + F)/√(2b) goes forward, w = (b v_s − F_s)/√(2b) comes back
+//! (Anderson and Spong 1989; Niemeyer and Slotine 1991, "Stable adaptive
+//! teleoperation", equations 11–12; 2004, "Telemanipulation with time delays",
+//! sections 3–5), F what the hand gives into the two-port, F_s what comes out at
+//! the tip. With the hand's velocity and the tip's force as inputs:
+//!
+//! F = b v_h − √(2b) w,  u = √(2b) v_h − w.
+//!
+//! The follower ends its line with a damper b (impedance matching, Niemeyer and
+//! Slotine 2004, section 5), F_s = F_c + b v_s, so that nothing of u is sent back:
+//!
+//! v_s = (√(2b) u − F_c)/(2b),  w = −F_c/√(2b).
+//!
+//! **In packets.** Integrals of u and w are sent (Niemeyer and Slotine 2004, section
+//! 6) and played out over no less time than they were gathered in: by
+//! Cauchy–Schwarz (∫u)²/2T ≤ ∫½u², so loss, jitter, reordering and duplication
+//! can only take energy away (Chopra, Berestesky, Spong 2008, "Bilateral
+//! teleoperation over unreliable communication networks"). The integrals are sent modulo
+//! 32 √J·√s, so that single precision holds them. What comes after an outage, or
+//! waits longer than `buffer`, is dropped and not made up for.
+//!
+//! **Drift.** What was dropped leaves the tip beside the hand's image. The
+//! follower moves it back at a limited speed, never against the contact.
+//!
+//! **What it guarantees.** Each end sends no more wave energy than waves and port
+//! have brought it, and overdraws by no more than a step, paid back first; so the two-port
+//! is passive for any delay, jitter and loss. A long line is soft: delay T each
+//! way acts as a spring b/T. Assumed: clocks that run equally fast (their offset does not
+//! matter).
+
+use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
+use super::{
+    Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
+    Received, vector,
+};
+use nalgebra::Vector3;
+
+law_parameters! {
+    /// Parameters of the law. Every key may be left out.
+    Wave {
+        /// b: impedance of the line, at the hand's scale \[N·s/m\].
+        impedance = 10.0 in 0.1 .. 1000.0 "N·s/m",
+        /// Longest time that waves wait to be played out \[s\].
+        buffer = 0.02 in 0.002 .. 1.0 "s",
+        /// Energy that an end may hold in hand; what is beyond counts as
+        /// dissipated \[J\].
+        reserve = 0.1 in 0.0 .. 1000.0 "J",
+        /// Time constant of the drift correction \[s\].
+        drift_time = 0.5 in 0.005 .. 100.0 "s",
+        /// Largest speed of the drift correction, at the hand's scale \[m/s\].
+        drift_speed = 0.05 in 0.0 .. 10.0 "m/s",
+        /// Largest speed at which the tip gives way to pay back, at the hand's
+        /// scale \[m/s\].
+        yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
+    }
+}
+
+/// Integrals are sent modulo this [√J·√s].
+const MODULUS: f64 = 32.0;
+
+fn wrapped(own: Vector3<f64>) -> Vector3<f64> {
+    own.map(|value| value - MODULUS * (value / MODULUS).round())
+}
+
+/// The integral that an end sends.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sent(Vector3<f64>);
+
+impl Sent {
+    fn add(&mut self, wave: Vector3<f64>, dt: f64) -> [f64; 3] {
+        self.0 = wrapped(self.0 + wave * dt);
+        self.0.into()
+    }
+}
+
+/// Waves that arrived and wait to be played out.
+#[derive(Clone, Copy, Debug, Default)]
+struct Arrived {
+    clock: f64,
+    last: Option<(f64, Vector3<f64>)>,
+    integral: Vector3<f64>,
+    time: f64,
+}
+
+impl Arrived {
+    /// The wave of this step [√W].
+    fn step(&mut self, dt: f64, live: Option<Received>, buffer: f64) -> Vector3<f64> {
+        self.clock += dt;
+        let Some(received) = live else {
+            *self = Arrived {
+                clock: self.clock,
+                ..Arrived::default()
+            };
+            return Vector3::zeros();
+        };
+        if received.fresh {
+            let sent = self.clock - received.age;
+            let total = vector(received.packet.vector);
+            if let Some((before, sum)) = self.last {
+                let span = sent - before;
+                if span > 1e-6 {
+                    self.integral += wrapped(total - sum);
+                    self.time += span;
+                    self.last = Some((sent, total));
+                }
+                if self.time > buffer {
+                    self.integral *= buffer / self.time;
+                    self.time = buffer;
+                }
+            } else {
+                self.last = Some((sent, total));
+            }
+        }
+        if self.time <= 1e-9 || dt <= 0.0 {
+            return Vector3::zeros();
+        }
+        let share = (dt / self.time).min(1.0);
+        let played = share * self.integral;
+        self.integral -= played;
+        self.time -= share * self.time;
+        played / dt
+    }
+}
+
+/// Energy in hand.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tank {
+    level: f64,
+    balance: f64,
+    dissipated: f64,
+}
+
+impl Tank {
+    /// Books the wave that came in and what the port has taken in net, in all.
+    fn book(&mut self, dt: f64, wave: Vector3<f64>, balance: f64, reserve: f64) {
+        self.level += 0.5 * wave.norm_squared() * dt + balance - self.balance;
+        self.balance = balance;
+        if self.level > reserve {
+            self.dissipated += self.level - reserve;
+            self.level = reserve;
+        }
+    }
+
+    /// The wave as far as it can be paid for.
+    fn pay(&mut self, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
+        let price = 0.5 * wave.norm_squared() * dt;
+        let paid = price.min(self.level.max(0.0));
+        if price <= 0.0 {
+            return Vector3::zeros();
+        }
+        self.level -= paid;
+        (paid / price).sqrt() * wave
+    }
+}
+
+law_ends!(Wave, "wave", passive: true, WaveLeader, WaveFollower);
+
+/// The leader's end: sends position of the hand and the integral of u \[√J·√s\].
+#[derive(Clone, Debug)]
+pub struct WaveLeader {
+    parameters: Wave,
+    mapping: Mapping,
+    arrived: Arrived,
+    sent: Sent,
+    tank: Tank,
+    fade: Fade,
+    position: Option<Vector3<f64>>,
+}
+
+impl WaveLeader {
+    fn new(law: &Wave) -> Self {
+        WaveLeader {
+            mapping: law.mapping(),
+            parameters: law.clone(),
+            arrived: Arrived::default(),
+            sent: Sent::default(),
+            tank: Tank::default(),
+            fade: Fade::default(),
+            position: None,
+        }
+    }
+}
+
+impl Leader for WaveLeader {
+    fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
+        let own = &self.parameters;
+        let root = (2.0 * own.impedance).sqrt();
+        let live = self.mapping.live(input.connected, input.received);
+        let share = self.fade.step(dt, own.force_ramp, live.is_some());
+        let back = self.arrived.step(dt, live, own.buffer);
+        self.tank.book(dt, back, energy.balance(), own.reserve);
+        let here: Option<Vector3<f64>> = input.hand.map(|hand| hand.position.into());
+        let moved = match (here, self.position) {
+            (Some(here), Some(before)) if dt > 0.0 => (here - before) / dt,
+            _ => Vector3::zeros(),
+        };
+        self.position = here;
+        let wave = self.tank.pay(dt, root * moved - back);
+        let velocity = input
+            .hand
+            .map_or(Vector3::zeros(), |hand| hand.velocity.into());
+        let force = share * (root * back - own.impedance * velocity);
+        let integral = self.sent.add(wave, dt);
+        LeaderOutput {
+            force: force.into(),
+            packet: input.hand.map_or(Packet::empty(energy), |hand| {
+                Packet::new(hand.position, integral, energy)
+            }),
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.tank.dissipated
+    }
+}
+
+/// The follower's end: sends position of the tip and the integral of w \[√J·√s\].
+#[derive(Clone, Debug)]
+pub struct WaveFollower {
+    parameters: Wave,
+    mapping: Mapping,
+    arrived: Arrived,
+    sent: Sent,
+    tank: Tank,
+    /// Hand units [m].
+    command: Option<Vector3<f64>>,
+}
+
+impl WaveFollower {
+    fn new(law: &Wave) -> Self {
+        WaveFollower {
+            mapping: law.mapping(),
+            parameters: law.clone(),
+            arrived: Arrived::default(),
+            sent: Sent::default(),
+            tank: Tank::default(),
+            command: None,
+        }
+    }
+}
+
+impl Follower for WaveFollower {
+    fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
+        let own = &self.parameters;
+        let b = own.impedance;
+        let root = (2.0 * b).sqrt();
+        let live = self.mapping.live(input.connected, input.received);
+        let forth = self.arrived.step(dt, live, own.buffer);
+        let balance = self.mapping.power_scale() * energy.balance();
+        self.tank.book(dt, forth, balance, own.reserve);
+        // Of the contact on the tip: −F_c.
+        let force = self
+            .mapping
+            .contact_at_hand(input.contact_force.unwrap_or([0.0; 3]));
+        let wave = self.tank.pay(dt, force / root);
+        let command = live.zip(input.tip).map(|(received, tip)| {
+            let here = self
+                .command
+                .unwrap_or_else(|| self.mapping.tip_at_hand(tip.position));
+            let mut velocity = (root * forth + force) / (2.0 * b);
+            let drift = vector(received.packet.position) - here;
+            let correction = shortened(drift / own.drift_time, own.drift_speed);
+            let price = -force.dot(&correction) * dt;
+            if price <= 0.0 {
+                velocity += correction;
+            }
+            if self.tank.level < 0.0 && force.norm_squared() > 1e-12 {
+                let back = -self.tank.level / (force.norm_squared() * dt);
+                velocity += shortened(back * force, own.yield_speed);
+            }
+            (here + velocity * dt, velocity)
+        });
+        self.command = command.map(|(position, _)| position);
+        let integral = self.sent.add(wave, dt);
+        let packet = input.tip.map_or(Packet::empty(energy), |tip| Packet {
+            valid: input.contact_force.is_some(),
+            ..Packet::new(tip.position, integral, energy)
+        });
+        FollowerOutput {
+            command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
+            packet,
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.tank.dissipated
+    }
+}
