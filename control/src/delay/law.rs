@@ -1,8 +1,8 @@
 //! The laws there are, behind one type.
 
 use super::{
-    Energy, Follower, FollowerEnd, FollowerInput, FollowerOutput, Leader, LeaderEnd, LeaderInput,
-    LeaderOutput, Mapping, Parameters, PositionForce, PositionPosition, Wave,
+    Energy, Follower, FollowerEnd, FollowerInput, FollowerOutput, Guarantee, Leader, LeaderEnd,
+    LeaderInput, LeaderOutput, Mapping, Parameters, PositionForce, PositionPosition, Tdpa, Wave,
 };
 use ferntast_model::ParameterError;
 use serde::{Deserialize, Serialize};
@@ -45,11 +45,10 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether it claims that the two-port gives out no more energy
-            /// than it took in. Under which assumptions, the law's file says.
-            pub const fn claims_passivity(&self) -> bool {
+            /// What it guarantees. Under which assumptions, the law's file says.
+            pub const fn guarantee(&self) -> Guarantee {
                 match self {
-                    $(Law::$law(_) => <$law as Parameters>::CLAIMS_PASSIVITY,)*
+                    $(Law::$law(_) => <$law as Parameters>::GUARANTEE,)*
                 }
             }
 
@@ -123,6 +122,8 @@ laws! {
     PositionPosition,
     /// Wave variables with impedance matching and drift correction.
     Wave,
+    /// Two-port time-domain passivity with drift compensation.
+    Tdpa,
 }
 
 impl Default for Law {
@@ -135,6 +136,12 @@ impl Law {
     /// The law of that name, with the parameters that it has by default.
     pub fn by_name(name: &str) -> Option<Law> {
         Law::all().into_iter().find(|law| law.name() == name)
+    }
+
+    /// Whether it claims that the two-port gives out no more energy than it
+    /// took in, whatever the channel does.
+    pub const fn claims_passivity(&self) -> bool {
+        matches!(self.guarantee(), Guarantee::Passive)
     }
 
     /// Power at the hand by power at the tip that corresponds to it, s_F/s_x

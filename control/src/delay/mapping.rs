@@ -74,6 +74,11 @@ impl Mapping {
         }
     }
 
+    /// A stiffness at the tip in hand units \[N/m\].
+    pub(super) fn stiffness_at_hand(&self, stiffness: f64) -> f64 {
+        self.force_scale * self.position_scale * stiffness
+    }
+
     /// Power at the hand by power at the tip that corresponds to it, s_F/s_x \[-\].
     pub fn power_scale(&self) -> f64 {
         self.force_scale / self.position_scale
@@ -168,10 +173,10 @@ pub(super) use law_parameters;
 /// Implements [`Parameters`](super::Parameters) for a law declared by
 /// [`law_parameters`].
 macro_rules! law_ends {
-    ($name:ident, $text:literal, passive: $passive:literal, $leader:ident, $follower:ident) => {
+    ($name:ident, $text:literal, $guarantee:ident, $leader:ident, $follower:ident) => {
         impl $crate::delay::Parameters for $name {
             const NAME: &'static str = $text;
-            const CLAIMS_PASSIVITY: bool = $passive;
+            const GUARANTEE: $crate::delay::Guarantee = $crate::delay::Guarantee::$guarantee;
             type Leader = $leader;
             type Follower = $follower;
 

@@ -16,12 +16,15 @@
 //! counted in [`LeaderEnd`] and [`FollowerEnd`], whatever the law
 //! ([`EnergyMeter`]).
 
+mod contact;
 mod end;
 mod energy;
 mod law;
 mod mapping;
 mod position_force;
 mod position_position;
+mod store;
+mod tdpa;
 mod wave;
 
 pub use end::{FollowerEnd, LeaderEnd};
@@ -30,6 +33,7 @@ pub use law::{FollowerLaw, Law, LeaderLaw};
 pub use mapping::Mapping;
 pub use position_force::{PositionForce, PositionForceFollower, PositionForceLeader};
 pub use position_position::{PositionPosition, PositionPositionFollower, PositionPositionLeader};
+pub use tdpa::{Tdpa, TdpaFollower, TdpaLeader};
 pub use wave::{Wave, WaveFollower, WaveLeader};
 
 use crate::frame::{POSITION_LIMIT, VECTOR_LIMIT};
@@ -156,13 +160,25 @@ pub trait Follower {
     }
 }
 
+/// What a law guarantees about the energy of the two-port between hand and tip.
+/// Under which assumptions, the law's file says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guarantee {
+    /// Nothing.
+    Nothing,
+    /// It gives out no more than it took in while frames arrive; an outage may
+    /// add energy.
+    PassiveWhileConnected,
+    /// It gives out no more than it took in, whatever the channel does.
+    Passive,
+}
+
 /// The parameters of a law: what makes its two ends.
 pub trait Parameters {
     /// Name of the law, as in configurations.
     const NAME: &'static str;
-    /// Whether the law claims that the two-port gives out no more energy than
-    /// it took in. Under which assumptions, its file says.
-    const CLAIMS_PASSIVITY: bool;
+    /// What the law guarantees.
+    const GUARANTEE: Guarantee;
     /// The leader's end.
     type Leader: Leader;
     /// The follower's end.

@@ -31,7 +31,13 @@ law_parameters! {
     /// Parameters of the law. Every key may be left out.
     PositionForce {}
 }
-law_ends!(PositionForce, "position_force", passive: false, PositionForceLeader, PositionForceFollower);
+law_ends!(
+    PositionForce,
+    "position_force",
+    Nothing,
+    PositionForceLeader,
+    PositionForceFollower
+);
 
 /// The leader's end: sends position and velocity \[m/s\] of the hand.
 #[derive(Clone, Debug)]

@@ -35,7 +35,13 @@ law_parameters! {
     }
 }
 
-law_ends!(PositionPosition, "position_position", passive: true, PositionPositionLeader, PositionPositionFollower);
+law_ends!(
+    PositionPosition,
+    "position_position",
+    PassiveWhileConnected,
+    PositionPositionLeader,
+    PositionPositionFollower
+);
 
 impl PositionPosition {
     /// B: damping at each end \[N·s/m\].

@@ -30,10 +30,12 @@
 //! way acts as a spring b/T. Assumed: clocks that run equally fast (their offset does not
 //! matter).
 
+use super::contact::CommandForce;
 use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
+use super::store::Store;
 use super::{
-    Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
-    Received, vector,
+    Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
+    LeaderOutput, Packet, Received, vector,
 };
 use nalgebra::Vector3;
 
@@ -42,6 +44,9 @@ law_parameters! {
     Wave {
         /// b: impedance of the line, at the hand's scale \[N·s/m\].
         impedance = 10.0 in 0.1 .. 1000.0 "N·s/m",
+        /// Damping at the hand on top of it, which pays for what the line loses
+        /// \[N·s/m\].
+        damping = 2.0 in 0.0 .. 1000.0 "N·s/m",
         /// Longest time that waves wait to be played out \[s\].
         buffer = 0.02 in 0.002 .. 1.0 "s",
         /// Energy that an end may hold in hand; what is beyond counts as
@@ -54,6 +59,8 @@ law_parameters! {
         /// Largest speed at which the tip gives way to pay back, at the hand's
         /// scale \[m/s\].
         yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
+        /// Stiffness of the arm's servo at the tip \[N/m\].
+        servo_stiffness = 5000.0 in 1.0 .. 1000000.0 "N/m",
     }
 }
 
@@ -124,38 +131,18 @@ impl Arrived {
     }
 }
 
-/// Energy in hand.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tank {
-    level: f64,
-    balance: f64,
-    dissipated: f64,
+/// The wave as far as the store can pay for it.
+fn paid(store: &mut Store, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
+    let price = 0.5 * wave.norm_squared() * dt;
+    if price <= 0.0 {
+        return Vector3::zeros();
+    }
+    let payable = price.min(store.level().max(0.0));
+    store.add(-payable);
+    (payable / price).sqrt() * wave
 }
 
-impl Tank {
-    /// Books the wave that came in and what the port has taken in net, in all.
-    fn book(&mut self, dt: f64, wave: Vector3<f64>, balance: f64, reserve: f64) {
-        self.level += 0.5 * wave.norm_squared() * dt + balance - self.balance;
-        self.balance = balance;
-        if self.level > reserve {
-            self.dissipated += self.level - reserve;
-            self.level = reserve;
-        }
-    }
-
-    /// The wave as far as it can be paid for.
-    fn pay(&mut self, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
-        let price = 0.5 * wave.norm_squared() * dt;
-        let paid = price.min(self.level.max(0.0));
-        if price <= 0.0 {
-            return Vector3::zeros();
-        }
-        self.level -= paid;
-        (paid / price).sqrt() * wave
-    }
-}
-
-law_ends!(Wave, "wave", passive: true, WaveLeader, WaveFollower);
+law_ends!(Wave, "wave", Passive, WaveLeader, WaveFollower);
 
 /// The leader's end: sends position of the hand and the integral of u \[√J·√s\].
 #[derive(Clone, Debug)]
@@ -164,7 +151,7 @@ pub struct WaveLeader {
     mapping: Mapping,
     arrived: Arrived,
     sent: Sent,
-    tank: Tank,
+    store: Store,
     fade: Fade,
     position: Option<Vector3<f64>>,
 }
@@ -176,7 +163,7 @@ impl WaveLeader {
             parameters: law.clone(),
             arrived: Arrived::default(),
             sent: Sent::default(),
-            tank: Tank::default(),
+            store: Store::default(),
             fade: Fade::default(),
             position: None,
         }
@@ -190,18 +177,20 @@ impl Leader for WaveLeader {
         let live = self.mapping.live(input.connected, input.received);
         let share = self.fade.step(dt, own.force_ramp, live.is_some());
         let back = self.arrived.step(dt, live, own.buffer);
-        self.tank.book(dt, back, energy.balance(), own.reserve);
+        self.store.add(0.5 * back.norm_squared() * dt);
+        self.store.port(energy, 0.0);
+        self.store.limit(own.reserve);
         let here: Option<Vector3<f64>> = input.hand.map(|hand| hand.position.into());
         let moved = match (here, self.position) {
             (Some(here), Some(before)) if dt > 0.0 => (here - before) / dt,
             _ => Vector3::zeros(),
         };
         self.position = here;
-        let wave = self.tank.pay(dt, root * moved - back);
+        let wave = paid(&mut self.store, dt, root * moved - back);
         let velocity = input
             .hand
             .map_or(Vector3::zeros(), |hand| hand.velocity.into());
-        let force = share * (root * back - own.impedance * velocity);
+        let force = share * (root * back - own.impedance * velocity) - own.damping * velocity;
         let integral = self.sent.add(wave, dt);
         LeaderOutput {
             force: force.into(),
@@ -212,7 +201,7 @@ impl Leader for WaveLeader {
     }
 
     fn dissipated(&self) -> f64 {
-        self.tank.dissipated
+        self.store.dissipated()
     }
 }
 
@@ -223,7 +212,11 @@ pub struct WaveFollower {
     mapping: Mapping,
     arrived: Arrived,
     sent: Sent,
-    tank: Tank,
+    store: Store,
+    /// At the command: the servo behind it is passive by itself.
+    meter: EnergyMeter,
+    force: CommandForce,
+    last: Vector3<f64>,
     /// Hand units [m].
     command: Option<Vector3<f64>>,
 }
@@ -235,7 +228,10 @@ impl WaveFollower {
             parameters: law.clone(),
             arrived: Arrived::default(),
             sent: Sent::default(),
-            tank: Tank::default(),
+            store: Store::default(),
+            meter: EnergyMeter::default(),
+            force: CommandForce::new(law.mapping().stiffness_at_hand(law.servo_stiffness)),
+            last: Vector3::zeros(),
             command: None,
         }
     }
@@ -248,28 +244,30 @@ impl Follower for WaveFollower {
         let root = (2.0 * b).sqrt();
         let live = self.mapping.live(input.connected, input.received);
         let forth = self.arrived.step(dt, live, own.buffer);
-        let balance = self.mapping.power_scale() * energy.balance();
-        self.tank.book(dt, forth, balance, own.reserve);
-        // Of the contact on the tip: −F_c.
-        let force = self
-            .mapping
-            .contact_at_hand(input.contact_force.unwrap_or([0.0; 3]));
-        let wave = self.tank.pay(dt, force / root);
-        let command = live.zip(input.tip).map(|(received, tip)| {
-            let here = self
-                .command
-                .unwrap_or_else(|| self.mapping.tip_at_hand(tip.position));
-            let mut velocity = (root * forth + force) / (2.0 * b);
+        let contact = input.contact_force.unwrap_or([0.0; 3]);
+        let contact = self.mapping.contact_at_hand(contact);
+        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
+        let here = self.command.or(tip);
+        let lead = here
+            .zip(tip)
+            .map_or(Vector3::zeros(), |(here, tip)| here - tip);
+        let force = self.force.step(dt, contact, lead);
+        let mean = -0.5 * (force + self.last);
+        self.last = force;
+        self.meter.step(mean.into(), here.map(Into::into));
+        self.store.add(0.5 * forth.norm_squared() * dt);
+        self.store.port(self.meter.energy(), 0.0);
+        self.store.limit(own.reserve);
+        let wave = paid(&mut self.store, dt, -force / root);
+        // Implicit in the servo's spring.
+        let give = 2.0 * b + self.force.stiffness() * dt;
+        let command = live.zip(here).map(|(received, here)| {
             let drift = vector(received.packet.position) - here;
-            let correction = shortened(drift / own.drift_time, own.drift_speed);
-            let price = -force.dot(&correction) * dt;
-            if price <= 0.0 {
-                velocity += correction;
-            }
-            if self.tank.level < 0.0 && force.norm_squared() > 1e-12 {
-                let back = -self.tank.level / (force.norm_squared() * dt);
-                velocity += shortened(back * force, own.yield_speed);
-            }
+            let velocity =
+                (root * forth - force) / give + shortened(drift / own.drift_time, own.drift_speed);
+            let velocity = self
+                .force
+                .admitted(dt, velocity, self.store.level(), own.yield_speed);
             (here + velocity * dt, velocity)
         });
         self.command = command.map(|(position, _)| position);
@@ -285,6 +283,6 @@ impl Follower for WaveFollower {
     }
 
     fn dissipated(&self) -> f64 {
-        self.tank.dissipated
+        self.store.dissipated()
     }
 }

@@ -118,9 +118,9 @@ impl Trial {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// The hand rests while it presses and after it came back, and the tip
-    /// with it: neither moves by 2 mm when nobody moves it.
+    /// with it: neither moves to and fro by 2 mm when nobody moves it.
     pub stable: bool,
-    /// By how much hand or tip moved while they should rest \[m\].
+    /// By how much hand or tip moved to and fro while they should rest \[m\].
     pub swing: f64,
     /// Root mean square of tip less hand as it was one delay ago, while the
     /// tip is free \[m\].

@@ -7,7 +7,7 @@ const START: f64 = -0.04;
 const PRESSED: f64 = 0.02;
 /// How far it slides along the surface [m].
 const SLIDE: f64 = 0.02;
-/// At rest before the first motion [s].
+/// At rest before the first motion, and the round trip on top [s].
 const WAIT: f64 = 0.5;
 /// Time of each motion [s].
 const MOTION: f64 = 1.0;
@@ -15,6 +15,8 @@ const MOTION: f64 = 1.0;
 /// Times of the task [s since the start].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Schedule {
+    /// The hand begins to move: by then both ends have heard of each other.
+    pub reach: f64,
     /// The surface begins to move.
     pub wall: f64,
     /// Sliding begins.
@@ -33,12 +35,14 @@ impl Schedule {
     /// For a link of `round_trip` \[s\]. An instability needs some round trips
     /// to show, a slow law some to arrive.
     pub(super) fn new(round_trip: f64) -> Self {
-        let wall = WAIT + MOTION + 1.0 + round_trip;
+        let reach = WAIT + round_trip;
+        let wall = reach + MOTION + 1.0 + round_trip;
         let slide = wall + 4.0;
-        let watch_pressed = slide + 2.0 * MOTION + 2.0 + 3.0 * round_trip;
+        let watch_pressed = slide + 2.0 * MOTION + 2.0 + 5.0 * round_trip;
         let retreat = watch_pressed + 1.0 + 2.0 * round_trip;
         let watch_free = retreat + MOTION + 3.0 + 3.0 * round_trip;
         Schedule {
+            reach,
             wall,
             slide,
             watch_pressed,
@@ -50,7 +54,7 @@ impl Schedule {
 
     /// Where the hand wants to be \[m\] and how fast \[m/s\], along x and y.
     pub(super) fn target(&self, time: f64) -> ([f64; 2], [f64; 2]) {
-        let (reach, reach_rate) = minimum_jerk((time - WAIT) / MOTION);
+        let (reach, reach_rate) = minimum_jerk((time - self.reach) / MOTION);
         let (back, back_rate) = minimum_jerk((time - self.retreat) / MOTION);
         let (out, out_rate) = minimum_jerk((time - self.slide) / MOTION);
         let (home, home_rate) = minimum_jerk((time - self.slide - MOTION) / MOTION);

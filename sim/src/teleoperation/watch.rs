@@ -4,8 +4,8 @@ use super::Outcome;
 use super::task::Schedule;
 use std::collections::VecDeque;
 
-/// A hand or tip that moves further than this while it is watched is not at
-/// rest [m].
+/// A hand or tip that moves to and fro by more than this while it is watched is
+/// not at rest [m].
 const REST: f64 = 2e-3;
 /// The task is done when the tip is this near to where it began [m].
 const ARRIVED: f64 = 2e-3;
@@ -31,25 +31,33 @@ pub(super) struct Tick {
     pub energy: f64,
 }
 
+/// To and fro of something that should rest. One way alone is no swing: it may
+/// creep to where it belongs.
 #[derive(Clone, Copy, Debug)]
-struct Range {
+struct Swing {
     low: f64,
     high: f64,
+    rise: f64,
+    fall: f64,
 }
 
-impl Range {
-    const EMPTY: Range = Range {
+impl Swing {
+    const NONE: Swing = Swing {
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,
+        rise: 0.0,
+        fall: 0.0,
     };
 
     fn add(&mut self, value: f64) {
         self.low = self.low.min(value);
         self.high = self.high.max(value);
+        self.rise = self.rise.max(value - self.low);
+        self.fall = self.fall.max(self.high - value);
     }
 
     fn width(&self) -> f64 {
-        self.high - self.low
+        self.rise.min(self.fall)
     }
 }
 
@@ -84,7 +92,7 @@ pub(super) struct Watch {
     forces: VecDeque<[f64; 2]>,
     position: Square,
     force: Square,
-    rest: [Range; 6],
+    rest: [Swing; 6],
     margin: f64,
     peak: f64,
     peak_felt: f64,
@@ -106,7 +114,7 @@ impl Watch {
             forces: std::iter::repeat_n([0.0; 2], back).collect(),
             position: Square::default(),
             force: Square::default(),
-            rest: [Range::EMPTY; 6],
+            rest: [Swing::NONE; 6],
             margin: 0.0,
             peak: 0.0,
             peak_felt: 0.0,
@@ -176,7 +184,7 @@ impl Watch {
 
     /// After the last tick.
     pub(super) fn outcome(&self) -> Outcome {
-        let swing = self.rest.iter().map(Range::width).fold(0.0, f64::max);
+        let swing = self.rest.iter().map(Swing::width).fold(0.0, f64::max);
         let [felt, hand, touched, tip] = self.pressed;
         let done = self
             .away_until
