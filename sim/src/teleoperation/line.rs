@@ -37,6 +37,7 @@ impl Line {
             hold: false,
             state: OperatingState::Enabled,
             arming: 0,
+            law: 0,
             packet,
         };
         let mut bytes = [0; FRAME_LENGTH];

@@ -1,8 +1,10 @@
 //! The whole system: sessions with all their processes, against real peers.
 
+mod bad_frames;
 mod crashes;
 mod delay;
 mod lab;
+mod laws;
 mod lockstep;
 mod masters;
 mod playback;
@@ -10,5 +12,7 @@ mod refusals;
 mod ros;
 mod session;
 mod support;
+mod sweep;
+mod two_hosts;
 mod watchdog;
 mod zenoh;
