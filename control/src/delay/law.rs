@@ -1,8 +1,9 @@
 //! The laws there are, behind one type.
 
 use super::{
-    Energy, Follower, FollowerEnd, FollowerInput, FollowerOutput, Guarantee, Leader, LeaderEnd,
-    LeaderInput, LeaderOutput, Mapping, Parameters, PositionForce, PositionPosition, Tdpa, Wave,
+    Energy, Follower, FollowerEnd, FollowerInput, FollowerOutput, FourChannel, Guarantee, Leader,
+    LeaderEnd, LeaderInput, LeaderOutput, Mapping, ModelMediated, Parameters, PositionForce,
+    PositionPosition, Tdpa, Wave,
 };
 use ferntast_model::ParameterError;
 use serde::{Deserialize, Serialize};
@@ -120,10 +121,14 @@ laws! {
     PositionForce,
     /// Position forward, position back.
     PositionPosition,
+    /// Position and force both ways.
+    FourChannel,
     /// Wave variables with impedance matching and drift correction.
     Wave,
     /// Two-port time-domain passivity with drift compensation.
     Tdpa,
+    /// The surface as the follower estimates it, rendered at the leader.
+    ModelMediated,
 }
 
 impl Default for Law {

@@ -19,8 +19,10 @@
 mod contact;
 mod end;
 mod energy;
+mod four_channel;
 mod law;
 mod mapping;
+mod model_mediated;
 mod position_force;
 mod position_position;
 mod store;
@@ -29,8 +31,10 @@ mod wave;
 
 pub use end::{FollowerEnd, LeaderEnd};
 pub use energy::{Energy, EnergyMeter};
+pub use four_channel::{FourChannel, FourChannelFollower, FourChannelLeader};
 pub use law::{FollowerLaw, Law, LeaderLaw};
 pub use mapping::Mapping;
+pub use model_mediated::{ModelMediated, ModelMediatedFollower, ModelMediatedLeader, SurfaceModel};
 pub use position_force::{PositionForce, PositionForceFollower, PositionForceLeader};
 pub use position_position::{PositionPosition, PositionPositionFollower, PositionPositionLeader};
 pub use tdpa::{Tdpa, TdpaFollower, TdpaLeader};

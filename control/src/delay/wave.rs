@@ -1,34 +1,43 @@
 //! Wave variables, their integrals in packets, impedance matched, drift corrected.
 //!
-//! u = (b v_h + F)/√(2b) goes forward, w = (b v_s − F_s)/√(2b) comes back
-//! (Anderson and Spong 1989; Niemeyer and Slotine 1991, "Stable adaptive
-//! teleoperation", equations 11–12; 2004, "Telemanipulation with time delays",
-//! sections 3–5), F what the hand gives into the two-port, F_s what comes out at
-//! the tip. With the hand's velocity and the tip's force as inputs:
+//! u = (b v_h + F)/√(2b) goes forward, w = (b v_s − F_s)/√(2b) comes back (Anderson and
+//! Spong 1989, "Bilateral control of teleoperators with time delay", IEEE T-AC 34;
+//! Niemeyer and Slotine 1991, "Stable adaptive teleoperation", IEEE J-OE 16; 2004,
+//! "Telemanipulation with time delays", IJRR 23), F what the hand gives into the
+//! two-port, F_s what comes out at the tip. With the hand's velocity and the
+//! tip's force as inputs:
 //!
 //! F = b v_h − √(2b) w,  u = √(2b) v_h − w.
 //!
-//! The follower ends its line with a damper b (impedance matching, Niemeyer and
-//! Slotine 2004, section 5), F_s = F_c + b v_s, so that nothing of u is sent back:
+//! **Impedance matching** (Niemeyer and Slotine 2004). The follower ends the line with
+//! a damper b, F_s = F̂ + b v_s, so that nothing of u is sent back by itself:
 //!
-//! v_s = (√(2b) u − F_c)/(2b),  w = −F_c/√(2b).
+//! v_s = (√(2b) u − F̂)/(2b),  w = −F̂/√(2b),
 //!
-//! **In packets.** Integrals of u and w are sent (Niemeyer and Slotine 2004, section
-//! 6) and played out over no less time than they were gathered in: by
-//! Cauchy–Schwarz (∫u)²/2T ≤ ∫½u², so loss, jitter, reordering and duplication
-//! can only take energy away (Chopra, Berestesky, Spong 2008, "Bilateral
-//! teleoperation over unreliable communication networks"). The integrals are sent modulo
-//! 32 √J·√s, so that single precision holds them. What comes after an outage, or
-//! waits longer than `buffer`, is dropped and not made up for.
+//! with F̂ the force of the command (`contact.rs`). The hand is no damper: it reflects what
+//! comes back. It does so through a low pass, as slow as the delay: what goes to
+//! and fro in the line is absorbed, a steady force is not.
 //!
-//! **Drift.** What was dropped leaves the tip beside the hand's image. The
-//! follower moves it back at a limited speed, never against the contact.
+//! **In packets.** Integrals of u and w are sent (Niemeyer and Slotine 2004) and played
+//! out over no less time than they were gathered in: by Cauchy–Schwarz
+//! (∫u)²/2T ≤ ∫½u², so loss, jitter, reordering and duplication can only take energy
+//! away (Chopra, Berestesky, Spong 2008, "Bilateral teleoperation over unreliable
+//! communication networks", IEEE T-CST 16). The integrals are sent modulo
+//! 32 √J·√s, so that single precision holds them. What comes after an outage,
+//! or waits longer than `buffer`, is dropped and not made up for.
+//!
+//! **Drift.** What was dropped leaves the tip beside the hand's image. The position goes
+//! along in the packet, and a spring pulls the tip there through the matching damper
+//! (after Chopra, Spong, Ortega, Barabanov 2006, "On tracking performance in bilateral
+//! teleoperation", IEEE T-RO 22); against the contact only as far as the follower's store
+//! pays. So a steady contact is felt as it is, after some round trips.
 //!
 //! **What it guarantees.** Each end sends no more wave energy than waves and port
-//! have brought it, and overdraws by no more than a step, paid back first; so the two-port
-//! is passive for any delay, jitter and loss. A long line is soft: delay T each
-//! way acts as a spring b/T. Assumed: clocks that run equally fast (their offset does not
-//! matter).
+//! have brought it, and overdraws by no more than a step, paid back first; so
+//! the two-port is passive for any delay, jitter and loss. A long line is
+//! soft at first: delay T each way acts as a spring b/T. Assumed: clocks that run
+//! equally fast (their offset changes the absorption only); the servo from command to
+//! tip is passive, up to the kinetic energy of the arm.
 
 use super::contact::CommandForce;
 use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
@@ -47,13 +56,17 @@ law_parameters! {
         /// Damping at the hand on top of it, which pays for what the line loses
         /// \[N·s/m\].
         damping = 2.0 in 0.0 .. 1000.0 "N·s/m",
+        /// Time constant of the low pass on what the hand reflects, by the delay of
+        /// what comes back: quicker changes are absorbed \[-\].
+        absorption = 1.0 in 0.0 .. 100.0 "-",
         /// Longest time that waves wait to be played out \[s\].
         buffer = 0.02 in 0.002 .. 1.0 "s",
         /// Energy that an end may hold in hand; what is beyond counts as
         /// dissipated \[J\].
         reserve = 0.1 in 0.0 .. 1000.0 "J",
-        /// Time constant of the drift correction \[s\].
-        drift_time = 0.5 in 0.005 .. 100.0 "s",
+        /// Stiffness with which the drift correction pulls the tip to the hand,
+        /// at the hand's scale; below the stiffness of the hand \[N/m\].
+        drift_stiffness = 60.0 in 0.0 .. 10000.0 "N/m",
         /// Largest speed of the drift correction, at the hand's scale \[m/s\].
         drift_speed = 0.05 in 0.0 .. 10.0 "m/s",
         /// Largest speed at which the tip gives way to pay back, at the hand's
@@ -153,6 +166,8 @@ pub struct WaveLeader {
     sent: Sent,
     store: Store,
     fade: Fade,
+    /// What is reflected of the wave that comes back [√W].
+    reflected: Vector3<f64>,
     position: Option<Vector3<f64>>,
 }
 
@@ -165,6 +180,7 @@ impl WaveLeader {
             sent: Sent::default(),
             store: Store::default(),
             fade: Fade::default(),
+            reflected: Vector3::zeros(),
             position: None,
         }
     }
@@ -186,7 +202,14 @@ impl Leader for WaveLeader {
             _ => Vector3::zeros(),
         };
         self.position = here;
-        let wave = paid(&mut self.store, dt, root * moved - back);
+        let age = live.map_or(0.0, |received| received.age.max(0.0));
+        let pass = if dt > 0.0 {
+            dt / (dt + own.absorption * age)
+        } else {
+            0.0
+        };
+        self.reflected += pass * (back - self.reflected);
+        let wave = paid(&mut self.store, dt, root * moved - self.reflected);
         let velocity = input
             .hand
             .map_or(Vector3::zeros(), |hand| hand.velocity.into());
@@ -263,8 +286,8 @@ impl Follower for WaveFollower {
         let give = 2.0 * b + self.force.stiffness() * dt;
         let command = live.zip(here).map(|(received, here)| {
             let drift = vector(received.packet.position) - here;
-            let velocity =
-                (root * forth - force) / give + shortened(drift / own.drift_time, own.drift_speed);
+            let pull = shortened(own.drift_stiffness * drift, 2.0 * b * own.drift_speed);
+            let velocity = (root * forth - force + pull) / give;
             let velocity = self
                 .force
                 .admitted(dt, velocity, self.store.level(), own.yield_speed);
