@@ -1,5 +1,5 @@
 //! How long a message takes from `publish` to the reader, on each way across,
-//! and beside it a bare Zenoh ping-pong.
+//! and beside it a bare Zenoh ping-pong, with which the link's frames are compared.
 //!
 //! Two threads, each with a bus of its own, on one host. The reader spins, so
 //! the numbers are those of the way, not of a timer. In memory, where time is
@@ -15,6 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use ferntast_bus::frames::{LinkDirection, LinkEndpoint, MAX_FRAME, ZenohLink, ZenohLinkConfig};
 use ferntast_bus::{
     Bus, DdsBus, DdsConfig, Depth, MemoryBus, SharedMemoryBus, SharedMemoryConfig, ZenohBus,
     ZenohConfig, ZenohMode,
@@ -54,8 +55,29 @@ fn main() {
         Ok(_router) => hop("ROS 2 over Zenoh, routed", || connected(process)),
         Err(error) => eprintln!("{error}"),
     }
-    if let Err(error) = bare_zenoh(process) {
-        eprintln!("bare Zenoh: {error}");
+    let bare = match bare_zenoh(process) {
+        Ok(times) => print("bare Zenoh (half a ping)", times),
+        Err(error) => {
+            eprintln!("bare Zenoh: {error}");
+            None
+        }
+    };
+    for (way, kind, port) in [
+        ("the link's frames, TCP", "tcp", 32_100),
+        ("the link's frames, UDP", "udp", 34_200),
+    ] {
+        let endpoint = format!("{kind}/127.0.0.1:{}", port + process % 2000);
+        let own = match link(process, &endpoint) {
+            Ok(times) => print(way, times),
+            Err(error) => {
+                eprintln!("{way}: {error}");
+                None
+            }
+        };
+        if let (Some(own), Some(bare)) = (own, bare) {
+            let [p50, p99] = [own.0 / bare.0, own.1 / bare.1];
+            println!("{:<26} {p50:>12.2} {p99:>12.2}", "  to bare Zenoh as");
+        }
     }
 }
 
@@ -94,10 +116,11 @@ fn sample(number: u64) -> JointSample {
     JointSample::zero(Time::from_nanos(number as i64 + 1))
 }
 
-fn print(way: &str, mut times: Vec<f64>) {
+/// Prints and gives median and 99th percentile [us].
+fn print(way: &str, mut times: Vec<f64>) -> Option<(f64, f64)> {
     if times.is_empty() {
         println!("{way:<26} {:>12} {:>12} {:>8}", "-", "-", 0);
-        return;
+        return None;
     }
     times.sort_by(f64::total_cmp);
     let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
@@ -107,6 +130,7 @@ fn print(way: &str, mut times: Vec<f64>) {
         at(0.99),
         times.len()
     );
+    Some((at(0.50), at(0.99)))
 }
 
 /// Batches, as one publish and read is shorter than the clock can tell.
@@ -129,7 +153,7 @@ fn memory() {
         }
         times.push(start.elapsed().as_secs_f64() * 1e6 / BATCH as f64);
     }
-    print("memory (publish + read)", times);
+    let _ = print("memory (publish + read)", times);
 }
 
 /// One publishes every half millisecond, the other spins for it.
@@ -166,11 +190,11 @@ fn hop(way: &str, join: impl Fn() -> Bus) {
     }
     thread::sleep(Duration::from_millis(100));
     done.store(true, Ordering::Release);
-    print(way, reader.join().expect("reader"));
+    let _ = print(way, reader.join().expect("reader"));
 }
 
 /// Half a round trip between two sessions joined by TCP.
-fn bare_zenoh(process: u32) -> Result<(), zenoh::Error> {
+fn bare_zenoh(process: u32) -> Result<Vec<f64>, zenoh::Error> {
     let endpoint = format!("tcp/127.0.0.1:{}", 30_001 + process % 2_000);
     let open = |key: &str| -> Result<zenoh::Session, zenoh::Error> {
         let mut config = zenoh::Config::default();
@@ -202,6 +226,48 @@ fn bare_zenoh(process: u32) -> Result<(), zenoh::Error> {
             times.push(start.elapsed().as_secs_f64() * 1e6 / 2.0);
         }
     }
-    print("bare Zenoh (half a ping)", times);
-    Ok(())
+    Ok(times)
+}
+
+/// One way, from `send` to the stamp of arrival; the next when the last is there.
+fn link(process: u32, endpoint: &str) -> Result<Vec<f64>, String> {
+    let start = Instant::now();
+    let clock = move || Time::from_nanos(1 + start.elapsed().as_nanos() as i64);
+    let open = |endpoint, sends| {
+        ZenohLink::open(ZenohLinkConfig {
+            session: format!("bench_{process}"),
+            endpoint,
+            sends,
+            clock: Arc::new(clock),
+        })
+        .map_err(|error| error.to_string())
+    };
+    let mut there = open(LinkEndpoint::Listen(endpoint.into()), LinkDirection::Back)?;
+    let mut here = open(
+        LinkEndpoint::Connect(endpoint.into()),
+        LinkDirection::Forward,
+    )?;
+    let mut buffer = [0; MAX_FRAME];
+    let mut hop = || -> Result<Option<f64>, String> {
+        let sent = clock();
+        here.sender
+            .send(sent, &[0; 60])
+            .map_err(|error| error.to_string())?;
+        while clock().seconds_since(sent) < 0.5 {
+            if let Some((_, arrived)) = there.receiver.receive(sent, &mut buffer) {
+                return Ok(Some(arrived.seconds_since(sent) * 1e6));
+            }
+            thread::yield_now();
+        }
+        Ok(None)
+    };
+    let met = (0..20).try_fold(false, |met, _| Ok::<_, String>(met || hop()?.is_some()))?;
+    if !met {
+        return Err("the two ends did not meet".into());
+    }
+    let mut times = Vec::with_capacity(HOPS);
+    for _ in 0..HOPS {
+        times.extend(hop()?);
+    }
+    Ok(times)
 }

@@ -1,17 +1,26 @@
-//! Zenoh endpoints: `tcp/HOST:PORT`.
+//! Zenoh endpoints: `tcp/HOST:PORT`; for the link also `udp/HOST:PORT`.
 
 use crate::error::OpenError;
 
 /// Whether `endpoint` is `tcp/HOST:PORT`.
 pub(crate) fn check(endpoint: &str) -> Result<(), OpenError> {
+    check_kind(endpoint, &["tcp/"])
+}
+
+/// Whether `endpoint` is `tcp/HOST:PORT` or `udp/HOST:PORT`.
+pub(crate) fn check_link(endpoint: &str) -> Result<(), OpenError> {
+    check_kind(endpoint, &["tcp/", "udp/"])
+}
+
+fn check_kind(endpoint: &str, kinds: &[&str]) -> Result<(), OpenError> {
     let bad = |reason: &str| {
         Err(OpenError::BadEndpoint {
             endpoint: endpoint.into(),
             reason: reason.into(),
         })
     };
-    let Some(address) = endpoint.strip_prefix("tcp/") else {
-        return bad("it does not begin with tcp/");
+    let Some(address) = kinds.iter().find_map(|kind| endpoint.strip_prefix(kind)) else {
+        return bad(&format!("it does not begin with {}", kinds.join(" or ")));
     };
     let Some((host, port)) = address.rsplit_once(':') else {
         return bad("it has no port");
@@ -63,6 +72,9 @@ mod tests {
         for good in ["tcp/127.0.0.1:7447", "tcp/localhost:0", "tcp/[::]:7447"] {
             assert_eq!(check(good), Ok(()), "{good}");
         }
+        assert_eq!(check_link("udp/127.0.0.1:7447"), Ok(()));
+        assert_eq!(check_link("tcp/127.0.0.1:7447"), Ok(()));
+        assert!(check_link("quic/127.0.0.1:7447").is_err());
         for bad in [
             "",
             "127.0.0.1:7447",

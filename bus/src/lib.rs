@@ -14,6 +14,7 @@ pub mod frames;
 mod gaps;
 pub mod mcap;
 pub mod memory;
+pub mod parameter;
 pub mod shared_memory;
 mod types;
 pub mod zenoh_ros;
@@ -25,6 +26,7 @@ pub use error::{
     CleanUpError, CreateError, DecodeError, EncodeError, OpenError, PublishError, SendError,
 };
 pub use memory::MemoryBus;
+pub use parameter::{Choice, ParameterNode};
 pub use shared_memory::{SharedMemoryBus, SharedMemoryConfig};
 pub use types::{Depth, Received, SubscriberCounts};
 pub use zenoh_ros::{ZenohBus, ZenohConfig, ZenohMode};

@@ -4,7 +4,7 @@
 //!
 //! | offset | type | content |
 //! |---:|---|---|
-//! | 0 | u8 | version of the format, 2 |
+//! | 0 | u8 | bits 0–3 version of the format, 3; bits 4–7 code of the delay law whose packet it carries |
 //! | 1 | u8 | flags: bit 0 content valid, bit 1 hold, bits 2–3 operating state of the sender's device, bits 4–7 arming counter |
 //! | 2 | u16 | identity of the session |
 //! | 4 | u32 | sequence number, one more with every frame sent |
@@ -33,7 +33,9 @@ const ECHO_UNIT: i64 = 4;
 /// The held time that says that there is no echo.
 const NO_ECHO: u32 = u32::MAX;
 /// Version of the format.
-pub const FRAME_VERSION: u8 = 2;
+pub const FRAME_VERSION: u8 = 3;
+/// Largest code of a delay law: it has four bits.
+pub const LAST_LAW_CODE: u8 = 15;
 
 /// Frames stamped further ahead than this are refused \[s\].
 pub const FUTURE_TOLERANCE: f64 = 0.050;
@@ -68,6 +70,10 @@ pub struct Frame {
     /// 0 … 15, one more each time the operator arms again; survives loss,
     /// unlike an event. See [`ArmingWatch`].
     pub arming: u8,
+    /// Code of the law that made the packet, 0 … [`LAST_LAW_CODE`]: while the
+    /// laws are being switched, frames of both are on their way, and a packet
+    /// means nothing to the other law.
+    pub law: u8,
     /// What the delay law sends.
     pub packet: Packet,
 }
@@ -148,7 +154,7 @@ pub fn encode(frame: &Frame, bytes: &mut [u8; FRAME_LENGTH]) {
     if frame.hold {
         flags |= HOLD;
     }
-    bytes[0] = FRAME_VERSION;
+    bytes[0] = FRAME_VERSION | ((frame.law & LAST_LAW_CODE) << 4);
     bytes[1] = flags;
     bytes[2..4].copy_from_slice(&frame.session.to_le_bytes());
     bytes[4..8].copy_from_slice(&frame.sequence.to_le_bytes());
@@ -190,8 +196,9 @@ pub fn decode(bytes: &[u8], session: u16, now_ns: i64) -> Result<Frame, FrameErr
     if found != expected {
         return Err(FrameError::Checksum { found, expected });
     }
-    if bytes[0] != FRAME_VERSION {
-        return Err(FrameError::Version { found: bytes[0] });
+    let found = bytes[0] & 0x0f;
+    if found != FRAME_VERSION {
+        return Err(FrameError::Version { found });
     }
     let found = u16::from_le_bytes(part(bytes, 2));
     if found != session {
@@ -229,6 +236,7 @@ pub fn decode(bytes: &[u8], session: u16, now_ns: i64) -> Result<Frame, FrameErr
         // Two bits have no fifth value.
         state: OperatingState::from_code((bytes[1] >> 2) & 3).unwrap_or(OperatingState::Fault),
         arming: bytes[1] >> 4,
+        law: bytes[0] >> 4,
         packet,
     })
 }
@@ -290,11 +298,11 @@ mod tests {
         let echo = proptest::option::of((0..4_000_000_000_i64, 0..u32::MAX));
         (
             (any::<u16>(), any::<u32>(), -40_000_000..9_000_000_000i64),
-            (echo, any::<bool>(), 0..4u8, 0..16u8),
+            (echo, any::<bool>(), 0..4u8, 0..16u8, 0..16u8),
             packet,
         )
             .prop_map(
-                |((session, sequence, age), (echo, hold, state, arming), packet)| Frame {
+                |((session, sequence, age), (echo, hold, state, arming, law), packet)| Frame {
                     session,
                     sequence,
                     sent_ns: NOW - age,
@@ -305,6 +313,7 @@ mod tests {
                     hold,
                     state: OperatingState::from_code(state).unwrap(),
                     arming,
+                    law,
                     packet: Packet {
                         valid: packet.0,
                         position: packet.1,
@@ -331,6 +340,7 @@ mod tests {
             hold: false,
             state: OperatingState::Enabled,
             arming: 3,
+            law: 5,
             packet: Packet::default(),
         };
         encode(&frame, &mut bytes);
@@ -365,10 +375,11 @@ mod tests {
             })
         ));
         let mut other = good;
-        other[0] = 1;
+        // Version 2 of the format, which had the whole byte.
+        other[0] = 2;
         assert!(matches!(
             decode(&sealed(other), 7, NOW),
-            Err(FrameError::Version { found: 1 })
+            Err(FrameError::Version { found: 2 })
         ));
         for now in [NOW - 51_000_000, NOW + 10_001_000_000] {
             assert!(matches!(

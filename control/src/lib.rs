@@ -12,6 +12,7 @@ pub mod haptics;
 pub mod meter;
 pub mod operating;
 pub mod servo;
+pub mod switching;
 
 /// Nanoseconds as seconds.
 pub(crate) fn seconds(nanos: i64) -> f64 {

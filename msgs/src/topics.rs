@@ -5,8 +5,9 @@ use std::marker::PhantomData;
 use crate::{
     Message,
     sample::{
-        AuthoritySample, ContactStateSample, HealthSample, JointSample, LinkStatusSample,
-        OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample, WrenchSample,
+        AuthoritySample, ContactStateSample, HealthSample, JointSample, LawCommandSample,
+        LinkStatusSample, OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample,
+        WrenchSample,
     },
 };
 
@@ -118,6 +119,8 @@ topics! {
     LINK_STATUS: LinkStatusSample = "/link/status", Stream;
     /// The link as the arm's end measures it.
     LINK_FOLLOWER_STATUS: LinkStatusSample = "/link/follower_status", Stream;
+    /// Command to the link: another delay law.
+    LINK_LAW_COMMAND: LawCommandSample = "/link/law_command", Event;
     /// Rate, age and faults of every node.
     DIAGNOSTICS: HealthSample = "/diagnostics", Event;
 }

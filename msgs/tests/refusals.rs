@@ -194,6 +194,24 @@ fn words_in_another_case_are_refused() {
 }
 
 #[test]
+fn laws_have_names_of_at_most_24_bytes() {
+    let nameless = LawCommandSample {
+        stamp: STAMP,
+        law: Text::EMPTY,
+    };
+    refused(nameless, "string");
+    let mut command = nameless.to_ros();
+    for bad in ["a_law_whose_name_is_far_too_long", "wave\0"] {
+        command.string = bad.to_owned();
+        let found = known(LawCommandSample::from_ros(&command));
+        assert_eq!(found, ("string", bad.to_owned()));
+    }
+    command.string = "wave".to_owned();
+    let law = LawCommandSample::from_ros(&command).map(|own| own.law);
+    assert_eq!(law, Ok(Text::new("wave")));
+}
+
+#[test]
 fn identities_are_hexadecimal() {
     let mut sample = AuthoritySample::nobody(STAMP);
     sample.holder = 0xab;

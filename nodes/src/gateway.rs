@@ -12,6 +12,7 @@ use ferntast_msgs::{
 use crate::{
     carry::{Carrier, Carry, Stamp},
     config::{GatewaySection, HandSource, Middleware},
+    law_parameter::LawParameter,
     pace,
     process::{PERIOD_NANOS, ProcessError, Surroundings},
     relay::Relay,
@@ -43,6 +44,7 @@ pub fn open_ros(section: &GatewaySection) -> Result<Bus, ferntast_bus::OpenError
 fn comes_in(topic: &str, crtk: bool) -> bool {
     topic == topics::FOLLOWER_STATE_COMMAND.name
         || topic == topics::LEADER_STATE_COMMAND.name
+        || topic == topics::LINK_LAW_COMMAND.name
         || topic == topics::FOLLOWER_SERVO_JP.name
         || (crtk && topic == topics::LEADER_MEASURED_CP.name)
 }
@@ -88,6 +90,7 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     for topic in [topics::FOLLOWER_STATE_COMMAND, topics::LEADER_STATE_COMMAND] {
         carrier.add(topic, &ros, bus, stamp, every, |_, _| {})?;
     }
+    carrier.add(topics::LINK_LAW_COMMAND, &ros, bus, stamp, every, |_, _| {})?;
     carrier.add(
         topics::FOLLOWER_SERVO_JP,
         &ros,
@@ -108,9 +111,11 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         )?;
     }
 
+    let mut law = LawParameter::open(around, &ros)?;
     let mut relay = Relay::new(around, PERIOD_NANOS)?;
     relay.begin(carrier);
     pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
+        law.round(wake.now);
         relay.round(wake.now, wake, |_, _| {})
     });
     Ok(())

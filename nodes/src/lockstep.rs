@@ -6,8 +6,8 @@ use ferntast_bus::{Bus, CreateError, McapBus, MemoryBus, frames, mcap::BagOption
 use ferntast_lab::experiment::RECORD;
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
-    Time,
-    sample::{Faults, StateCommand, StateCommandSample},
+    Text, Time,
+    sample::{Faults, LawCommandSample, StateCommand, StateCommandSample},
     topics,
 };
 use ferntast_sim::{
@@ -146,10 +146,10 @@ impl LockstepSession {
             MasterPorts::connect(&bus)?,
         )?;
         let ports = LinkPorts::new(LeaderLinkPorts::connect(&bus)?, at_leader);
-        let node = LeaderLinkNode::new(&scenario.law, session);
+        let node = LeaderLinkNode::new(scenario.laws(), session);
         add(&mut executor, &bus, NodeName::LinkLeader, node, ports)?;
         let ports = LinkPorts::new(FollowerLinkPorts::connect(&bus)?, at_follower);
-        let node = FollowerLinkNode::new(&scenario.law, session);
+        let node = FollowerLinkNode::new(scenario.laws(), session);
         add(&mut executor, &bus, NodeName::LinkFollower, node, ports)?;
         let servo = ServoNode::new(&loaded.arm.model(), &scenario.servo)?;
         add(
@@ -213,6 +213,27 @@ impl LockstepSession {
             recording,
             monitor,
         })
+    }
+
+    /// Asks the link for the law of that name, `seconds` \[s\] after now.
+    ///
+    /// # Errors
+    ///
+    /// A topic that cannot be opened.
+    pub fn switch_law_at(&mut self, seconds: f64, law: &str) -> Result<(), RunError> {
+        let mut publisher = self.bus.publisher(topics::LINK_LAW_COMMAND)?;
+        let at = self.executor.now().plus_nanos((seconds * 1e9) as i64);
+        let law = Text::new(law);
+        let mut asked = false;
+        self.executor
+            .add(PERIOD_NANOS, move |now: Time, _: &mut Bus| {
+                if !asked && now >= at {
+                    asked = true;
+                    // Memory does not refuse what is valid.
+                    let _ = publisher.publish(now, &LawCommandSample { stamp: now, law });
+                }
+            })?;
+        Ok(())
     }
 
     /// Runs `seconds` \[s\] of virtual time.

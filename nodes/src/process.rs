@@ -206,7 +206,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                LeaderLinkNode::new(&scenario.law, session),
+                LeaderLinkNode::new(scenario.laws(), session),
                 LinkPorts::new(LeaderLinkPorts::connect(bus)?, transport),
             )
         }
@@ -220,7 +220,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                FollowerLinkNode::new(&scenario.law, session),
+                FollowerLinkNode::new(scenario.laws(), session),
                 LinkPorts::new(FollowerLinkPorts::connect(bus)?, transport),
             )
         }

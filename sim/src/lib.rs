@@ -7,3 +7,4 @@ pub mod hand;
 pub mod joint_bench;
 pub mod lockstep;
 mod random;
+pub mod teleoperation;

@@ -66,6 +66,7 @@ impl End {
             hold: state != OperatingState::Enabled,
             state,
             arming: 0,
+            law: 0,
             packet,
         };
         let mut bytes = [0; FRAME_LENGTH];

@@ -7,12 +7,14 @@
 
 mod deadline;
 mod domain;
+mod hosts;
 mod places;
 mod process;
 mod session;
 
 pub use deadline::{wait_for, wait_until};
 pub use domain::Domain;
+pub use hosts::{Host, TwoHosts};
 pub use places::{data, ferntast, peer, python, root};
 pub use process::{Ended, Process};
 pub use session::{Session, free_tcp_port};

@@ -47,6 +47,7 @@ pub struct DdsConfig {
 #[derive(Clone)]
 pub struct DdsBus {
     node: Arc<Mutex<Node>>,
+    context: Context,
     participant: DomainParticipant,
 }
 
@@ -83,6 +84,7 @@ impl DdsBus {
         Ok(DdsBus {
             node: Arc::new(Mutex::new(node)),
             participant: context.domain_participant(),
+            context,
         })
     }
 
@@ -129,6 +131,11 @@ impl DdsBus {
         topics.sort();
         topics.dedup();
         topics
+    }
+
+    /// For further nodes of this participant.
+    pub(crate) fn context(&self) -> &Context {
+        &self.context
     }
 
     fn node(&self) -> MutexGuard<'_, Node> {

@@ -1,8 +1,12 @@
 //! The link between two hosts, over a Zenoh session of its own.
 //!
-//! One end listens on a TCP port, the other connects, and connects again by
-//! itself whenever the connection breaks. Nothing scouts, nothing is batched,
-//! and what does not get through is dropped.
+//! One end listens on a port, the other connects, and connects again by itself
+//! whenever the connection breaks. Nothing scouts, nothing is batched, and what
+//! does not get through is dropped.
+//!
+//! Over TCP (`tcp/…`) a packet that the network loses is sent again, and holds
+//! up all frames behind it: loss becomes delay. Over UDP (`udp/…`) a frame that
+//! is lost stays lost, which the delay laws are made for.
 
 use std::{fmt, sync::Arc};
 
@@ -52,9 +56,9 @@ impl LinkDirection {
 /// What an end does to meet the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkEndpoint {
-    /// Listens on `tcp/HOST:PORT`.
+    /// Listens on `tcp/HOST:PORT` or `udp/HOST:PORT`.
     Listen(String),
-    /// Connects to `tcp/HOST:PORT`, again and again until it succeeds.
+    /// Connects to `tcp/HOST:PORT` or `udp/HOST:PORT`, again and again until it succeeds.
     Connect(String),
 }
 
@@ -91,7 +95,7 @@ impl ZenohLink {
     pub fn open(config: ZenohLinkConfig) -> Result<ZenohLink, OpenError> {
         check_session(&config.session)?;
         let (LinkEndpoint::Listen(endpoint) | LinkEndpoint::Connect(endpoint)) = &config.endpoint;
-        endpoint::check(endpoint)?;
+        endpoint::check_link(endpoint)?;
         let settings = settings(&config.endpoint).map_err(middleware)?;
         let session = zenoh::open(settings)
             .wait()

@@ -75,6 +75,11 @@ impl ZenohBus {
         })
     }
 
+    /// For further nodes of this session.
+    pub(crate) fn context(&self) -> &ZContext {
+        &self.context
+    }
+
     /// The topics that discovery has found so far, each with its type.
     pub fn topics_seen(&self) -> Vec<(String, String)> {
         self.context.graph().get_topic_names_and_types()

@@ -9,9 +9,9 @@ use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, HealthSample, JointFields,
-        JointSample, Level, LinkEnd, LinkStatusSample, OperatingState, OperatingStateSample,
-        PoseSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
-        WrenchSample,
+        JointSample, LawCommandSample, Level, LinkEnd, LinkStatusSample, OperatingState,
+        OperatingStateSample, PoseSample, RefusedFrames, StateCommand, StateCommandSample,
+        TemperatureSample, WrenchSample,
     },
     topics::{self, Topic, Visitor},
 };
@@ -29,6 +29,7 @@ pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
         .or_else(|| pick(contact_state(x, stamp)))
         .or_else(|| pick(operating_state(k, stamp)))
         .or_else(|| pick(state_command(k, stamp)))
+        .or_else(|| pick(law_command(k, stamp)))
         .or_else(|| pick(authority(k, stamp)))
         .or_else(|| pick(link_status(k, stamp)))
         .or_else(|| pick(health(k, stamp)))
@@ -110,6 +111,13 @@ pub fn state_command(k: u32, stamp: Time) -> StateCommandSample {
         stamp,
         command: StateCommand((k % 4 + 1) as u8),
         reserved: [0; 7],
+    }
+}
+
+pub fn law_command(k: u32, stamp: Time) -> LawCommandSample {
+    LawCommandSample {
+        stamp,
+        law: Text::display(format_args!("law_{k}")),
     }
 }
 

@@ -10,30 +10,73 @@
 //! follower in the follower's base frame. The force on the hand has the sign
 //! of the force that the contact exerts on the tip.
 //!
-//! **To add a law**: copy a neighbour's file, add its variant to [`Law`],
-//! [`LeaderLaw`] and [`FollowerLaw`]. Callers stay as they are. Energy at both
-//! ports is counted here, whatever the law ([`EnergyMeter`]).
+//! **To add a law**: copy a neighbour's file, implement [`Parameters`],
+//! [`Leader`] and [`Follower`], add its line in `law.rs`. Callers stay as they
+//! are, tests and sweep pick it up ([`Law::all`]). Energy at both ports is
+//! counted in [`LeaderEnd`] and [`FollowerEnd`], whatever the law
+//! ([`EnergyMeter`]).
 
+mod contact;
+mod end;
 mod energy;
+mod four_channel;
+mod law;
+mod mapping;
+mod model_mediated;
 mod position_force;
+mod position_position;
+mod store;
+mod tdpa;
+mod wave;
 
+pub use end::{FollowerEnd, LeaderEnd};
 pub use energy::{Energy, EnergyMeter};
+pub use four_channel::{FourChannel, FourChannelFollower, FourChannelLeader};
+pub use law::{FollowerLaw, Law, LeaderLaw};
+pub use mapping::Mapping;
+pub use model_mediated::{ModelMediated, ModelMediatedFollower, ModelMediatedLeader, SurfaceModel};
 pub use position_force::{PositionForce, PositionForceFollower, PositionForceLeader};
+pub use position_position::{PositionPosition, PositionPositionFollower, PositionPositionLeader};
+pub use tdpa::{Tdpa, TdpaFollower, TdpaLeader};
+pub use wave::{Wave, WaveFollower, WaveLeader};
 
+use crate::frame::{POSITION_LIMIT, VECTOR_LIMIT};
 use ferntast_model::ParameterError;
-use serde::{Deserialize, Serialize};
+use nalgebra::Vector3;
 
 /// What travels in a frame, as the law has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Packet {
     /// Whether position and vector mean anything.
     pub valid: bool,
-    /// Position of hand or tip \[m\].
+    /// Position of hand or tip \[m\], or what the law says.
     pub position: [f32; 3],
-    /// Velocity \[m/s\] or force \[N\]; the law says which.
+    /// Velocity \[m/s\], force \[N\] or integral of a wave; the law says which.
     pub vector: [f32; 3],
-    /// Energy that entered and left the sender's port \[J\].
+    /// Energy that entered and left the sender's port \[J\]; of what entered a
+    /// law may keep some back to pay its own debts.
     pub energy: [f32; 2],
+}
+
+impl Packet {
+    /// A valid packet. What is beyond a frame's range is sent as its end, what
+    /// is no number as zero.
+    fn new(position: [f64; 3], vector: [f64; 3], energy: Energy) -> Packet {
+        Packet {
+            valid: true,
+            position: bounded(position, POSITION_LIMIT),
+            vector: bounded(vector, VECTOR_LIMIT),
+            energy: energy.packet(),
+        }
+    }
+
+    /// Nothing to say but what went through the port.
+    fn empty(energy: Energy) -> Packet {
+        Packet {
+            energy: energy.packet(),
+            ..Packet::default()
+        }
+    }
 }
 
 /// Position and velocity of hand or tip.
@@ -103,8 +146,8 @@ pub struct FollowerOutput {
 
 /// The leader's end of a law.
 pub trait Leader {
-    /// One step of `dt` \[s\].
-    fn step(&mut self, dt: f64, input: &LeaderInput) -> LeaderOutput;
+    /// One step of `dt` \[s\]; `energy` is what went through this end's port.
+    fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput;
     /// Energy that the law itself dissipated at this end since the start \[J\].
     fn dissipated(&self) -> f64 {
         0.0
@@ -113,148 +156,64 @@ pub trait Leader {
 
 /// The follower's end of a law.
 pub trait Follower {
-    /// One step of `dt` \[s\].
-    fn step(&mut self, dt: f64, input: &FollowerInput) -> FollowerOutput;
+    /// One step of `dt` \[s\]; `energy` is what went through this end's port.
+    fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput;
     /// Energy that the law itself dissipated at this end since the start \[J\].
     fn dissipated(&self) -> f64 {
         0.0
     }
 }
 
-/// Which law, with its parameters: the section `[law]` of a configuration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum Law {
-    /// Position forward, force back.
-    PositionForce(PositionForce),
+/// What a law guarantees about the energy of the two-port between hand and tip.
+/// Under which assumptions, the law's file says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guarantee {
+    /// Nothing.
+    Nothing,
+    /// It gives out no more than it took in while frames arrive; an outage may
+    /// add energy.
+    PassiveWhileConnected,
+    /// It gives out no more than it took in, whatever the channel does.
+    Passive,
 }
 
-impl Default for Law {
-    fn default() -> Self {
-        Law::PositionForce(PositionForce::default())
-    }
-}
-
-impl Law {
-    /// Its name, as in configurations.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Law::PositionForce(_) => "position_force",
-        }
-    }
-
+/// The parameters of a law: what makes its two ends.
+pub trait Parameters {
+    /// Name of the law, as in configurations.
+    const NAME: &'static str;
+    /// What the law guarantees.
+    const GUARANTEE: Guarantee;
+    /// The leader's end.
+    type Leader: Leader;
+    /// The follower's end.
+    type Follower: Follower;
+    /// Scales between hand and tip.
+    fn mapping(&self) -> Mapping;
     /// Checks every value against its bounds.
     ///
     /// # Errors
     ///
     /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        match self {
-            Law::PositionForce(law) => law.validate(),
+    fn validate(&self) -> Result<(), ParameterError>;
+    /// The leader's end, at rest.
+    fn leader(&self) -> Self::Leader;
+    /// The follower's end, at rest.
+    fn follower(&self) -> Self::Follower;
+}
+
+/// As it goes into a frame: what is beyond the frame's range is sent as its
+/// end, what is no number as zero.
+fn bounded(values: [f64; 3], limit: f32) -> [f32; 3] {
+    values.map(|value| {
+        if value.is_nan() {
+            0.0
+        } else {
+            (value as f32).clamp(-limit, limit)
         }
-    }
-
-    /// The leader's end.
-    pub fn leader(&self) -> LeaderEnd {
-        LeaderEnd {
-            law: match self {
-                Law::PositionForce(law) => LeaderLaw::PositionForce(law.leader()),
-            },
-            energy: EnergyMeter::default(),
-            force: [0.0; 3],
-        }
-    }
-
-    /// The follower's end.
-    pub fn follower(&self) -> FollowerEnd {
-        FollowerEnd {
-            law: match self {
-                Law::PositionForce(law) => FollowerLaw::PositionForce(law.follower()),
-            },
-            energy: EnergyMeter::default(),
-        }
-    }
+    })
 }
 
-/// The leader's end of any law.
-#[derive(Clone, Debug)]
-pub enum LeaderLaw {
-    /// Position forward, force back.
-    PositionForce(PositionForceLeader),
-}
-
-/// The follower's end of any law.
-#[derive(Clone, Debug)]
-pub enum FollowerLaw {
-    /// Position forward, force back.
-    PositionForce(PositionForceFollower),
-}
-
-/// The leader's end of a law, with the energy at its port.
-#[derive(Clone, Debug)]
-pub struct LeaderEnd {
-    law: LeaderLaw,
-    energy: EnergyMeter,
-    /// Given at the last step, acting until this one [N].
-    force: [f64; 3],
-}
-
-impl LeaderEnd {
-    /// One step of `dt` \[s\].
-    pub fn step(&mut self, dt: f64, input: &LeaderInput) -> LeaderOutput {
-        // The force since the last step worked along the way of the hand since
-        // then; what enters the two-port is the work against it.
-        let into = self.force.map(|force| -force);
-        self.energy.step(into, input.hand.map(|hand| hand.position));
-        let mut output = match &mut self.law {
-            LeaderLaw::PositionForce(law) => law.step(dt, input),
-        };
-        output.packet.energy = self.energy.energy().packet();
-        self.force = output.force;
-        output
-    }
-
-    /// Energy at the leader's port, counted from the force that this end asks for.
-    pub fn energy(&self) -> Energy {
-        self.energy.energy()
-    }
-
-    /// Energy that the law itself dissipated at this end since the start \[J\].
-    pub fn dissipated(&self) -> f64 {
-        match &self.law {
-            LeaderLaw::PositionForce(law) => law.dissipated(),
-        }
-    }
-}
-
-/// The follower's end of a law, with the energy at its port.
-#[derive(Clone, Debug)]
-pub struct FollowerEnd {
-    law: FollowerLaw,
-    energy: EnergyMeter,
-}
-
-impl FollowerEnd {
-    /// One step of `dt` \[s\].
-    pub fn step(&mut self, dt: f64, input: &FollowerInput) -> FollowerOutput {
-        let force = input.contact_force.unwrap_or([0.0; 3]);
-        self.energy.step(force, input.tip.map(|tip| tip.position));
-        let mut output = match &mut self.law {
-            FollowerLaw::PositionForce(law) => law.step(dt, input),
-        };
-        output.packet.energy = self.energy.energy().packet();
-        output
-    }
-
-    /// Energy at the follower's port: what the contact gave to the tip went in.
-    pub fn energy(&self) -> Energy {
-        self.energy.energy()
-    }
-
-    /// Energy that the law itself dissipated at this end since the start \[J\].
-    pub fn dissipated(&self) -> f64 {
-        match &self.law {
-            FollowerLaw::PositionForce(law) => law.dissipated(),
-        }
-    }
+/// From a frame.
+fn vector(values: [f32; 3]) -> Vector3<f64> {
+    Vector3::from(values.map(f64::from))
 }

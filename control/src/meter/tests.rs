@@ -15,6 +15,7 @@ fn frame(sequence: u32, sent_ns: i64) -> Frame {
         hold: false,
         state: OperatingState::Enabled,
         arming: 0,
+        law: 0,
         packet: Packet::default(),
     }
 }

@@ -90,6 +90,7 @@ properties! {
     contact_state: ContactStateSample;
     health: HealthSample;
     joint: JointSample;
+    law_command: LawCommandSample;
     link_status: LinkStatusSample;
     operating_state: OperatingStateSample;
     pose: PoseSample;

@@ -130,6 +130,14 @@ pub fn state_command() -> impl Strategy<Value = StateCommandSample> {
     (time(), command).prop_map(|(stamp, command)| StateCommandSample::new(stamp, command))
 }
 
+/// Law commands.
+pub fn law_command() -> impl Strategy<Value = LawCommandSample> {
+    (time(), "[a-z_]{1,24}").prop_map(|(stamp, law)| LawCommandSample {
+        stamp,
+        law: Text::new(&law),
+    })
+}
+
 /// Authorities, held and not.
 pub fn authority() -> impl Strategy<Value = AuthoritySample> {
     let identity = || prop_oneof![Just(0), any::<u64>()];

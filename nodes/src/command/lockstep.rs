@@ -2,11 +2,13 @@
 
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
+use ferntast_control::delay::Law;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
 use crate::{
+    config::UnknownLaw,
     lockstep::LockstepSession,
     session::{ContactSummary, LeaderSummary, LinkSummary, StateSummary},
 };
@@ -29,6 +31,10 @@ pub struct Arguments {
     /// Virtual time to run (else that of the scenario) [s].
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
+
+    /// Switch the delay law so many seconds after the start (may be given again).
+    #[arg(long = "switch", value_name = "SECONDS=LAW")]
+    switches: Vec<String>,
 
     /// Record into this folder (a rosbag2 directory; must not exist yet).
     #[arg(long, value_name = "DIR")]
@@ -63,6 +69,12 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
     }
     let mut session =
         LockstepSession::new(&loaded, arguments.record.as_deref()).map_err(Failure::refused)?;
+    for text in &arguments.switches {
+        let (seconds, law) = parse_switch(text)?;
+        session
+            .switch_law_at(seconds, law)
+            .map_err(Failure::refused)?;
+    }
     let bar = ProgressBar::new(duration.ceil() as u64);
     if let Ok(style) =
         ProgressStyle::with_template("{bar:30} {pos}/{len} s of virtual time, {eta} left")
@@ -112,4 +124,21 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
         );
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Time \[s\] and law of `SECONDS=LAW`.
+fn parse_switch(text: &str) -> std::result::Result<(f64, &str), Failure> {
+    let parts = text.split_once('=');
+    let parsed = parts.and_then(|(seconds, law)| Some((seconds.parse::<f64>().ok()?, law)));
+    match parsed {
+        Some((seconds, law)) if seconds.is_finite() && seconds >= 0.0 => {
+            match Law::NAMES.contains(&law) {
+                true => Ok((seconds, law)),
+                false => Err(Failure::refused(UnknownLaw::new(law))),
+            }
+        }
+        _ => Err(Failure::refused(format!(
+            "--switch {text}: give SECONDS=LAW, as in 5=wave"
+        ))),
+    }
 }

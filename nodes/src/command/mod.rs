@@ -5,6 +5,7 @@ mod challenge;
 mod doctor;
 mod interfaces;
 mod lab;
+mod link;
 mod lockstep;
 mod node;
 mod output;
@@ -13,6 +14,7 @@ mod replay;
 mod scenario_options;
 mod session;
 mod state;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -55,6 +57,8 @@ enum Command {
     Replay(replay::Arguments),
     /// Put a recording back on the topics.
     Play(play::Arguments),
+    /// Hold the delay laws against each other over delay, jitter, loss and environment.
+    Sweep(sweep::Arguments),
     /// Hold a model against a recording, find the missing effect, add it.
     Lab(lab::Arguments),
     /// Make a recording with a hidden effect, to learn on; test the lab with many.
@@ -63,6 +67,8 @@ enum Command {
     Bag(bag::Arguments),
     /// Tell the operating state, or change it: enable, disable, pause, resume (re-arm).
     State(state::Arguments),
+    /// Tell how the link does, or change its delay law.
+    Link(link::Arguments),
     /// Say what this machine offers and lacks, and how to mend it.
     Doctor(doctor::Arguments),
     /// List the topics' interfaces: type, RIHS01 hash, schema.
@@ -97,9 +103,11 @@ pub fn main() -> ExitCode {
         Command::Replay(arguments) => replay::run(arguments, json),
         Command::Play(arguments) => play::run(arguments, json),
         Command::Challenge(arguments) => challenge::run(arguments, json),
+        Command::Sweep(arguments) => sweep::run(arguments, json),
         Command::Lab(arguments) => lab::run(arguments, json),
         Command::Bag(arguments) => bag::run(arguments, json),
         Command::State(arguments) => state::run(arguments, json),
+        Command::Link(arguments) => link::run(arguments, json),
         Command::Doctor(arguments) => doctor::run(arguments, json),
         Command::Interfaces(arguments) => interfaces::run(arguments, json),
     };

@@ -10,7 +10,7 @@ use crate::config::{self, HandSource, Loaded, Middleware};
 /// Which scenario, and what is to be different from it.
 #[derive(Debug, Args)]
 pub struct ScenarioOptions {
-    /// Scenario: a shipped one (rokviss, operator) or a file.
+    /// Scenario: a shipped one (rokviss, kontur_2, relay, ku_band, operator) or a file.
     #[arg(long, default_value = "rokviss", value_name = "NAME|FILE")]
     pub scenario: String,
 
@@ -18,6 +18,10 @@ pub struct ScenarioOptions {
     /// relay_600ms, ku_band_800ms) or a file.
     #[arg(long, value_name = "NAME|FILE")]
     pub link: Option<String>,
+
+    /// Delay law to start with: position_force, position_position, four_channel, wave, tdpa, model_mediated.
+    #[arg(long, value_name = "NAME")]
+    pub law: Option<String>,
 
     /// Constant round-trip time of the channel instead of the one in the link's file [ms].
     #[arg(long, value_name = "MS", allow_negative_numbers = true)]
@@ -40,8 +44,9 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "ID")]
     pub domain: Option<u32>,
 
-    /// Endpoint at which the arm's end of the link listens.
-    #[arg(long, value_name = "tcp/HOST:PORT")]
+    /// Endpoint at which the arm's end of the link listens (over udp what is lost stays lost, over tcp it
+    /// is sent again and holds up the rest).
+    #[arg(long, value_name = "tcp|udp/HOST:PORT")]
     pub link_endpoint: Option<String>,
 
     /// Endpoint of the Zenoh router for ROS 2 (with --middleware zenoh).
@@ -68,6 +73,9 @@ impl ScenarioOptions {
             scenario.gateway.domain_id = domain;
         } else if let Some(domain) = domain_of_environment()? {
             scenario.gateway.domain_id = domain;
+        }
+        if let Some(law) = &self.law {
+            scenario.set_law(law).map_err(Failure::refused)?;
         }
         if let Some(endpoint) = &self.link_endpoint {
             scenario.link.endpoint.clone_from(endpoint);

@@ -14,8 +14,9 @@ use crate::{
     ferntast session --duration 20 --record recordings/first\n  \
     ferntast session --hand crtk               # your own CRTK master on ROS 2 drives it\n  \
     ferntast session --hand hand.csv --link relay_600ms\n  \
+    ferntast session --scenario relay --law tdpa
     ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n\n\
-    While it runs: `ros2 topic list`, `ferntast state follower resume` (re-arm after a hold). Ctrl-C ends it cleanly.")]
+    While it runs: `ros2 topic list`, `ferntast state follower resume` (re-arm after a hold),\n`ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,

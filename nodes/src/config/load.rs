@@ -14,6 +14,7 @@ use ferntast_sim::{
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::{HandSource, Scenario, shipped};
+use crate::sweep::SweepConfig;
 
 /// Why configuration cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -179,6 +180,18 @@ pub fn load_scenario(name: &str) -> Result<Loaded, ConfigError> {
         link,
         hand_recording: None,
     })
+}
+
+/// Loads the sweep `name`, shipped or a file.
+///
+/// # Errors
+///
+/// What is wrong, in which file, and how to mend it.
+pub fn load_sweep(name: &str) -> Result<SweepConfig, ConfigError> {
+    let source = find("sweep", "scenarios", name)?;
+    let sweep: SweepConfig = parse(&source)?;
+    let valid = sweep.validate();
+    checked(&source, sweep, valid)
 }
 
 /// Reads and checks a file with recorded hand motion; gives its text.

@@ -29,6 +29,10 @@ pub struct Scenario {
     pub link: LinkSection,
     /// The delay law.
     pub law: Law,
+    /// Parameters of the laws that it may be switched to; one that is not
+    /// listed has its defaults, and the scales and the offset of `law`.
+    #[serde(default)]
+    pub laws: Vec<Law>,
     /// The joint servo.
     #[serde(default)]
     pub servo: ServoConfig,
@@ -168,6 +172,10 @@ impl Scenario {
             .validate()
             .map_err(|error| error.within("hand.recorded"))?;
         self.law.validate().map_err(|error| error.within("law"))?;
+        for law in &self.laws {
+            law.validate()
+                .map_err(|error| error.within(&format!("laws ({})", law.name())))?;
+        }
         self.servo
             .validate()
             .map_err(|error| error.within("servo"))?;

@@ -36,6 +36,22 @@ pub const FILES: &[(&str, &str)] = &[
         include_str!("../../../config/scenarios/rokviss.toml"),
     ),
     (
+        "scenarios/kontur_2.toml",
+        include_str!("../../../config/scenarios/kontur_2.toml"),
+    ),
+    (
+        "scenarios/relay.toml",
+        include_str!("../../../config/scenarios/relay.toml"),
+    ),
+    (
+        "scenarios/ku_band.toml",
+        include_str!("../../../config/scenarios/ku_band.toml"),
+    ),
+    (
+        "scenarios/delay_sweep.toml",
+        include_str!("../../../config/scenarios/delay_sweep.toml"),
+    ),
+    (
         "scenarios/operator.toml",
         include_str!("../../../config/scenarios/operator.toml"),
     ),

@@ -1,10 +1,11 @@
 //! What both ends do with frames.
 
 use ferntast_control::{
-    delay::{Energy, Packet, Received},
+    delay::{Energy, Received},
     frame::{self, FRAME_LENGTH, Frame},
     meter::{Arrival, Meter},
     operating::OperatingState,
+    switching::{MarkedPacket, Outgoing},
 };
 use ferntast_msgs::{
     Text, Time,
@@ -65,14 +66,17 @@ impl End {
         self.newest.filter(|_| self.fresh)
     }
 
-    /// The newest packet as the laws want it.
-    pub fn received(&mut self, now: Time) -> Option<Received> {
+    /// The newest packet as the laws want it, and which law made it.
+    pub fn newest(&mut self, now: Time) -> Option<MarkedPacket> {
         let measured = self.meter.measure(now.nanos());
-        self.newest.map(|frame| Received {
-            packet: frame.packet,
-            fresh: self.fresh,
-            silence: measured.silence,
-            age: measured.age,
+        self.newest.map(|frame| MarkedPacket {
+            law: frame.law,
+            received: Received {
+                packet: frame.packet,
+                fresh: self.fresh,
+                silence: measured.silence,
+                age: measured.age,
+            },
         })
     }
 
@@ -89,13 +93,13 @@ impl End {
         elapsed
     }
 
-    /// Sends `packet` when it is time to.
+    /// Sends `outgoing` when it is time to.
     pub fn send(
         &mut self,
         now: Time,
         state: OperatingState,
         arming: u8,
-        packet: Packet,
+        outgoing: Outgoing,
         output: &mut FrameOutput,
     ) {
         if now < self.send_due {
@@ -115,7 +119,8 @@ impl End {
             hold: state != OperatingState::Enabled,
             state,
             arming,
-            packet,
+            law: outgoing.law,
+            packet: outgoing.packet,
         };
         let mut bytes = [0; FRAME_LENGTH];
         frame::encode(&frame, &mut bytes);

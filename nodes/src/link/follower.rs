@@ -1,9 +1,10 @@
 //! The arm's end of the link.
 
 use ferntast_control::{
-    delay::{FollowerEnd, FollowerInput, Law, Motion},
+    delay::Motion,
     frame::ArmingWatch,
     operating::OperatingState,
+    switching::{FollowerSwitch, Laws},
 };
 use ferntast_msgs::{
     Text, Time,
@@ -42,19 +43,17 @@ ports! {
 /// The arm's end of the link.
 pub struct FollowerLinkNode {
     end: End,
-    name: &'static str,
-    law: FollowerEnd,
+    law: FollowerSwitch,
     velocity: VelocityFilter,
     arming: ArmingWatch,
 }
 
 impl FollowerLinkNode {
-    /// An end that runs `law`.
-    pub fn new(law: &Law, session: u16) -> FollowerLinkNode {
+    /// An end that starts with the first of `laws` and follows the leader's end to the others.
+    pub fn new(laws: Laws, session: u16) -> FollowerLinkNode {
         FollowerLinkNode {
             end: End::new(LinkEnd::FOLLOWER, session),
-            name: law.name(),
-            law: law.follower(),
+            law: FollowerSwitch::new(laws),
             velocity: VelocityFilter::default(),
             arming: ArmingWatch::default(),
         }
@@ -111,12 +110,10 @@ impl Node for FollowerLinkNode {
         let connected = self.end.connected(now);
         let step = self.law.step(
             dt,
-            &FollowerInput {
-                tip,
-                contact_force: contact_force(now, input),
-                received: self.end.received(now),
-                connected,
-            },
+            tip,
+            contact_force(now, input),
+            self.end.newest(now),
+            connected,
         );
         if let Some(command) = step.command {
             output.servo_cp = Some(PoseSample::at(now, Frame::FOLLOWER_BASE, command.position));
@@ -126,10 +123,14 @@ impl Node for FollowerLinkNode {
             .message
             .and_then(|sample| OperatingState::from_code(sample.state.0))
             .unwrap_or(OperatingState::Disabled);
-        self.end.send(now, state, 0, step.packet, &mut output.frame);
-        output.status = self
-            .end
-            .status(now, self.name, self.law.energy(), self.law.dissipated());
+        self.end
+            .send(now, state, 0, step.outgoing, &mut output.frame);
+        output.status = self.end.status(
+            now,
+            self.law.name(),
+            self.law.energy(),
+            self.law.dissipated(),
+        );
         let health = &mut output.health;
         health.input_age = self.end.silence(now);
         health.refused = self.end.refused(now);

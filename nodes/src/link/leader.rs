@@ -1,14 +1,14 @@
 //! The operator's end of the link.
 
 use ferntast_control::{
-    delay::{Law, LeaderEnd, LeaderInput},
     operating::OperatingState,
+    switching::{self, Laws, LeaderSwitch},
 };
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, Frame, Level, LinkEnd, LinkStatusSample, OperatingStateSample, PoseSample,
-        StateCommand, StateCommandSample, WrenchSample,
+        Fault, Frame, LawCommandSample, Level, LinkEnd, LinkStatusSample, OperatingStateSample,
+        PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
 
@@ -27,6 +27,7 @@ ports! {
         setpoint_cp: Newest<PoseSample> = LEADER_SETPOINT_CP,
         operating_state: Newest<OperatingStateSample> = LEADER_OPERATING_STATE,
         state_command: Batch<StateCommandSample> = LEADER_STATE_COMMAND,
+        law_command: Batch<LawCommandSample> = LINK_LAW_COMMAND,
     }
     extra { frames: FrameInput, }
     /// What the leader end gives.
@@ -40,22 +41,23 @@ ports! {
 /// The operator's end of the link.
 pub struct LeaderLinkNode {
     end: End,
-    name: &'static str,
-    law: LeaderEnd,
+    law: LeaderSwitch,
     velocity: VelocityFilter,
     /// Counts the operator's wishes to re-arm.
     arming: u8,
+    /// A law that was asked for and is not there.
+    unknown_law: Option<Text<24>>,
 }
 
 impl LeaderLinkNode {
-    /// An end that runs `law`.
-    pub fn new(law: &Law, session: u16) -> LeaderLinkNode {
+    /// An end that starts with the first of `laws` and may switch to the others.
+    pub fn new(laws: Laws, session: u16) -> LeaderLinkNode {
         LeaderLinkNode {
             end: End::new(LinkEnd::LEADER, session),
-            name: law.name(),
-            law: law.leader(),
+            law: LeaderSwitch::new(laws),
             velocity: VelocityFilter::default(),
             arming: 0,
+            unknown_law: None,
         }
     }
 }
@@ -80,6 +82,11 @@ impl Node for LeaderLinkNode {
                 self.arming = self.arming.wrapping_add(1);
             }
         }
+        for sample in input.law_command.iter() {
+            let known = switching::code(sample.law.as_str());
+            let taken = known.is_some_and(|code| self.law.switch_to(code));
+            self.unknown_law = (!taken).then_some(sample.law);
+        }
         self.end.receive(&input.frames);
         let hand = input.setpoint_cp.message.as_ref().map(|pose| {
             let motion = self.velocity.step(pose);
@@ -89,11 +96,9 @@ impl Node for LeaderLinkNode {
         let connected = self.end.connected(now);
         let step = self.law.step(
             dt,
-            &LeaderInput {
-                hand: hand.filter(|(_, valid)| *valid).map(|(motion, _)| motion),
-                received: self.end.received(now),
-                connected,
-            },
+            hand.filter(|(_, valid)| *valid).map(|(motion, _)| motion),
+            self.end.newest(now),
+            connected,
         );
         output.reflected_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
         let state = input
@@ -102,13 +107,23 @@ impl Node for LeaderLinkNode {
             .and_then(|sample| OperatingState::from_code(sample.state.0))
             .unwrap_or(OperatingState::Disabled);
         self.end
-            .send(now, state, self.arming, step.packet, &mut output.frame);
-        output.status = self
-            .end
-            .status(now, self.name, self.law.energy(), self.law.dissipated());
+            .send(now, state, self.arming, step.outgoing, &mut output.frame);
+        output.status = self.end.status(
+            now,
+            self.law.name(),
+            self.law.energy(),
+            self.law.dissipated(),
+        );
         let health = &mut output.health;
         health.input_age = self.end.silence(now);
         health.refused = self.end.refused(now);
+        if let Some(law) = &self.unknown_law {
+            health.raise(Fault::CommandInvalid, Level::WARN);
+            health.message = Text::display(format_args!(
+                "/link/law_command: no law {:?} here",
+                law.as_str()
+            ));
+        }
         if !connected {
             health.raise(Fault::LinkDown, Level::WARN);
             health.message = Text::new("no frames from the arm's end");

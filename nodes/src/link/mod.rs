@@ -7,6 +7,8 @@
 mod end;
 mod follower;
 mod leader;
+#[cfg(test)]
+mod tests;
 pub mod transport;
 mod velocity;
 

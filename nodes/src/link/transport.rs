@@ -31,6 +31,20 @@ impl Default for FrameInput {
 }
 
 impl FrameInput {
+    /// These, arrived at that time; what does not fit is left out.
+    #[cfg(test)]
+    pub(super) fn of(frames: &[&[u8]], arrived: Time) -> FrameInput {
+        let mut input = FrameInput::default();
+        for (place, frame) in input.frames.iter_mut().zip(frames) {
+            let length = frame.len().min(MAX_FRAME);
+            place.0[..length].copy_from_slice(&frame[..length]);
+            place.1 = length;
+            place.2 = arrived;
+            input.count += 1;
+        }
+        input
+    }
+
     /// Bytes and time of arrival of each.
     pub fn iter(&self) -> impl Iterator<Item = (&[u8], Time)> {
         self.frames[..self.count]

@@ -370,11 +370,15 @@ fn check_endpoint(
     endpoint: &str,
     option: &'static str,
 ) -> Result<(), SessionError> {
-    let Some(address) = endpoint.strip_prefix("tcp/") else {
+    let bound = if let Some(address) = endpoint.strip_prefix("tcp/") {
+        std::net::TcpListener::bind(address).map(drop)
+    } else if let Some(address) = endpoint.strip_prefix("udp/") {
+        std::net::UdpSocket::bind(address).map(drop)
+    } else {
         return Ok(()); // the node that opens it says what is wrong
     };
-    match std::net::TcpListener::bind(address) {
-        Ok(_) => Ok(()),
+    match bound {
+        Ok(()) => Ok(()),
         Err(source) => Err(SessionError::PortTaken {
             what,
             endpoint: endpoint.to_owned(),

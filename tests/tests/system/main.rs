@@ -1,10 +1,12 @@
 //! The whole system: sessions with all their processes, against real peers.
 
+mod bad_frames;
 mod crashes;
 mod delay;
 mod dynamics;
 mod estimator;
 mod lab;
+mod laws;
 mod lockstep;
 mod masters;
 mod paper;
@@ -13,5 +15,7 @@ mod refusals;
 mod ros;
 mod session;
 mod support;
+mod sweep;
+mod two_hosts;
 mod watchdog;
 mod zenoh;

@@ -1,7 +1,8 @@
 //! The law between a hand with an impedance and a contact with a stiffness.
 
 use super::*;
-use crate::delay::{Law, Received};
+use crate::delay::{Law, Motion, Received, bounded};
+use crate::frame::POSITION_LIMIT;
 use std::collections::VecDeque;
 
 const DT: f64 = 1e-3;
@@ -138,7 +139,7 @@ fn the_force_ramps_to_zero_on_loss_and_back() {
         force_scale: 0.2,
         ..PositionForce::default()
     };
-    let mut leader = law.leader();
+    let mut leader = PositionForceLeader::new(&law);
     let mut step = |silence: f64, connected: bool| {
         leader
             .step(
@@ -148,6 +149,7 @@ fn the_force_ramps_to_zero_on_loss_and_back() {
                     received: received(silence, false, 10.0),
                     connected,
                 },
+                Energy::default(),
             )
             .force[0]
     };
@@ -172,7 +174,7 @@ fn the_force_ramps_to_zero_on_loss_and_back() {
 
 #[test]
 fn the_follower_commands_once_a_packet_and_never_an_old_one() {
-    let mut follower = PositionForce::default().follower();
+    let mut follower = PositionForceFollower::new(&PositionForce::default());
     let mut step = |received, connected| {
         follower
             .step(
@@ -182,6 +184,7 @@ fn the_follower_commands_once_a_packet_and_never_an_old_one() {
                     connected,
                     ..FollowerInput::default()
                 },
+                Energy::default(),
             )
             .command
     };
@@ -209,7 +212,7 @@ fn parameters_out_of_bounds_are_named() {
         deadline: 0.5,
         ..PositionForce::default()
     };
-    let error = law.validate().unwrap_err();
+    let error = law.check().unwrap_err();
     assert_eq!(error.key(), "deadline");
     assert!(error.to_string().contains("0.03"), "{error}");
 }

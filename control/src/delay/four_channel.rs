@@ -1,0 +1,204 @@
+//! Four channels: position and force both ways.
+//!
+//! The transparency-optimised architecture of Lawrence 1993 ("Stability and
+//! transparency in bilateral teleoperation", IEEE T-RA 9, section IV; with local force
+//! feedback: Hashtrudi-Zaad and Salcudean 2002, "Transparency in time-delayed
+//! systems and the effect of local force feedback for transparent
+//! teleoperation", IEEE T-RA 18), in hand units:
+//!
+//! F = F_s(t − T₂) + K (x_s(t − T₂) − x_h) + B (v_s − v_h) and, at the tip, which is
+//! told where to go rather than pushed,
+//! 0 = K (x_h(t − T₁) − x_s) + B (v_h − v_s) + F_h(t − T₁) − F̂_s.
+//!
+//! F_h is what the hand gives: the force on it, turned round. At rest both say
+//! x_s = x_h and F = F_s: without delay the hand feels what the tip touches, and
+//! the tip is where the hand is. v_s of the other end is the difference of its
+//! positions.
+//!
+//! **What it guarantees.** Nothing about stability: it is transparent without
+//! delay, and for that gives up every margin. A contact stiffer than the hand
+//! behind a delay is unstable, as with position–force.
+//!
+//! **On loss.** No command, the force fades out. Afterwards the command begins at
+//! the tip and approaches by K and B.
+
+use super::contact::CommandForce;
+use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
+use super::{
+    Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
+    vector,
+};
+use nalgebra::Vector3;
+
+law_parameters! {
+    /// Parameters of the law. Every key may be left out.
+    FourChannel {
+        /// K: stiffness of the coupling, at the hand's scale \[N/m\].
+        stiffness = 200.0 in 0.1 .. 10000.0 "N/m",
+        /// B: damping of the coupling, at the hand's scale \[N·s/m\].
+        damping = 20.0 in 0.1 .. 1000.0 "N·s/m",
+        /// Largest speed of the tip's command, at the hand's scale \[m/s\].
+        largest_speed = 1.0 in 0.01 .. 10.0 "m/s",
+        /// Stiffness of the arm's servo at the tip \[N/m\].
+        servo_stiffness = 5000.0 in 1.0 .. 1000000.0 "N/m",
+    }
+}
+law_ends!(
+    FourChannel,
+    "four_channel",
+    Nothing,
+    FourChannelLeader,
+    FourChannelFollower
+);
+
+/// Time constant of the velocity of what was received [s].
+const VELOCITY_FILTER: f64 = 0.01;
+
+/// Position of the other end with its rate.
+#[derive(Clone, Copy, Debug, Default)]
+struct Other {
+    position: Option<Vector3<f64>>,
+    velocity: Vector3<f64>,
+    since: f64,
+}
+
+impl Other {
+    /// The newest position, `None` while there is nothing to act on.
+    fn step(&mut self, dt: f64, newest: Option<(Vector3<f64>, bool)>) {
+        self.since += dt;
+        match (newest, self.position) {
+            (None, _) => *self = Other::default(),
+            (Some((now, true)), Some(before)) if self.since > 0.0 => {
+                let share = self.since / (self.since + VELOCITY_FILTER);
+                self.velocity += share * ((now - before) / self.since - self.velocity);
+                self.position = Some(now);
+                self.since = 0.0;
+            }
+            (Some((now, _)), None) => {
+                self.position = Some(now);
+                self.since = 0.0;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The leader's end: sends position of the hand and the force that it gives \[N\].
+#[derive(Clone, Debug)]
+pub struct FourChannelLeader {
+    parameters: FourChannel,
+    mapping: Mapping,
+    fade: Fade,
+    tip: Other,
+    /// The newest force received, hand units [N].
+    contact: Vector3<f64>,
+    /// At the last step, in place of the tip's after a loss [m].
+    position: Vector3<f64>,
+}
+
+impl FourChannelLeader {
+    fn new(law: &FourChannel) -> Self {
+        FourChannelLeader {
+            parameters: law.clone(),
+            mapping: law.mapping(),
+            fade: Fade::default(),
+            tip: Other::default(),
+            contact: Vector3::zeros(),
+            position: Vector3::zeros(),
+        }
+    }
+}
+
+impl Leader for FourChannelLeader {
+    fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
+        let own = &self.parameters;
+        let live = self.mapping.live(input.connected, input.received);
+        let newest = live.map(|received| {
+            let tip = received.packet.position.map(f64::from);
+            (self.mapping.tip_at_hand(tip), received.fresh)
+        });
+        self.tip.step(dt, newest);
+        if let Some(received) = live {
+            let force = received.packet.vector.map(f64::from);
+            self.contact = self.mapping.contact_at_hand(force);
+        }
+        let share = self.fade.step(dt, own.force_ramp, live.is_some());
+        let Some(hand) = input.hand else {
+            return LeaderOutput {
+                force: [0.0; 3],
+                packet: Packet::empty(energy),
+            };
+        };
+        let here = Vector3::from(hand.position);
+        if let Some(tip) = self.tip.position {
+            self.position = tip;
+        }
+        let apart = self.position - here;
+        let rate = self.tip.velocity - Vector3::from(hand.velocity);
+        let force = share * (self.contact + own.stiffness * apart + own.damping * rate);
+        LeaderOutput {
+            force: force.into(),
+            packet: Packet::new(hand.position, (-force).into(), energy),
+        }
+    }
+}
+
+/// The follower's end: sends position of the tip and force of the contact on
+/// it \[N\].
+#[derive(Clone, Debug)]
+pub struct FourChannelFollower {
+    parameters: FourChannel,
+    mapping: Mapping,
+    force: CommandForce,
+    hand: Other,
+    /// Hand units [m].
+    command: Option<Vector3<f64>>,
+}
+
+impl FourChannelFollower {
+    fn new(law: &FourChannel) -> Self {
+        let mapping = law.mapping();
+        FourChannelFollower {
+            parameters: law.clone(),
+            mapping,
+            force: CommandForce::new(mapping.stiffness_at_hand(law.servo_stiffness)),
+            hand: Other::default(),
+            command: None,
+        }
+    }
+}
+
+impl Follower for FourChannelFollower {
+    fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
+        let own = &self.parameters;
+        let live = self.mapping.live(input.connected, input.received);
+        let newest = live.map(|received| (vector(received.packet.position), received.fresh));
+        self.hand.step(dt, newest);
+        let contact = input.contact_force.unwrap_or([0.0; 3]);
+        let contact_at_hand = self.mapping.contact_at_hand(contact);
+        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
+        let here = self.command.or(tip);
+        let lead = here
+            .zip(tip)
+            .map_or(Vector3::zeros(), |(here, tip)| here - tip);
+        let pushed = self.force.step(dt, contact_at_hand, lead);
+        // Implicit in both springs.
+        let give = own.damping + (own.stiffness + self.force.stiffness()) * dt;
+        let command = live.zip(here).map(|(received, here)| {
+            let pull = own.stiffness * (vector(received.packet.position) - here)
+                + own.damping * self.hand.velocity
+                + vector(received.packet.vector)
+                - pushed;
+            let velocity = shortened(pull / give, own.largest_speed);
+            (here + velocity * dt, velocity)
+        });
+        self.command = command.map(|(position, _)| position);
+        FollowerOutput {
+            command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
+            packet: match (input.tip, input.contact_force) {
+                (Some(tip), Some(force)) => Packet::new(tip.position, force, energy),
+                _ => Packet::empty(energy),
+            },
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! Time-domain passivity of the two-port: energy sent in packets, passivity
+//! controllers at both ends, drift compensated.
+//!
+//! Position goes forward, contact force back. Each end observes the energy at its
+//! port and keeps a store: what its port took in, what the other end promised in
+//! packets, less what its port gave out and what it promised itself
+//! (`store.rs`; Ryu, Artigas, Preusche 2010, Mechatronics 20). A passivity controller
+//! lets no end give out more than its store holds:
+//!
+//! * the leader's, of impedance type, takes from the force: F ← F − α v_h;
+//! * the follower's, of admittance type, takes from the motion: v ← v − β F.
+//!
+//! Both look one step ahead (Hannaford and Ryu 2002, "Time-domain passivity
+//! control of haptic interfaces", IEEE T-RA 18, take the same energy one step
+//! later and chatter): the force makes the hand faster, the motion winds up the
+//! servo. What the admittance takes off the motion is drift; the
+//! follower makes up for it as fast as `drift_speed` while its store pays
+//! (Artigas, Ryu, Preusche 2010, "Position drift compensation in time domain
+//! passivity based teleoperation", IROS; Coelho, Singh, Muskardin, Balachandran,
+//! Kondak 2018, "Smoother position-drift compensation for time domain passivity
+//! approach based teleoperation", IROS).
+//!
+//! The damping b at the hand takes in the energy of moving it, which pays for the first
+//! contact: an end that has taken in nothing may give out nothing. Each end
+//! keeps a share of what it took in, as the stores of Franken et al. 2011 do: a hand
+//! that pressed against the force is pushed back with its own energy.
+//!
+//! **What it guarantees.** The two-port gives out no more than it took in, but
+//! for what one step may overdraw, which is paid back first: for any
+//! delay, jitter, loss, reordering, duplication and outage. Assumed: the force
+//! on the hand is the one asked for; the servo from command to tip
+//! is passive, as a spring and a damper are, up to the kinetic energy of the arm.
+//!
+//! **On loss.** No command, the force fades out. Afterwards the command begins at the
+//! tip and approaches at `drift_speed`.
+
+use super::contact::CommandForce;
+use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
+use super::store::Store;
+use super::{
+    Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
+    LeaderOutput, Packet, vector,
+};
+use nalgebra::Vector3;
+
+law_parameters! {
+    /// Parameters of the law. Every key may be left out.
+    Tdpa {
+        /// b: damping at the hand \[N·s/m\].
+        damping = 10.0 in 0.0 .. 1000.0 "N·s/m",
+        /// m: lightest mass of hand and handle \[kg\].
+        hand_mass = 0.2 in 0.01 .. 20.0 "kg",
+        /// Largest damping with which a debt is paid back \[N·s/m\].
+        largest_damping = 50.0 in 0.1 .. 10000.0 "N·s/m",
+        /// Share of what the leader's end takes in that it promises to the
+        /// follower's, which promises the rest to one of what it takes in \[-\].
+        promised_share = 0.35 in 0.0 .. 1.0 "-",
+        /// Energy that an end may hold, at the hand's scale; what is beyond
+        /// counts as dissipated \[J\].
+        reserve = 0.1 in 0.0 .. 1000.0 "J",
+        /// Time constant of the drift compensation \[s\].
+        drift_time = 0.05 in 0.005 .. 10.0 "s",
+        /// Largest speed at which drift is made up for, at the hand's scale \[m/s\].
+        drift_speed = 0.1 in 0.0 .. 10.0 "m/s",
+        /// Largest speed at which the tip gives way, at the hand's scale \[m/s\].
+        yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
+        /// Stiffness of the arm's servo at the tip \[N/m\].
+        servo_stiffness = 5000.0 in 1.0 .. 1000000.0 "N/m",
+    }
+}
+law_ends!(Tdpa, "tdpa", Passive, TdpaLeader, TdpaFollower);
+
+/// Slower than this counts as standing [m/s].
+const STANDING: f64 = 1e-6;
+
+/// The leader's end: sends position and velocity \[m/s\] of the hand, and what it
+/// promises, at the hand's scale.
+#[derive(Clone, Debug)]
+pub struct TdpaLeader {
+    parameters: Tdpa,
+    mapping: Mapping,
+    store: Store,
+    fade: Fade,
+    /// The newest force received, hand units [N].
+    force: Vector3<f64>,
+    /// Of the hand at the last step [m].
+    position: Option<Vector3<f64>>,
+}
+
+impl TdpaLeader {
+    fn new(law: &Tdpa) -> Self {
+        TdpaLeader {
+            parameters: law.clone(),
+            mapping: law.mapping(),
+            store: Store::default(),
+            fade: Fade::default(),
+            force: Vector3::zeros(),
+            position: None,
+        }
+    }
+}
+
+impl Leader for TdpaLeader {
+    fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
+        let own = &self.parameters;
+        self.store.port(energy, own.promised_share);
+        let live = self.mapping.live(input.connected, input.received);
+        if let Some(received) = live {
+            self.store.promise(f64::from(received.packet.energy[0]));
+            self.force = vector(received.packet.vector);
+        }
+        self.store.limit(own.reserve);
+        let share = self.fade.step(dt, own.force_ramp, live.is_some());
+        let Some(hand) = input.hand else {
+            self.position = None;
+            return LeaderOutput {
+                force: [0.0; 3],
+                packet: Packet::empty(promise(&self.store, energy)),
+            };
+        };
+        let here = Vector3::from(hand.position);
+        // Not the filtered velocity: one that lags would let the port give out.
+        let velocity = match self.position {
+            Some(before) if dt > 0.0 => (here - before) / dt,
+            _ => hand.velocity.into(),
+        };
+        self.position = Some(here);
+        let level = self.store.level();
+        let mut force = affordable(dt, share * self.force, velocity, level, own.hand_mass);
+        force -= own.damping * Vector3::from(hand.velocity);
+        let square = velocity.norm_squared();
+        if level < 0.0 && square > STANDING * STANDING {
+            force -= (-level / (square * dt)).min(own.largest_damping) * velocity;
+        }
+        LeaderOutput {
+            force: force.into(),
+            packet: Packet::new(hand.position, hand.velocity, promise(&self.store, energy)),
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.store.dissipated()
+    }
+}
+
+/// `force` as far as `level` pays for it in a step of `dt`: the force f gives
+/// out f v Δt to a hand that moves along with it at v, and f² Δt²/m more, as it
+/// makes a hand of mass m faster.
+fn affordable(
+    dt: f64,
+    force: Vector3<f64>,
+    velocity: Vector3<f64>,
+    level: f64,
+    mass: f64,
+) -> Vector3<f64> {
+    let size = force.norm();
+    if size < 1e-9 || dt <= 0.0 {
+        return force;
+    }
+    let speed = velocity.dot(&force) / size;
+    // The positive root of f² Δt²/m + f v Δt = level.
+    let root = (speed * speed + 4.0 * level.max(0.0) / mass).sqrt();
+    let most = 0.5 * mass / dt * (root - speed);
+    force * (most / size).clamp(0.0, 1.0)
+}
+
+/// What a packet says of energy: promised in place of entered.
+fn promise(store: &Store, energy: Energy) -> Energy {
+    Energy {
+        entered: store.promised(),
+        left: energy.left,
+    }
+}
+
+/// The follower's end: sends position of the tip, force of the contact at the
+/// hand's scale \[N\], and what it promises, at the hand's scale.
+#[derive(Clone, Debug)]
+pub struct TdpaFollower {
+    parameters: Tdpa,
+    mapping: Mapping,
+    store: Store,
+    /// At the command: the servo behind it is passive by itself.
+    meter: EnergyMeter,
+    force: CommandForce,
+    last: Vector3<f64>,
+    /// Hand units [m].
+    command: Option<Vector3<f64>>,
+}
+
+impl TdpaFollower {
+    fn new(law: &Tdpa) -> Self {
+        let mapping = law.mapping();
+        TdpaFollower {
+            parameters: law.clone(),
+            mapping,
+            store: Store::default(),
+            meter: EnergyMeter::default(),
+            force: CommandForce::new(mapping.stiffness_at_hand(law.servo_stiffness)),
+            last: Vector3::zeros(),
+            command: None,
+        }
+    }
+}
+
+impl Follower for TdpaFollower {
+    fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
+        let own = &self.parameters;
+        let live = self.mapping.live(input.connected, input.received);
+        let contact = input.contact_force.unwrap_or([0.0; 3]);
+        let contact = self.mapping.contact_at_hand(contact);
+        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
+        let command = self.command.or(tip);
+        let lead = command
+            .zip(tip)
+            .map_or(Vector3::zeros(), |(command, tip)| command - tip);
+        let force = self.force.step(dt, contact, lead);
+        let mean = -0.5 * (force + self.last);
+        self.last = force;
+        self.meter.step(mean.into(), command.map(Into::into));
+        self.store
+            .port(self.meter.energy(), 1.0 - own.promised_share);
+        if let Some(received) = live {
+            self.store.promise(f64::from(received.packet.energy[0]));
+        }
+        self.store.limit(own.reserve);
+        self.store.add(-self.force.take_wound());
+        let motion = live.zip(command).map(|(received, here)| {
+            let hand_velocity = vector(received.packet.vector);
+            let hand = vector(received.packet.position) + received.silence * hand_velocity;
+            let drift = shortened((hand - here) / own.drift_time, own.drift_speed);
+            let wanted = hand_velocity + drift;
+            let velocity = self
+                .force
+                .admitted(dt, wanted, self.store.level(), own.yield_speed);
+            (here + velocity * dt, velocity)
+        });
+        self.command = motion.map(|(position, _)| position);
+        let energy = promise(&self.store, energy);
+        FollowerOutput {
+            command: motion.map(|(position, velocity)| self.mapping.command(position, velocity)),
+            packet: match (input.tip, input.contact_force) {
+                (Some(tip), Some(_)) => Packet::new(tip.position, contact.into(), energy),
+                _ => Packet::empty(energy),
+            },
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.store.dissipated()
+    }
+}

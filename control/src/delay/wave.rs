@@ -1,0 +1,311 @@
+//! Wave variables, their integrals in packets, impedance matched, drift corrected.
+//!
+//! u = (b v_h + F)/√(2b) goes forward, w = (b v_s − F_s)/√(2b) comes back (Anderson and
+//! Spong 1989, "Bilateral control of teleoperators with time delay", IEEE T-AC 34;
+//! Niemeyer and Slotine 1991, "Stable adaptive teleoperation", IEEE J-OE 16; 2004,
+//! "Telemanipulation with time delays", IJRR 23), F what the hand gives into the
+//! two-port, F_s what comes out at the tip. With the hand's velocity and the
+//! tip's force as inputs:
+//!
+//! F = b v_h − √(2b) w,  u = √(2b) v_h − w.
+//!
+//! **Impedance matching** (Niemeyer and Slotine 2004). The follower ends the line with
+//! a damper b, F_s = F̂ + b v_s, so that nothing of u is sent back by itself:
+//!
+//! v_s = (√(2b) u − F̂)/(2b),  w = −F̂/√(2b),
+//!
+//! with F̂ the force of the command (`contact.rs`). The hand is no damper: it reflects what
+//! comes back. It does so through a low pass, as slow as the delay: what goes to
+//! and fro in the line is absorbed, a steady force is not.
+//!
+//! **In packets.** Integrals of u and w are sent (Niemeyer and Slotine 2004) and played
+//! out over no less time than they were gathered in: by Cauchy–Schwarz
+//! (∫u)²/2T ≤ ∫½u², so loss, jitter, reordering and duplication can only take energy
+//! away (Chopra, Berestesky, Spong 2008, "Bilateral teleoperation over unreliable
+//! communication networks", IEEE T-CST 16). The integrals are sent modulo
+//! 32 √J·√s, so that single precision holds them. What comes after an outage,
+//! or waits longer than `buffer`, is dropped and not made up for.
+//!
+//! **Drift.** What was dropped leaves the tip beside the hand's image. The position goes
+//! along in the packet, and a spring pulls the tip there through the matching damper
+//! (after Chopra, Spong, Ortega, Barabanov 2006, "On tracking performance in bilateral
+//! teleoperation", IEEE T-RO 22); against the contact only as far as the follower's store
+//! pays. So a steady contact is felt as it is, after some round trips.
+//!
+//! **What it guarantees.** Each end sends no more wave energy than waves and port
+//! have brought it, and overdraws by no more than a step, paid back first; so
+//! the two-port is passive for any delay, jitter and loss. A long line is
+//! soft at first: delay T each way acts as a spring b/T. Assumed: clocks that run
+//! equally fast (their offset changes the absorption only); the servo from command to
+//! tip is passive, up to the kinetic energy of the arm.
+
+use super::contact::CommandForce;
+use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
+use super::store::Store;
+use super::{
+    Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
+    LeaderOutput, Packet, Received, vector,
+};
+use nalgebra::Vector3;
+
+law_parameters! {
+    /// Parameters of the law. Every key may be left out.
+    Wave {
+        /// b: impedance of the line, at the hand's scale \[N·s/m\].
+        impedance = 10.0 in 0.1 .. 1000.0 "N·s/m",
+        /// Damping at the hand on top of it, which pays for what the line loses
+        /// \[N·s/m\].
+        damping = 2.0 in 0.0 .. 1000.0 "N·s/m",
+        /// Time constant of the low pass on what the hand reflects, by the delay of
+        /// what comes back: quicker changes are absorbed \[-\].
+        absorption = 1.0 in 0.0 .. 100.0 "-",
+        /// Longest time that waves wait to be played out \[s\].
+        buffer = 0.02 in 0.002 .. 1.0 "s",
+        /// Energy that an end may hold in hand; what is beyond counts as
+        /// dissipated \[J\].
+        reserve = 0.1 in 0.0 .. 1000.0 "J",
+        /// Stiffness with which the drift correction pulls the tip to the hand,
+        /// at the hand's scale; below the stiffness of the hand \[N/m\].
+        drift_stiffness = 60.0 in 0.0 .. 10000.0 "N/m",
+        /// Largest speed of the drift correction, at the hand's scale \[m/s\].
+        drift_speed = 0.05 in 0.0 .. 10.0 "m/s",
+        /// Largest speed at which the tip gives way to pay back, at the hand's
+        /// scale \[m/s\].
+        yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
+        /// Stiffness of the arm's servo at the tip \[N/m\].
+        servo_stiffness = 5000.0 in 1.0 .. 1000000.0 "N/m",
+    }
+}
+
+/// Integrals are sent modulo this [√J·√s].
+const MODULUS: f64 = 32.0;
+
+fn wrapped(own: Vector3<f64>) -> Vector3<f64> {
+    own.map(|value| value - MODULUS * (value / MODULUS).round())
+}
+
+/// The integral that an end sends.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sent(Vector3<f64>);
+
+impl Sent {
+    fn add(&mut self, wave: Vector3<f64>, dt: f64) -> [f64; 3] {
+        self.0 = wrapped(self.0 + wave * dt);
+        self.0.into()
+    }
+}
+
+/// Waves that arrived and wait to be played out.
+#[derive(Clone, Copy, Debug, Default)]
+struct Arrived {
+    clock: f64,
+    last: Option<(f64, Vector3<f64>)>,
+    integral: Vector3<f64>,
+    time: f64,
+}
+
+impl Arrived {
+    /// The wave of this step [√W].
+    fn step(&mut self, dt: f64, live: Option<Received>, buffer: f64) -> Vector3<f64> {
+        self.clock += dt;
+        let Some(received) = live else {
+            *self = Arrived {
+                clock: self.clock,
+                ..Arrived::default()
+            };
+            return Vector3::zeros();
+        };
+        if received.fresh {
+            let sent = self.clock - received.age;
+            let total = vector(received.packet.vector);
+            if let Some((before, sum)) = self.last {
+                let span = sent - before;
+                if span > 1e-6 {
+                    self.integral += wrapped(total - sum);
+                    self.time += span;
+                    self.last = Some((sent, total));
+                }
+                if self.time > buffer {
+                    self.integral *= buffer / self.time;
+                    self.time = buffer;
+                }
+            } else {
+                self.last = Some((sent, total));
+            }
+        }
+        if self.time <= 1e-9 || dt <= 0.0 {
+            return Vector3::zeros();
+        }
+        let share = (dt / self.time).min(1.0);
+        let played = share * self.integral;
+        self.integral -= played;
+        self.time -= share * self.time;
+        played / dt
+    }
+}
+
+/// The wave as far as the store can pay for it.
+fn paid(store: &mut Store, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
+    let price = 0.5 * wave.norm_squared() * dt;
+    if price <= 0.0 {
+        return Vector3::zeros();
+    }
+    let payable = price.min(store.level().max(0.0));
+    store.add(-payable);
+    (payable / price).sqrt() * wave
+}
+
+law_ends!(Wave, "wave", Passive, WaveLeader, WaveFollower);
+
+/// The leader's end: sends position of the hand and the integral of u \[√J·√s\].
+#[derive(Clone, Debug)]
+pub struct WaveLeader {
+    parameters: Wave,
+    mapping: Mapping,
+    arrived: Arrived,
+    sent: Sent,
+    store: Store,
+    fade: Fade,
+    /// What is reflected of the wave that comes back [√W].
+    reflected: Vector3<f64>,
+    position: Option<Vector3<f64>>,
+}
+
+impl WaveLeader {
+    fn new(law: &Wave) -> Self {
+        WaveLeader {
+            mapping: law.mapping(),
+            parameters: law.clone(),
+            arrived: Arrived::default(),
+            sent: Sent::default(),
+            store: Store::default(),
+            fade: Fade::default(),
+            reflected: Vector3::zeros(),
+            position: None,
+        }
+    }
+}
+
+impl Leader for WaveLeader {
+    fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
+        let own = &self.parameters;
+        let root = (2.0 * own.impedance).sqrt();
+        let live = self.mapping.live(input.connected, input.received);
+        let share = self.fade.step(dt, own.force_ramp, live.is_some());
+        let back = self.arrived.step(dt, live, own.buffer);
+        self.store.add(0.5 * back.norm_squared() * dt);
+        self.store.port(energy, 0.0);
+        self.store.limit(own.reserve);
+        let here: Option<Vector3<f64>> = input.hand.map(|hand| hand.position.into());
+        let moved = match (here, self.position) {
+            (Some(here), Some(before)) if dt > 0.0 => (here - before) / dt,
+            _ => Vector3::zeros(),
+        };
+        self.position = here;
+        let age = live.map_or(0.0, |received| received.age.max(0.0));
+        let pass = if dt > 0.0 {
+            dt / (dt + own.absorption * age)
+        } else {
+            0.0
+        };
+        self.reflected += pass * (back - self.reflected);
+        let wave = paid(&mut self.store, dt, root * moved - self.reflected);
+        let velocity = input
+            .hand
+            .map_or(Vector3::zeros(), |hand| hand.velocity.into());
+        let force = share * (root * back - own.impedance * velocity) - own.damping * velocity;
+        let integral = self.sent.add(wave, dt);
+        LeaderOutput {
+            force: force.into(),
+            packet: input.hand.map_or(Packet::empty(energy), |hand| {
+                Packet::new(hand.position, integral, energy)
+            }),
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.store.dissipated()
+    }
+}
+
+/// The follower's end: sends position of the tip and the integral of w \[√J·√s\].
+#[derive(Clone, Debug)]
+pub struct WaveFollower {
+    parameters: Wave,
+    mapping: Mapping,
+    arrived: Arrived,
+    sent: Sent,
+    store: Store,
+    /// At the command: the servo behind it is passive by itself.
+    meter: EnergyMeter,
+    force: CommandForce,
+    last: Vector3<f64>,
+    /// Hand units [m].
+    command: Option<Vector3<f64>>,
+}
+
+impl WaveFollower {
+    fn new(law: &Wave) -> Self {
+        WaveFollower {
+            mapping: law.mapping(),
+            parameters: law.clone(),
+            arrived: Arrived::default(),
+            sent: Sent::default(),
+            store: Store::default(),
+            meter: EnergyMeter::default(),
+            force: CommandForce::new(law.mapping().stiffness_at_hand(law.servo_stiffness)),
+            last: Vector3::zeros(),
+            command: None,
+        }
+    }
+}
+
+impl Follower for WaveFollower {
+    fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
+        let own = &self.parameters;
+        let b = own.impedance;
+        let root = (2.0 * b).sqrt();
+        let live = self.mapping.live(input.connected, input.received);
+        let forth = self.arrived.step(dt, live, own.buffer);
+        let contact = input.contact_force.unwrap_or([0.0; 3]);
+        let contact = self.mapping.contact_at_hand(contact);
+        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
+        let here = self.command.or(tip);
+        let lead = here
+            .zip(tip)
+            .map_or(Vector3::zeros(), |(here, tip)| here - tip);
+        let force = self.force.step(dt, contact, lead);
+        let mean = -0.5 * (force + self.last);
+        self.last = force;
+        self.meter.step(mean.into(), here.map(Into::into));
+        self.store.add(0.5 * forth.norm_squared() * dt);
+        self.store.port(self.meter.energy(), 0.0);
+        self.store.limit(own.reserve);
+        let wave = paid(&mut self.store, dt, -force / root);
+        // Implicit in the servo's spring.
+        let give = 2.0 * b + self.force.stiffness() * dt;
+        let command = live.zip(here).map(|(received, here)| {
+            let drift = vector(received.packet.position) - here;
+            let pull = shortened(own.drift_stiffness * drift, 2.0 * b * own.drift_speed);
+            let velocity = (root * forth - force + pull) / give;
+            let velocity = self
+                .force
+                .admitted(dt, velocity, self.store.level(), own.yield_speed);
+            (here + velocity * dt, velocity)
+        });
+        self.command = command.map(|(position, _)| position);
+        let integral = self.sent.add(wave, dt);
+        let packet = input.tip.map_or(Packet::empty(energy), |tip| Packet {
+            valid: input.contact_force.is_some(),
+            ..Packet::new(tip.position, integral, energy)
+        });
+        FollowerOutput {
+            command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
+            packet,
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.store.dissipated()
+    }
+}

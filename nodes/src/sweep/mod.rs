@@ -1,0 +1,25 @@
+//! Delay laws held against each other: every law over every delay, jitter,
+//! loss and environment, in simulation and virtual time.
+//!
+//! A row is one trial of [`ferntast_sim::teleoperation`]: the same laws, frames
+//! and meters as in a session, a hand with impedance, a tip behind its servo,
+//! something to touch. The same file gives the same rows, whatever the number
+//! of processors.
+
+mod config;
+mod grid;
+mod page;
+mod row;
+mod run;
+mod stable;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use config::SweepConfig;
+pub use grid::Condition;
+pub use page::{RenderError, render};
+pub use row::Row;
+pub use run::run;
+pub use stable::{LargestStable, largest_stable};
+pub use table::table;

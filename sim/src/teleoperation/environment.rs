@@ -1,0 +1,154 @@
+//! What the tip meets: a surface across x, free on the side of negative x.
+
+use serde::{Deserialize, Serialize};
+
+/// Stiffness of the bristle of friction [N/m].
+const BRISTLE: f64 = 3000.0;
+
+/// What the tip meets beyond x = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Environment {
+    /// Nothing.
+    Free,
+    /// 100 N/m.
+    SoftSpring,
+    /// 20 kN/m, 50 N·s/m.
+    HardWall,
+    /// The hard wall with Coulomb friction, μ = 0.3.
+    WallWithFriction,
+    /// 2 kN/m, 10 N·s/m, that comes up by 10 mm and goes back, twice.
+    MovingWall,
+}
+
+impl Environment {
+    /// All of them.
+    pub const ALL: [Environment; 5] = [
+        Environment::Free,
+        Environment::SoftSpring,
+        Environment::HardWall,
+        Environment::WallWithFriction,
+        Environment::MovingWall,
+    ];
+
+    /// As in configurations.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Environment::Free => "free",
+            Environment::SoftSpring => "soft_spring",
+            Environment::HardWall => "hard_wall",
+            Environment::WallWithFriction => "wall_with_friction",
+            Environment::MovingWall => "moving_wall",
+        }
+    }
+
+    /// Stiffness \[N/m\] and damping \[N·s/m\] along the normal.
+    pub const fn surface(self) -> (f64, f64) {
+        match self {
+            Environment::Free => (0.0, 0.0),
+            Environment::SoftSpring => (100.0, 0.0),
+            Environment::HardWall | Environment::WallWithFriction => (20_000.0, 50.0),
+            Environment::MovingWall => (2000.0, 10.0),
+        }
+    }
+
+    /// Coulomb coefficient \[-\].
+    pub const fn friction(self) -> f64 {
+        match self {
+            Environment::WallWithFriction => 0.3,
+            _ => 0.0,
+        }
+    }
+
+    /// Place \[m\] and velocity \[m/s\] of the surface, `time` \[s\] after it
+    /// began to move; negative before.
+    pub fn place(self, time: f64) -> (f64, f64) {
+        const PERIOD: f64 = 2.0;
+        if self != Environment::MovingWall || !(0.0..2.0 * PERIOD).contains(&time) {
+            return (0.0, 0.0);
+        }
+        let rate = std::f64::consts::TAU / PERIOD;
+        let (sine, cosine) = (rate * time).sin_cos();
+        // Towards the tip, which comes from negative x.
+        (-0.005 * (1.0 - cosine), -0.005 * rate * sine)
+    }
+}
+
+/// The surface while it is touched.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    environment: Environment,
+    /// How far the bristle of friction is bent along y [m].
+    bend: f64,
+}
+
+impl Surface {
+    pub(super) fn new(environment: Environment) -> Self {
+        Surface {
+            environment,
+            bend: 0.0,
+        }
+    }
+
+    /// Force on the tip \[N\] after `dt` \[s\] at `tip` \[m\] with `velocity`
+    /// \[m/s\]; the surface began to move `time` \[s\] ago.
+    pub(super) fn step(
+        &mut self,
+        dt: f64,
+        time: f64,
+        tip: [f64; 2],
+        velocity: [f64; 2],
+    ) -> [f64; 2] {
+        let (stiffness, damping) = self.environment.surface();
+        let (place, speed) = self.environment.place(time);
+        let depth = tip[0] - place;
+        if depth <= 0.0 || stiffness == 0.0 {
+            self.bend = 0.0;
+            return [0.0; 2];
+        }
+        // It never pulls.
+        let normal = (stiffness * depth + damping * (velocity[0] - speed)).max(0.0);
+        let limit = self.environment.friction() * normal / BRISTLE;
+        self.bend = (self.bend + velocity[1] * dt).clamp(-limit, limit);
+        [-normal, -BRISTLE * self.bend]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sliding_tip_feels_normal_force_and_coulomb_friction() {
+        let mut surface = Surface::new(Environment::WallWithFriction);
+        let mut force = [0.0; 2];
+        for _ in 0..1000 {
+            force = surface.step(1e-3, -1.0, [1e-3, 0.0], [0.0, 0.05]);
+        }
+        assert!((force[0] + 20.0).abs() < 1e-9, "{force:?}");
+        assert!((force[1] + 6.0).abs() < 1e-9, "{force:?}");
+        assert_eq!(surface.step(1e-3, -1.0, [-1e-6, 0.0], [0.0; 2]), [0.0; 2]);
+    }
+
+    #[test]
+    fn the_moving_wall_moves_as_fast_as_it_says_and_ends_where_it_began() {
+        let wall = Environment::MovingWall;
+        let step = 1e-6;
+        for k in 0..50 {
+            let time = 0.1 * f64::from(k) + 0.033;
+            let rate = (wall.place(time + step).0 - wall.place(time - step).0) / (2.0 * step);
+            assert!((rate - wall.place(time).1).abs() < 1e-6, "{time}");
+        }
+        assert!((wall.place(1.0).0 + 0.01).abs() < 1e-12);
+        assert_eq!(wall.place(4.1), (0.0, 0.0));
+        assert_eq!(wall.place(-0.1), (0.0, 0.0));
+    }
+
+    #[test]
+    fn names_are_those_of_configurations() {
+        for environment in Environment::ALL {
+            let value = toml::Value::try_from(environment).unwrap();
+            assert_eq!(value.as_str(), Some(environment.name()));
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! Two ends of a delay law with everything that is around them: a hand, two
+//! channels, a tip behind its servo, and something to touch.
+//!
+//! One trial is one task of an operator: reach, press, slide, come back
+//! ([`Trial`]); its [`Outcome`] says how law and link served. The laws are those
+//! of a session, the frames and what drops them too; so what is measured here
+//! is what the nodes run. Time is counted in ticks of 1 ms; the same trial gives
+//! the same outcome.
+//!
+//! Axes: x into the surface, y along it. Positions and forces of the outcome
+//! are at the hand's scale.
+
+mod environment;
+mod line;
+mod task;
+mod tip;
+mod watch;
+
+pub use environment::Environment;
+pub use tip::TipParameters;
+
+use crate::channel::LinkConfig;
+use crate::hand::{HandImpedance, ImpedanceParameters};
+use ferntast_control::delay::{
+    Energy, FollowerEnd, FollowerInput, Law, LeaderEnd, LeaderInput, Motion, Received,
+};
+use ferntast_control::frame::FRAME_LENGTH;
+use ferntast_model::ParameterError;
+use line::Line;
+use task::Schedule;
+use tip::Tip;
+use watch::{Tick, Watch};
+
+/// One tick \[s\].
+pub const TICK: f64 = 1e-3;
+const TICK_NS: i64 = 1_000_000;
+/// Frames are sent in every second tick: 500 Hz.
+const TICKS_A_FRAME: i64 = 2;
+/// Time of the first tick [ns].
+const START_NS: i64 = 1_000_000_000_000_000;
+/// The other end counts as connected while its newest frame is younger [s].
+const CONNECTED: f64 = 0.1;
+/// Hand and tip reach no further from the surface than this [m].
+const WORKSPACE: f64 = 0.5;
+/// Time constant of the velocities that the laws are given [s].
+const VELOCITY_FILTER: f64 = 0.005;
+
+/// What is tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// Which law, with its parameters.
+    pub law: Law,
+    /// Both directions of the link.
+    pub link: LinkConfig,
+    /// What the tip meets.
+    pub environment: Environment,
+    /// The operator's hand.
+    pub hand: ImpedanceParameters,
+    /// The arm behind its servo.
+    pub tip: TipParameters,
+    /// Of all chance.
+    pub seed: u64,
+}
+
+impl Trial {
+    /// A trial with a hand of 0.5 kg, 20 N·s/m, 300 N/m and a stiff light arm.
+    pub fn new(law: Law, link: LinkConfig, environment: Environment, seed: u64) -> Trial {
+        Trial {
+            law,
+            link,
+            environment,
+            hand: ImpedanceParameters {
+                mass: 0.5,
+                damping: 20.0,
+                stiffness: 300.0,
+            },
+            tip: TipParameters::default(),
+            seed,
+        }
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    ///
+    /// The first value of law, link or hand that is out of bounds.
+    pub fn run(&self) -> Result<Outcome, ParameterError> {
+        self.run_with(|_| {})
+    }
+
+    /// Runs it and shows each tick to `each`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Trial::run`].
+    pub fn run_with(&self, mut each: impl FnMut(&Moment)) -> Result<Outcome, ParameterError> {
+        self.law.validate()?;
+        self.link.validate()?;
+        self.hand.validate()?;
+        let (forth, back) = (
+            self.link.up.nominal_delay(FRAME_LENGTH),
+            self.link.down.nominal_delay(FRAME_LENGTH),
+        );
+        let schedule = Schedule::new(forth + back);
+        let ticks = |delay: f64| (delay / TICK).round() as usize;
+        let mut watch = Watch::new(schedule, ticks(forth), ticks(back));
+        let mut run = Run::new(self, schedule)?;
+        for k in 0..ticks(schedule.end) {
+            let moment = run.step(k as i64);
+            watch.add(&moment.tick);
+            each(&moment);
+        }
+        Ok(watch.outcome())
+    }
+}
+
+/// How a trial went. Positions and forces are at the hand's scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// The hand rests while it presses and after it came back, and the tip
+    /// with it: neither moves to and fro by 2 mm when nobody moves it.
+    pub stable: bool,
+    /// By how much hand or tip moved to and fro while they should rest \[m\].
+    pub swing: f64,
+    /// Root mean square of tip less hand as it was one delay ago, while the
+    /// tip is free \[m\].
+    pub position_rmse: f64,
+    /// Root mean square of the force on the hand less the contact's force as it
+    /// was one delay ago \[N\].
+    pub force_rmse: f64,
+    /// Hand less tip at the end \[m\].
+    pub drift: f64,
+    /// Largest force of the contact on the tip \[N\].
+    pub peak_force: f64,
+    /// Largest force on the hand \[N\].
+    pub peak_felt: f64,
+    /// Least of what entered less what left the two-port, over both ports and
+    /// at every moment; never above zero \[J\].
+    pub energy_margin: f64,
+    /// Stiffness that the hand feels while it presses by that which the tip
+    /// touches \[-\]; `None` where nothing is pressed.
+    pub transparency: Option<f64>,
+    /// Damping that the hand feels on the free way to the surface \[N·s/m\].
+    pub felt_damping: f64,
+    /// When the tip is back where it began \[s\]; `None` when it is not in time.
+    pub task_time: Option<f64>,
+}
+
+/// One tick of a trial.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    tick: Tick,
+    /// Energy at the leader's port \[J\].
+    pub leader: Energy,
+    /// Energy at the follower's port \[J\], at the tip's scale.
+    pub follower: Energy,
+}
+
+impl Moment {
+    /// Time since the start \[s\].
+    pub fn time(&self) -> f64 {
+        self.tick.time
+    }
+
+    /// Position of the hand along x and y \[m\].
+    pub fn hand(&self) -> [f64; 2] {
+        self.tick.hand
+    }
+
+    /// Position of the tip along x and y, at the hand's scale \[m\].
+    pub fn tip(&self) -> [f64; 2] {
+        self.tick.tip
+    }
+
+    /// Force on the hand \[N\].
+    pub fn felt(&self) -> [f64; 2] {
+        self.tick.felt
+    }
+
+    /// Force of the contact on the tip, at the hand's scale \[N\].
+    pub fn touched(&self) -> [f64; 2] {
+        self.tick.touched
+    }
+
+    /// Entered less left, over both ports, at the hand's scale \[J\].
+    pub fn energy(&self) -> f64 {
+        self.tick.energy
+    }
+}
+
+/// A velocity as the nodes take it from positions.
+#[derive(Clone, Copy, Debug, Default)]
+struct Filtered([f64; 2]);
+
+impl Filtered {
+    fn step(&mut self, velocity: [f64; 2]) -> [f64; 3] {
+        let share = TICK / (TICK + VELOCITY_FILTER);
+        for (own, new) in self.0.iter_mut().zip(velocity) {
+            *own += share * (new - *own);
+        }
+        [self.0[0], self.0[1], 0.0]
+    }
+}
+
+struct Run<'a> {
+    law: &'a Law,
+    schedule: Schedule,
+    leader: LeaderEnd,
+    follower: FollowerEnd,
+    up: Line,
+    down: Line,
+    hand: HandImpedance,
+    hand_velocity: Filtered,
+    tip: Tip,
+    tip_velocity: Filtered,
+    /// On the hand since the last tick [N].
+    felt: [f64; 2],
+    /// Where the tip is told to be [m].
+    command: [f64; 2],
+}
+
+impl<'a> Run<'a> {
+    fn new(trial: &'a Trial, schedule: Schedule) -> Result<Self, ParameterError> {
+        let start = schedule.start();
+        let scale = trial.law.mapping().position_scale;
+        let tip = [scale * start[0], scale * start[1]];
+        Ok(Run {
+            law: &trial.law,
+            schedule,
+            leader: trial.law.leader(),
+            follower: trial.law.follower(),
+            up: Line::new(trial.link.up.clone(), trial.seed)?,
+            down: Line::new(trial.link.down.clone(), !trial.seed)?,
+            hand: HandImpedance::new(trial.hand, start),
+            hand_velocity: Filtered::default(),
+            tip: Tip::new(trial.tip, trial.environment, tip),
+            tip_velocity: Filtered::default(),
+            felt: [0.0; 2],
+            command: tip,
+        })
+    }
+
+    fn step(&mut self, k: i64) -> Moment {
+        let time = k as f64 * TICK;
+        let now_ns = START_NS + k * TICK_NS;
+        let mapping = self.law.mapping();
+        let offset = mapping.workspace_offset;
+        let (target, target_speed) = self.schedule.target(time);
+        self.hand.step(TICK, target, target_speed, self.felt);
+        let since = time - self.schedule.wall;
+        self.tip.step(TICK, since, self.command);
+
+        let connected =
+            |received: Option<Received>| received.is_some_and(|own| own.silence <= CONNECTED);
+        let hand = self.hand.position();
+        let received = self.down.receive(now_ns);
+        let output = self.leader.step(
+            TICK,
+            &LeaderInput {
+                hand: Some(Motion {
+                    position: [hand[0], hand[1], 0.0],
+                    velocity: self.hand_velocity.step(self.hand.velocity()),
+                }),
+                received,
+                connected: connected(received),
+            },
+        );
+        let tip = self.tip.position;
+        let received = self.up.receive(now_ns);
+        let answer = self.follower.step(
+            TICK,
+            &FollowerInput {
+                tip: Some(Motion {
+                    position: [offset[0] + tip[0], offset[1] + tip[1], offset[2]],
+                    velocity: self.tip_velocity.step(self.tip.velocity),
+                }),
+                contact_force: Some([self.tip.force[0], self.tip.force[1], 0.0]),
+                received,
+                connected: connected(received),
+            },
+        );
+        if k % TICKS_A_FRAME == 0 {
+            self.up.send(now_ns, output.packet);
+            self.down.send(now_ns, answer.packet);
+        }
+        self.felt = [output.force[0], output.force[1]];
+        if let Some(command) = answer.command {
+            for axis in 0..2 {
+                self.command[axis] =
+                    (command.position[axis] - offset[axis]).clamp(-WORKSPACE, WORKSPACE);
+            }
+        }
+        let scaled = |own: [f64; 2], scale: f64| [scale * own[0], scale * own[1]];
+        let (leader, follower) = (self.leader.energy(), self.follower.energy());
+        Moment {
+            tick: Tick {
+                time,
+                hand,
+                hand_speed: self.hand.velocity(),
+                tip: scaled(tip, 1.0 / mapping.position_scale),
+                felt: self.felt,
+                touched: scaled(self.tip.force, mapping.force_scale),
+                energy: leader.balance() + mapping.power_scale() * follower.balance(),
+            },
+            leader,
+            follower,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

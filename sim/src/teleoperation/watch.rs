@@ -1,0 +1,211 @@
+//! What is measured in a trial.
+
+use super::Outcome;
+use super::task::Schedule;
+use std::collections::VecDeque;
+
+/// A hand or tip that moves to and fro by more than this while it is watched is
+/// not at rest [m].
+const REST: f64 = 2e-3;
+/// The task is done when the tip is this near to where it began [m].
+const ARRIVED: f64 = 2e-3;
+/// A tip deeper than this counts as pressing [m].
+const TOUCH: f64 = 1e-6;
+
+/// One tick, in hand units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tick {
+    /// [s since the start]
+    pub time: f64,
+    /// Hand [m].
+    pub hand: [f64; 2],
+    /// [m/s]
+    pub hand_speed: [f64; 2],
+    /// Tip [m].
+    pub tip: [f64; 2],
+    /// On the hand [N].
+    pub felt: [f64; 2],
+    /// Of the contact on the tip [N].
+    pub touched: [f64; 2],
+    /// Entered less left, over both ports [J].
+    pub energy: f64,
+}
+
+/// To and fro of something that should rest. One way alone is no swing: it may
+/// creep to where it belongs.
+#[derive(Clone, Copy, Debug)]
+struct Swing {
+    low: f64,
+    high: f64,
+    rise: f64,
+    fall: f64,
+}
+
+impl Swing {
+    const NONE: Swing = Swing {
+        low: f64::INFINITY,
+        high: f64::NEG_INFINITY,
+        rise: 0.0,
+        fall: 0.0,
+    };
+
+    fn add(&mut self, value: f64) {
+        self.low = self.low.min(value);
+        self.high = self.high.max(value);
+        self.rise = self.rise.max(value - self.low);
+        self.fall = self.fall.max(self.high - value);
+    }
+
+    fn width(&self) -> f64 {
+        self.rise.min(self.fall)
+    }
+}
+
+/// Root of the mean square.
+#[derive(Clone, Copy, Debug, Default)]
+struct Square {
+    sum: f64,
+    count: f64,
+}
+
+impl Square {
+    fn add(&mut self, difference: [f64; 2]) {
+        self.sum += difference[0] * difference[0] + difference[1] * difference[1];
+        self.count += 1.0;
+    }
+
+    fn root(&self) -> f64 {
+        if self.count > 0.0 {
+            (self.sum / self.count).sqrt()
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Gathers an [`Outcome`] tick by tick.
+#[derive(Debug)]
+pub(super) struct Watch {
+    schedule: Schedule,
+    /// Hand as it was a way forward ago, contact force as it was a way back ago.
+    hands: VecDeque<[f64; 2]>,
+    forces: VecDeque<[f64; 2]>,
+    position: Square,
+    force: Square,
+    rest: [Swing; 6],
+    margin: f64,
+    peak: f64,
+    peak_felt: f64,
+    /// Sums while pressing: felt, hand's depth, touched, tip's depth.
+    pressed: [f64; 4],
+    /// Sums on the free way: F·v and v².
+    free: [f64; 2],
+    away_until: Option<f64>,
+    drift: f64,
+    finite: bool,
+}
+
+impl Watch {
+    /// `forth` and `back`: delay each way [ticks].
+    pub(super) fn new(schedule: Schedule, forth: usize, back: usize) -> Self {
+        Watch {
+            schedule,
+            hands: std::iter::repeat_n(schedule.start(), forth).collect(),
+            forces: std::iter::repeat_n([0.0; 2], back).collect(),
+            position: Square::default(),
+            force: Square::default(),
+            rest: [Swing::NONE; 6],
+            margin: 0.0,
+            peak: 0.0,
+            peak_felt: 0.0,
+            pressed: [0.0; 4],
+            free: [0.0; 2],
+            away_until: None,
+            drift: 0.0,
+            finite: true,
+        }
+    }
+
+    pub(super) fn add(&mut self, tick: &Tick) {
+        let values = tick.hand.iter().chain(&tick.tip).chain(&tick.felt);
+        self.finite &= values.chain(&tick.touched).all(|value| value.is_finite());
+        self.hands.push_back(tick.hand);
+        self.forces.push_back(tick.touched);
+        let sent = self.hands.pop_front().unwrap_or(tick.hand);
+        let met = self.forces.pop_front().unwrap_or(tick.touched);
+        let difference = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
+        let touching = tick.touched != [0.0; 2];
+        if !touching {
+            self.position.add(difference(sent, tick.tip));
+        }
+        self.force.add(difference(met, tick.felt));
+        self.margin = self.margin.min(tick.energy);
+        self.peak = self.peak.max(tick.touched[0].hypot(tick.touched[1]));
+        self.peak_felt = self.peak_felt.max(tick.felt[0].hypot(tick.felt[1]));
+        let Schedule {
+            wall,
+            watch_pressed,
+            retreat,
+            watch_free,
+            ..
+        } = self.schedule;
+        let watched = if (watch_pressed..retreat).contains(&tick.time) {
+            if tick.tip[0] > TOUCH {
+                let depths = [-tick.felt[0], tick.hand[0], -tick.touched[0], tick.tip[0]];
+                for (sum, value) in self.pressed.iter_mut().zip(depths) {
+                    *sum += value;
+                }
+            }
+            Some(0)
+        } else if tick.time >= watch_free {
+            Some(3)
+        } else {
+            None
+        };
+        if let Some(first) = watched {
+            let values = [tick.hand[0], tick.tip[0], tick.hand[1]];
+            for (range, value) in self.rest[first..].iter_mut().zip(values) {
+                range.add(value);
+            }
+        }
+        if tick.time < wall && !touching && met == [0.0; 2] {
+            let power = -(0..2)
+                .map(|axis| tick.felt[axis] * tick.hand_speed[axis])
+                .sum::<f64>();
+            self.free[0] += power;
+            self.free[1] += tick.hand_speed[0].powi(2) + tick.hand_speed[1].powi(2);
+        }
+        let start = self.schedule.start();
+        if (tick.tip[0] - start[0]).hypot(tick.tip[1] - start[1]) > ARRIVED {
+            self.away_until = Some(tick.time);
+        }
+        self.drift = (tick.hand[0] - tick.tip[0]).hypot(tick.hand[1] - tick.tip[1]);
+    }
+
+    /// After the last tick.
+    pub(super) fn outcome(&self) -> Outcome {
+        let swing = self.rest.iter().map(Swing::width).fold(0.0, f64::max);
+        let [felt, hand, touched, tip] = self.pressed;
+        let done = self
+            .away_until
+            .filter(|time| *time > self.schedule.retreat && *time < self.schedule.watch_free);
+        Outcome {
+            stable: self.finite && swing < REST,
+            swing,
+            position_rmse: self.position.root(),
+            force_rmse: self.force.root(),
+            drift: self.drift,
+            peak_force: self.peak,
+            peak_felt: self.peak_felt,
+            energy_margin: self.margin,
+            transparency: (hand > 0.0 && touched > 0.0 && tip > 0.0)
+                .then(|| (felt / hand) / (touched / tip)),
+            felt_damping: if self.free[1] > 0.0 {
+                self.free[0] / self.free[1]
+            } else {
+                0.0
+            },
+            task_time: done,
+        }
+    }
+}
