@@ -37,6 +37,7 @@ pub mod sensor_zero;
 pub mod setup;
 pub mod signals;
 pub mod simulate;
+pub mod stated_filter;
 pub mod statistics;
 pub mod validation;
 
@@ -47,6 +48,7 @@ pub use diagnose::{Diagnosis, Suspect, Verdict, diagnose};
 pub use effects::EffectDescription;
 pub use error::{ExpressionError, PrepareError};
 pub use proposal::Proposal;
+pub use stated_filter::StatedFilter;
 
 /// Every effect that a model can be given by id, and that [`diagnose()`] tries.
 #[must_use]
