@@ -84,6 +84,7 @@ pub fn recording(seed: u64, torque: impl Fn(&State) -> f64) -> Dataset {
         sessions,
         held_out: Vec::new(),
         joint: JointType::Revolute,
+        filter: None,
     }
 }
 

@@ -175,7 +175,7 @@ fn difference(rows: &SessionDesign, coefficients: &nalgebra::DVector<f64>) -> Ve
 fn torque_rms(setup: &Setup, sessions: &[Signals]) -> f64 {
     let (mut square, mut count) = (0.0, 0_usize);
     for signals in sessions {
-        let smooth = crate::filter::Kernel::gaussian(setup.filters.column, 0, signals.period);
+        let smooth = setup.filters.column_kernel(signals.period);
         for value in smooth.at_samples(&signals.raw.motor_torque, &signals.rows) {
             square += value * value;
             count += 1;
@@ -194,7 +194,7 @@ fn series(
     let rows: Vec<usize> = signals.all_rows.iter().step_by(step).copied().collect();
     let design = SessionDesign::new(setup, signals, &rows, 1);
     let residual = difference(&design, coefficients);
-    let smooth = crate::filter::Kernel::gaussian(setup.filters.column, 0, signals.period);
+    let smooth = setup.filters.column_kernel(signals.period);
     let measured = smooth.at_samples(&signals.raw.motor_torque, &rows);
     Series {
         session: signals.name.clone(),

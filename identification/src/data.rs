@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::stated_filter::StatedFilter;
+
 /// One session: channels sampled together at a uniform period, no gap inside.
 ///
 /// All channels are as long as `position`. Joint quantities are on the joint
@@ -53,6 +55,9 @@ pub struct Dataset {
     pub held_out: Vec<Session>,
     /// Kind of joint.
     pub joint: JointType,
+    /// Filters stated by the user; `None`: chosen from the noise.
+    #[serde(default)]
+    pub filter: Option<StatedFilter>,
 }
 
 /// Inertia J in τ_m = J q̈ + τ + τ_F.

@@ -151,6 +151,7 @@ pub fn diagnose(
     family::order(&design, &mut passing);
     reversal::settle(&setup, &mut passing, &trial.candidates);
     sensor_zero::settle(&setup, &mut passing);
+    family::encompass(&setup, &design, &mut passing);
     let maps = maps(&setup, &design);
     if passing.is_empty() {
         passing.extend(named_by_map(&trial, &maps));

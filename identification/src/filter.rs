@@ -109,6 +109,12 @@ impl Kernel {
         Self { taps }
     }
 
+    /// With these weights, the middle one for the sample itself.
+    #[must_use]
+    pub(crate) fn of_taps(taps: Vec<f64>) -> Self {
+        Self { taps }
+    }
+
     /// Samples on either side that a Gaussian of `sigma` \[samples\] looks at.
     #[must_use]
     pub fn reach(sigma: f64) -> usize {

@@ -38,6 +38,7 @@ pub mod sensor_zero;
 pub mod setup;
 pub mod signals;
 pub mod simulate;
+pub mod stated_filter;
 pub mod statistics;
 pub mod twin;
 pub mod validation;
@@ -49,6 +50,7 @@ pub use diagnose::{Diagnosis, Suspect, Verdict, diagnose};
 pub use effects::EffectDescription;
 pub use error::{ExpressionError, PrepareError};
 pub use proposal::Proposal;
+pub use stated_filter::StatedFilter;
 
 /// Every effect that a model can be given by id, and that [`diagnose()`] tries.
 #[must_use]

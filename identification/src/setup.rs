@@ -44,7 +44,10 @@ impl Setup {
     /// See [`PrepareError`].
     pub fn new(dataset: &Dataset, spec: &ModelSpec) -> Result<Self, PrepareError> {
         check(dataset, spec)?;
-        let filters = Filters::choose(&dataset.sessions);
+        let filters = match dataset.filter {
+            Some(filter) => Filters::stated(filter, &dataset.sessions),
+            None => Filters::choose(&dataset.sessions),
+        };
         let mut sessions: Vec<Signals> = dataset
             .sessions
             .iter()

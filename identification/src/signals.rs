@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::data::Session;
 use crate::effects::Point;
 use crate::filter::{Kernel, noise_level, thin};
+use crate::stated_filter::StatedFilter;
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
 /// Sampling faster than this \[s\] tells nothing more about friction.
@@ -31,6 +32,8 @@ pub struct Filters {
     pub rest_speed: f64,
     /// Travel \[rad\] after a reversal that is dropped.
     pub travel: f64,
+    /// What takes the place of all this, if the user states it.
+    pub stated: Option<StatedFilter>,
 }
 
 /// A session at its working rate, and the rows of the regression.
@@ -109,6 +112,27 @@ impl Filters {
             stride: (2.0 * column).round() as usize,
             rest_speed: f64::max(NEAR_REST * top, 4.0 * noise * slope.noise_gain().sqrt()),
             travel: TRAVEL_AFTER_REVERSAL * range,
+            stated: None,
+        }
+    }
+
+    /// The filters that the user states, at the rate of the recording.
+    #[must_use]
+    pub fn stated(filter: StatedFilter, sessions: &[Session]) -> Self {
+        Self {
+            thinning: 1,
+            stride: filter.decimation.max(1),
+            stated: Some(filter),
+            ..Self::choose(sessions)
+        }
+    }
+
+    /// Smoothing of a column that is not differentiated.
+    #[must_use]
+    pub fn column_kernel(&self, period: f64) -> Kernel {
+        match &self.stated {
+            Some(filter) => filter.column(),
+            None => Kernel::gaussian(self.column, 0, period),
         }
     }
 }
@@ -137,7 +161,10 @@ impl Signals {
             ),
         };
         let kernel = |order| Kernel::sharp(filters.state, order, period);
-        let (smooth, slope, curvature) = (kernel(0), kernel(1), kernel(2));
+        let [smooth, slope, curvature] = match &filters.stated {
+            Some(filter) => filter.states(period),
+            None => [kernel(0), kernel(1), kernel(2)],
+        };
         let temperature = session.temperature.as_ref().map(|s| thin(s));
         let days = session.start / SECONDS_PER_DAY;
         let points: Vec<Point> = (0..raw.position.len())
@@ -157,7 +184,10 @@ impl Signals {
             .collect();
         let reach = Kernel::reach(filters.column);
         let last = points.len().saturating_sub(reach);
-        let all_rows: Vec<usize> = (reach..last).step_by(filters.stride.max(1)).collect();
+        let all_rows: Vec<usize> = match &filters.stated {
+            Some(filter) => filter.rows(points.len()),
+            None => (reach..last).step_by(filters.stride.max(1)).collect(),
+        };
         let sliding = sliding(&points, filters);
         let mut bad = vec![0_usize; points.len() + 1];
         for at in 0..points.len() {
@@ -166,7 +196,7 @@ impl Signals {
         let rows = all_rows
             .iter()
             .copied()
-            .filter(|at| bad[at + reach] == bad[at - reach])
+            .filter(|at| filters.stated.is_some() || bad[at + reach] == bad[at - reach])
             .collect();
         Self {
             name: session.name.clone(),

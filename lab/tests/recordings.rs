@@ -42,6 +42,22 @@ impl Bench {
     /// An MCAP file with `/js` (stamped) and `/temperature` (not stamped) once
     /// every ten samples.
     fn mcap(&self, name: &str, compression: Option<Compression>, samples: &[Sample]) {
+        // The recorder's clock never runs backwards.
+        let mut latest = 0;
+        self.logged(name, compression, samples, |stamp| {
+            latest = stamp.max(latest);
+            latest
+        });
+    }
+
+    /// The same, with log times by `clock` from the stamps.
+    fn logged(
+        &self,
+        name: &str,
+        compression: Option<Compression>,
+        samples: &[Sample],
+        mut clock: impl FnMut(i64) -> i64,
+    ) {
         let file = fs::File::create(self.path(name)).unwrap();
         let options = WriteOptions::new()
             .compression(compression)
@@ -55,12 +71,10 @@ impl Bench {
         };
         let js = channel("/js", "sensor_msgs/msg/JointState", JOINT_STATE);
         let temperature = channel("/temperature", "std_msgs/msg/Float32", "float32 data\n");
-        let mut latest = 0;
         for (number, &(stamp, position, effort)) in samples.iter().enumerate() {
-            // The recorder's clock never runs backwards.
-            latest = stamp.max(latest);
+            let logged = clock(stamp);
             let mut write = |channel_id: u16, data: &[u8]| {
-                let time = u64::try_from(latest).unwrap() + 7;
+                let time = u64::try_from(logged).unwrap() + 7;
                 let header = MessageHeader {
                     channel_id,
                     sequence: 0,
@@ -294,6 +308,8 @@ fn every_fault_has_its_message() {
     bench.mcap("short.mcap", None, &good[..30]);
     bench.mcap("nan.mcap", None, &with(&|s| s[99].1 = f64::NAN));
     bench.mcap("back.mcap", None, &with(&|s| s[150].0 -= 20_000_000));
+    let back = with(&|s| s[150].0 -= 20_000_000);
+    bench.logged("log_back.mcap", None, &back, |stamp| stamp);
     bench.mcap(
         "still.mcap",
         None,
@@ -319,6 +335,10 @@ fn every_fault_has_its_message() {
         ("nan.mcap", "signals.position is NaN in "),
         (
             "back.mcap",
+            "time runs backwards by 0.019 s under signals.position in ",
+        ),
+        (
+            "log_back.mcap",
             "time runs backwards by 0.019 s under signals.position in ",
         ),
         ("still.mcap", "signals.position is 0.5 in every sample"),

@@ -41,6 +41,8 @@ pub(super) enum BlockKind {
 /// log time in the order of the file.
 #[derive(Debug, Default)]
 pub(super) struct DecodedBlock {
+    /// Where it begins in its file \[byte\].
+    offset: u64,
     bytes: Vec<u8>,
     pub(super) entries: Vec<Entry>,
 }
@@ -54,6 +56,12 @@ pub(super) struct Entry {
 }
 
 impl DecodedBlock {
+    /// Where the message stands in its file: ascending in the order in which
+    /// messages were written.
+    pub(super) fn place(&self, entry: &Entry) -> (u64, usize) {
+        (self.offset, entry.start)
+    }
+
     /// The message's CDR.
     pub(super) fn data(&self, entry: &Entry) -> &[u8] {
         self.bytes.get(entry.start..entry.end).unwrap_or_default()
@@ -132,6 +140,7 @@ pub(super) fn decode(
         }
     }
     .map_err(fault)?;
+    decoded.offset = block.offset;
     decoded.entries.sort_by_key(|entry| entry.header.log_time);
     Ok(decoded)
 }
@@ -151,7 +160,11 @@ fn plain(bytes: Vec<u8>, definitions: &mut Vec<Record<'static>>) -> Result<Decod
     if records.left() > 0 {
         return Err("a record is longer than the data it stands in".to_owned());
     }
-    Ok(DecodedBlock { bytes, entries })
+    Ok(DecodedBlock {
+        offset: 0,
+        bytes,
+        entries,
+    })
 }
 
 /// Unpacks the chunk record in `bytes`; with `check` its checksum is compared

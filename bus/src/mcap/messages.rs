@@ -25,7 +25,23 @@ pub struct RawMessage {
     found: Found,
 }
 
+/// Where a message stands in its recording: ascending in the order in which
+/// messages were written, which need not be that of their log times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    file: usize,
+    within: (u64, usize),
+}
+
 impl RawMessage {
+    /// Where it stands in its recording.
+    pub fn place(&self) -> Place {
+        Place {
+            file: self.found.file,
+            within: self.found.block.place(&self.found.entry),
+        }
+    }
+
     /// The message, encoded as the topic says.
     pub fn bytes(&self) -> &[u8] {
         self.found.block.data(&self.found.entry)

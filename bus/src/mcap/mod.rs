@@ -47,7 +47,7 @@ pub use error::{
     SelectTopicError, WriteBagError,
 };
 pub use info::{BagInfo, Break, FileInfo, Gap, TopicInfo, info};
-pub use messages::{Messages, RawMessage, RawMessages, TypedMessage};
+pub use messages::{Messages, Place, RawMessage, RawMessages, TypedMessage};
 pub use options::{BagOptions, BagSummary, ChunkCompression, TopicCount};
 pub use publisher::McapPublisher;
 pub use qos::QosProfile;

@@ -44,8 +44,8 @@ pub fn filtered(
 ) -> Vec<Vec<f64>> {
     let kernel = |order| Kernel::gaussian(filters.column, order, signals.period);
     let exact = effect.exact();
-    if exact.is_empty() {
-        let smooth = kernel(0);
+    if exact.is_empty() || filters.stated.is_some() {
+        let smooth = filters.column_kernel(signals.period);
         return working(signals, effect, shape)
             .iter()
             .map(|column| smooth.at_samples(column, rows))
@@ -76,11 +76,17 @@ pub fn filtered(
 /// y = τ_m − τ − J q̈ at rows `rows`, through the column filter.
 #[must_use]
 pub fn measured(signals: &Signals, filters: &Filters, inertia: f64, rows: &[usize]) -> Vec<f64> {
-    let kernel = |order| Kernel::gaussian(filters.column, order, signals.period);
-    let smooth = kernel(0);
+    let smooth = filters.column_kernel(signals.period);
     let torque = smooth.at_samples(&signals.raw.motor_torque, rows);
     let load = smooth.at_samples(&signals.raw.joint_torque, rows);
-    let acceleration = kernel(2).at_samples(&signals.raw.position, rows);
+    let acceleration = match filters.stated {
+        Some(_) => {
+            let all: Vec<f64> = signals.points.iter().map(|p| p.acceleration).collect();
+            smooth.at_samples(&all, rows)
+        }
+        None => Kernel::gaussian(filters.column, 2, signals.period)
+            .at_samples(&signals.raw.position, rows),
+    };
     torque
         .iter()
         .zip(load)

@@ -13,6 +13,9 @@ pub(super) struct File {
     #[serde(default)]
     pub(super) held_out: Paths,
     #[serde(default)]
+    pub(super) unloaded: Paths,
+    pub(super) filter: Option<ferntast_identification::StatedFilter>,
+    #[serde(default)]
     pub(super) joint: Joint,
     pub(super) signals: SignalsTable,
     pub(super) model: Model,

@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! recording = "run.mcap"        # or a list: rosbag2 directories, .mcap, .csv
+//! unloaded = ["free.mcap"]      # optional: fitted too, run free of load: shows the torque sensor's zero
 //! held_out = ["other.mcap"]     # optional: never fitted
 //! [joint]
 //! type = "revolute"             # or "prismatic": m, N, kg
@@ -12,6 +13,9 @@
 //! temperature = "/temperature.temperature"    # degC, optional
 //! time = "t_s"                  # CSV only: the column that is time [s]
 //! extra.supply = "/power.voltage"             # anything else
+//! [filter]                      # optional: as published, else chosen from the noise
+//! butterworth_hz = 100          # position, order 4, forwards and backwards
+//! decimation = 10               # of every column, after its Chebyshev low-pass
 //! [model]
 //! inertia = 1.1                 # kg m², or { fit = true }
 //! gear_ratio = 160              # optional
@@ -36,7 +40,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, Term};
+use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, StatedFilter, Term};
 
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
@@ -60,6 +64,10 @@ pub struct Experiment {
     pub recordings: Vec<PathBuf>,
     /// What is never fitted.
     pub held_out: Vec<PathBuf>,
+    /// What is fitted too, and was run free of load.
+    pub unloaded: Vec<PathBuf>,
+    /// Filters stated in the file.
+    pub filter: Option<StatedFilter>,
     /// Kind of joint.
     pub joint: JointType,
     /// Where the signals are.
@@ -170,12 +178,31 @@ impl Experiment {
             title: title.to_string_lossy().into_owned(),
             recordings,
             held_out: resolve(file.held_out),
+            unloaded: resolve(file.unloaded),
+            filter: filter(file.filter, &refuse)?,
             joint: file.joint.kind,
             signals: signals(file.signals, &refuse)?,
             model: model(file.model, &refuse)?,
             lineage: file.lineage,
         })
     }
+}
+
+fn filter(
+    stated: Option<StatedFilter>,
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<Option<StatedFilter>, ExperimentError> {
+    if let Some(filter) = &stated {
+        if !(0.01..=1e5).contains(&filter.butterworth_hz) {
+            let reason = format!("{} is outside 0.01 … 100000 Hz", filter.butterworth_hz);
+            return Err(refuse("filter.butterworth_hz", reason));
+        }
+        if !(1..=100).contains(&filter.decimation) {
+            let reason = format!("{} is outside 1 … 100", filter.decimation);
+            return Err(refuse("filter.decimation", reason));
+        }
+    }
+    Ok(stated)
 }
 
 fn signals(

@@ -57,6 +57,8 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
             title: format!("joint_{}", index + 1),
             recordings: vec![path.to_owned()],
             held_out: Vec::new(),
+            unloaded: Vec::new(),
+            filter: None,
             joint: JointType::Revolute,
             signals: Signals {
                 position: format!("{measured}.position[{index}]"),

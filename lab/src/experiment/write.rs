@@ -65,7 +65,7 @@ pub fn write_child(
         .parse()
         .map_err(|error: toml_edit::TomlError| again(error.to_string()))?;
     let (from, to) = (folder_of(parent_path), folder_of(output));
-    for key in ["recording", "held_out"] {
+    for key in ["recording", "held_out", "unloaded"] {
         if let Some(item) = document.get_mut(key) {
             turn_paths(item, &from, &to);
         }
@@ -76,7 +76,12 @@ pub fn write_child(
         .and_then(Item::as_array_mut)
         .ok_or_else(|| again("model.effects is no list".to_owned()))?;
     push(effects, &added.effect);
-    let all: Vec<PathBuf> = [&parent.recordings[..], &parent.held_out[..]].concat();
+    let all: Vec<PathBuf> = [
+        &parent.recordings[..],
+        &parent.unloaded[..],
+        &parent.held_out[..],
+    ]
+    .concat();
     let hash = data_hash(&all).map_err(|(path, source)| WriteError::Data { path, source })?;
     document.insert(
         "lineage",

@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use ferntast_bus::mcap::{BagReader, BagTopic, RawMessage};
+use ferntast_bus::mcap::{BagReader, BagTopic, Place, RawMessage};
 use ferntast_msgs::Time;
 
 use super::{LoadError, Series, Wanted};
@@ -27,9 +27,9 @@ struct Sample {
     /// Header stamp \[ns\]; 0 without one.
     stamp: i64,
     log: i64,
+    /// Where its message stands in the recording.
+    place: Place,
     value: f64,
-    /// Which message of the topic, from 1.
-    message: usize,
 }
 
 /// How to read one type of messages.
@@ -270,8 +270,8 @@ impl TypeReader {
             signal.samples.push(Sample {
                 stamp,
                 log: message.log_time.nanos(),
+                place: message.place(),
                 value: functions.fold(value, |value, function| function.apply(value)),
-                message: signal.messages,
             });
         }
         Ok(())
@@ -319,17 +319,20 @@ fn of_two_clocks(signals: &[Signal]) -> bool {
     signals.iter().any(|signal| !stamped(signal)) && signals.iter().any(apart)
 }
 
-fn series(file: &Path, signal: Signal, by_log_time: bool) -> Result<Series, LoadError> {
+fn series(file: &Path, mut signal: Signal, by_log_time: bool) -> Result<Series, LoadError> {
+    // Messages come in the order of their log times. In the order in which they
+    // were written it shows whether time ever ran backwards.
+    signal.samples.sort_by_key(|sample| sample.place);
     let stamped = !by_log_time && signal.samples.iter().any(|sample| sample.stamp != 0);
     let mut series = Series::new(&signal.name, file);
-    for sample in &signal.samples {
+    for (index, sample) in signal.samples.iter().enumerate() {
         let time = match (stamped, sample.stamp) {
             // A stamp of zero says that the message is not valid.
             (true, 0) => continue,
             (true, stamp) => stamp,
             (false, _) => sample.log,
         };
-        series.push(time, sample.value, || format!("message {}", sample.message))?;
+        series.push(time, sample.value, || format!("message {}", index + 1))?;
     }
     Ok(series)
 }

@@ -99,7 +99,8 @@ pub struct Loaded {
 /// [`LoadError`]: one for each way in which recordings can be of no use.
 pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
     for path in &experiment.held_out {
-        if experiment.recordings.iter().any(|other| same(other, path)) {
+        let fitted = experiment.recordings.iter().chain(&experiment.unloaded);
+        if fitted.into_iter().any(|other| same(other, path)) {
             return Err(LoadError::Both { path: path.clone() });
         }
     }
@@ -116,6 +117,11 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
         Ok(sessions)
     };
     let mut sessions = read(&experiment.recordings)?;
+    let mut unloaded = read(&experiment.unloaded)?;
+    unloaded
+        .iter_mut()
+        .for_each(|session| session.unloaded = true);
+    sessions.append(&mut unloaded);
     let mut held_out = read(&experiment.held_out)?;
     sessions.sort_by(|a, b| a.start.total_cmp(&b.start));
     held_out.sort_by(|a, b| a.start.total_cmp(&b.start));
@@ -129,6 +135,7 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
             sessions,
             held_out,
             joint: experiment.joint,
+            filter: experiment.filter,
         },
         notes,
     })

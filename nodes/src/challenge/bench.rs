@@ -12,6 +12,7 @@ pub fn dataset(recording: &BenchRecording) -> Dataset {
             .collect(),
         held_out: Vec::new(),
         joint: JointType::Revolute,
+        filter: None,
     }
 }
 

@@ -57,7 +57,7 @@ fn answer(case: &Case) -> Result<Given, String> {
         }
         None => None,
     };
-    let confused = family.iter().any(|name| !is_right(name));
+    let confused = !family.is_empty() && named.iter().chain(&family).any(|name| !is_right(name));
     let holds_truth = named.iter().chain(&family).any(is_right);
     let proposal = match (first, diagnosis.suspected.first()) {
         (Some(own), _) if confused && holds_truth => Some((own.next_experiment, true)),
