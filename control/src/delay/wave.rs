@@ -144,15 +144,19 @@ impl Arrived {
     }
 }
 
+/// For how long the store has to be able to pay for a wave that it lets pass
+/// whole [s]; a wave that it cannot pay fades within that time.
+const HORIZON: f64 = 0.02;
+
 /// The wave as far as the store can pay for it.
 fn paid(store: &mut Store, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
-    let price = 0.5 * wave.norm_squared() * dt;
-    if price <= 0.0 {
+    let power = 0.5 * wave.norm_squared();
+    if power <= 0.0 {
         return Vector3::zeros();
     }
-    let payable = price.min(store.level().max(0.0));
-    store.add(-payable);
-    (payable / price).sqrt() * wave
+    let share = (store.level().max(0.0) / (power * HORIZON.max(dt))).min(1.0);
+    store.add(-share * power * dt);
+    share.sqrt() * wave
 }
 
 law_ends!(Wave, "wave", Passive, WaveLeader, WaveFollower);

@@ -27,10 +27,14 @@ const LISTEN: Duration = Duration::from_secs(3);
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let loaded = arguments.scenario.load()?;
     let section = &loaded.scenario.gateway;
-    let mut endpoints = vec![TcpEndpoint {
-        purpose: "link".to_owned(),
-        address: loaded.scenario.link.endpoint.clone(),
-    }];
+    let mut endpoints = Vec::new();
+    let link = &loaded.scenario.link.endpoint;
+    if !link.starts_with("udp/") {
+        endpoints.push(TcpEndpoint {
+            purpose: "link".to_owned(),
+            address: link.clone(),
+        });
+    }
     if let Some(router) = section.own_router() {
         endpoints.push(TcpEndpoint {
             purpose: "Zenoh router".to_owned(),

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use super::{Row, largest_stable};
 
 /// For each law: the largest stable round trip on each environment, without
-/// chance and with any; then what it costs, as medians of its stable trials.
+/// chance and with any; then in how many trials it was stable and did the task
+/// in time, and what it costs, as medians of its stable trials.
 pub fn table(rows: &[Row]) -> String {
     let stable = largest_stable(rows);
     let laws = distinct(stable.iter().map(|own| own.law));
@@ -33,9 +34,10 @@ pub fn table(rows: &[Row]) -> String {
     text.push_str("\n\nmedian of the stable trials\n");
     let _ = write!(
         text,
-        "{:20} {:>9} {:>10} {:>9} {:>9} {:>9} {:>12} {:>8} {:>14}",
+        "{:20} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9} {:>12} {:>8} {:>14}",
         "law",
         "stable",
+        "done",
         "pos [mm]",
         "force [N]",
         "drift[mm]",
@@ -50,11 +52,13 @@ pub fn table(rows: &[Row]) -> String {
         let of = |value: &dyn Fn(&Row) -> Option<f64>| {
             median(good.iter().filter_map(|row| value(row)).collect())
         };
+        let done = own.iter().filter(|row| row.task_time_s.is_some()).count();
         let gain = own.iter().map(|row| -row.energy_margin).fold(0.0, f64::max);
         let _ = write!(
             text,
-            "\n{law:20} {:>9} {:>10} {:>9} {:>9} {:>9} {:>12} {:>8} {:>14}",
+            "\n{law:20} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9} {:>12} {:>8} {:>14}",
             format!("{}/{}", good.len(), own.len()),
+            format!("{done}/{}", own.len()),
             number(of(&|row| Some(row.position_rmse_m * 1e3)), 2),
             number(of(&|row| Some(row.force_rmse)), 2),
             number(of(&|row| Some(row.drift_m * 1e3)), 2),

@@ -32,7 +32,7 @@ function showLargest(page, data, laws, environments) {
 function showMaps(page, rows, laws, environments) {
   const delays = distinct(rows, "rtt_ms").sort((a, b) => a - b);
   const part = section(page, "Stability",
-    "Stable trials of all jitters, losses and seeds, over the round trip [ms].");
+    "Stable trials of all jitters, losses and seeds, over the round trip [ms]. ○: the task was not done in time in any of them.");
   for (const environment of environments) {
     const panel = make(part, "div", null, "panel");
     make(panel, "h3", environment);
@@ -42,7 +42,8 @@ function showMaps(page, rows, laws, environments) {
       const kind = good === own.length ? "all" : good === 0 ? "none" : "some";
       const worst = Math.max(...own.map((r) => (r.swing_m === null ? Infinity : r.swing_m)));
       const hint = own.filter((r) => !r.stable).map((r) => `unstable: jitter ${r.jitter_ms} ms, loss ${r.loss}, seed ${r.seed}`).join("\n");
-      return { text: good + "/" + own.length, kind, hint: `largest swing ${brief(worst * 1e3)} mm` + (hint ? "\n" + hint : "") };
+      const idle = own.every((r) => r.task_time_s === null);
+      return { text: good + "/" + own.length + (idle ? " ○" : ""), kind, hint: `largest swing ${brief(worst * 1e3)} mm` + (hint ? "\n" + hint : "") };
     }, "map");
   }
 }
