@@ -5,8 +5,9 @@ use std::marker::PhantomData;
 use crate::{
     Message,
     sample::{
-        AuthoritySample, ContactStateSample, HealthSample, JointSample, LinkStatusSample,
-        OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample, WrenchSample,
+        AuthoritySample, ContactStateSample, HealthSample, JointSample, LinkCommandSample,
+        LinkStatusSample, OperatingStateSample, PoseSample, RecorderCommandSample,
+        RecorderStatusSample, StateCommandSample, TemperatureSample, WrenchSample,
     },
 };
 
@@ -118,6 +119,12 @@ topics! {
     LINK_STATUS: LinkStatusSample = "/link/status", Stream;
     /// The link as the arm's end measures it.
     LINK_FOLLOWER_STATUS: LinkStatusSample = "/link/follower_status", Stream;
+    /// What the emulated channel is to do.
+    LINK_COMMAND: LinkCommandSample = "/link/command", State;
+    /// What the recorder is to do; marks.
+    RECORDER_COMMAND: RecorderCommandSample = "/recorder/command", Event;
+    /// What the recorder does.
+    RECORDER_STATUS: RecorderStatusSample = "/recorder/status", State;
     /// Rate, age and faults of every node.
     DIAGNOSTICS: HealthSample = "/diagnostics", Event;
 }

@@ -90,9 +90,12 @@ properties! {
     contact_state: ContactStateSample;
     health: HealthSample;
     joint: JointSample;
+    link_command: LinkCommandSample;
     link_status: LinkStatusSample;
     operating_state: OperatingStateSample;
     pose: PoseSample;
+    recorder_command: RecorderCommandSample;
+    recorder_status: RecorderStatusSample;
     state_command: StateCommandSample;
     temperature: TemperatureSample;
     wrench: WrenchSample;
