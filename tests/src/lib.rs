@@ -5,12 +5,14 @@
 //! What is missing (program, data, Python environment) panics with a text that
 //! says how to mend it: a test that cannot run has failed.
 
+mod browser;
 mod deadline;
 mod domain;
 mod places;
 mod process;
 mod session;
 
+pub use browser::Browser;
 pub use deadline::{wait_for, wait_until};
 pub use domain::Domain;
 pub use places::{data, ferntast, peer, python, root};

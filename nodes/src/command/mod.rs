@@ -8,6 +8,7 @@ mod lab;
 mod lockstep;
 mod node;
 mod output;
+mod page_options;
 mod play;
 mod replay;
 mod scenario_options;

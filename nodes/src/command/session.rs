@@ -2,7 +2,9 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
+use super::{
+    Failure, output::print_json, page_options::PageOptions, scenario_options::ScenarioOptions,
+};
 use crate::{
     session::{self, SessionContext, SessionOptions},
     stop,
@@ -15,7 +17,7 @@ use crate::{
     ferntast session --hand crtk               # your own CRTK master on ROS 2 drives it\n  \
     ferntast session --hand hand.csv --link relay_600ms\n  \
     ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n\n\
-    While it runs: `ros2 topic list`, `ferntast state follower resume` (re-arm after a hold). Ctrl-C ends it cleanly.")]
+    While it runs: the page that it names, `ros2 topic list`, `ferntast state follower resume` (re-arm after a hold). Ctrl-C ends it cleanly.")]
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,
@@ -31,6 +33,13 @@ pub struct Arguments {
     /// Name of the session; two at once on one host need two names.
     #[arg(long, default_value = "default", value_name = "NAME")]
     session: String,
+
+    /// Serve no page.
+    #[arg(long)]
+    no_console: bool,
+
+    #[command(flatten)]
+    page: PageOptions,
 
     /// Do not arm at the start: wait for `ferntast state follower enable` or a CRTK client.
     #[arg(long)]
@@ -49,6 +58,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.bag = arguments.record;
+    let page = arguments.page.console()?;
+    context.console = (!arguments.no_console).then_some(page);
     let stop = stop::on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {
         duration: arguments.duration,

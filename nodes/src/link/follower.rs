@@ -8,7 +8,7 @@ use ferntast_control::{
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Fault, Frame, Level, LinkEnd, LinkStatusSample, OperatingStateSample,
+        ContactStateSample, Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample, OperatingStateSample,
         PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
@@ -28,6 +28,7 @@ ports! {
         measured_cf: Newest<WrenchSample> = FOLLOWER_MEASURED_CF,
         contact_state: Newest<ContactStateSample> = FOLLOWER_CONTACT_STATE,
         operating_state: Newest<OperatingStateSample> = FOLLOWER_OPERATING_STATE,
+        link_command: Newest<LinkCommandSample> = LINK_COMMAND,
     }
     extra { frames: FrameInput, }
     /// What the follower end gives.
@@ -68,6 +69,10 @@ impl LinkNode for FollowerLinkNode {
 
     fn frame(output: &FollowerLinkOutput) -> &FrameOutput {
         &output.frame
+    }
+
+    fn command(input: &FollowerLinkInput) -> Option<&LinkCommandSample> {
+        input.link_command.fresh()
     }
 }
 

@@ -7,7 +7,7 @@ use ferntast_control::{
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, Frame, Level, LinkEnd, LinkStatusSample, OperatingStateSample, PoseSample,
+        Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample, OperatingStateSample, PoseSample,
         StateCommand, StateCommandSample, WrenchSample,
     },
 };
@@ -27,6 +27,7 @@ ports! {
         setpoint_cp: Newest<PoseSample> = LEADER_SETPOINT_CP,
         operating_state: Newest<OperatingStateSample> = LEADER_OPERATING_STATE,
         state_command: Batch<StateCommandSample> = LEADER_STATE_COMMAND,
+        link_command: Newest<LinkCommandSample> = LINK_COMMAND,
     }
     extra { frames: FrameInput, }
     /// What the leader end gives.
@@ -67,6 +68,10 @@ impl LinkNode for LeaderLinkNode {
 
     fn frame(output: &LeaderLinkOutput) -> &FrameOutput {
         &output.frame
+    }
+
+    fn command(input: &LeaderLinkInput) -> Option<&LinkCommandSample> {
+        input.link_command.fresh()
     }
 }
 
