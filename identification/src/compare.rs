@@ -81,6 +81,12 @@ pub struct Series {
     pub position: Vec<f64>,
     /// q̇ \[rad/s\].
     pub velocity: Vec<f64>,
+    /// q̈ \[rad/s²\].
+    pub acceleration: Vec<f64>,
+    /// τ, measured or modelled \[Nm\]; empty where nothing is known of it.
+    pub load: Vec<f64>,
+    /// Temperature \[degC\]; empty where there is none.
+    pub temperature: Vec<f64>,
     /// Measured τ_m, filtered \[Nm\].
     pub measured: Vec<f64>,
     /// Modelled τ_m \[Nm\].
@@ -93,11 +99,25 @@ pub struct Series {
 ///
 /// See [`PrepareError`].
 pub fn compare(dataset: &Dataset, spec: &ModelSpec) -> Result<Comparison, PrepareError> {
-    let setup = Setup::new(dataset, spec)?;
-    Ok(compare_setup(dataset, &setup))
+    compare_drawing(dataset, spec, DRAWN)
 }
 
-pub(crate) fn compare_setup(dataset: &Dataset, setup: &Setup) -> Comparison {
+/// As [`compare()`], with up to `most` points of each session in
+/// [`Comparison::series`].
+///
+/// # Errors
+///
+/// See [`PrepareError`].
+pub fn compare_drawing(
+    dataset: &Dataset,
+    spec: &ModelSpec,
+    most: usize,
+) -> Result<Comparison, PrepareError> {
+    let setup = Setup::new(dataset, spec)?;
+    Ok(compare_setup(dataset, &setup, most))
+}
+
+pub(crate) fn compare_setup(dataset: &Dataset, setup: &Setup, most: usize) -> Comparison {
     let design = Design::new(setup);
     let fitted = fit(setup, &design);
     let shown: &[Signals] = if setup.held_out.is_empty() {
@@ -145,12 +165,12 @@ pub(crate) fn compare_setup(dataset: &Dataset, setup: &Setup) -> Comparison {
         series: setup
             .sessions
             .iter()
-            .map(|s| series(setup, s, false, &fitted.coefficients))
+            .map(|s| series(setup, s, false, most, &fitted.coefficients))
             .chain(
                 setup
                     .held_out
                     .iter()
-                    .map(|s| series(setup, s, true, &fitted.coefficients)),
+                    .map(|s| series(setup, s, true, most, &fitted.coefficients)),
             )
             .collect(),
         parameters: fitted.parameters,
@@ -188,10 +208,13 @@ fn series(
     setup: &Setup,
     signals: &Signals,
     held_out: bool,
+    most: usize,
     coefficients: &nalgebra::DVector<f64>,
 ) -> Series {
-    let step = signals.all_rows.len().div_ceil(DRAWN).max(1);
-    let rows: Vec<usize> = signals.all_rows.iter().step_by(step).copied().collect();
+    let first = signals.all_rows.first().copied().unwrap_or(0);
+    let end = signals.all_rows.last().map_or(0, |last| last + 1);
+    let step = end.saturating_sub(first).div_ceil(most.max(1)).max(1);
+    let rows: Vec<usize> = (first..end).step_by(step).collect();
     let design = SessionDesign::new(setup, signals, &rows, 1);
     let residual = difference(&design, coefficients);
     let smooth = setup.filters.column_kernel(signals.period);
@@ -202,6 +225,21 @@ fn series(
         time: rows.iter().map(|at| signals.time(*at)).collect(),
         position: rows.iter().map(|at| signals.points[*at].position).collect(),
         velocity: rows.iter().map(|at| signals.points[*at].velocity).collect(),
+        acceleration: rows
+            .iter()
+            .map(|at| signals.points[*at].acceleration)
+            .collect(),
+        load: match setup.facts.loaded {
+            true => rows.iter().map(|at| signals.points[*at].load).collect(),
+            false => Vec::new(),
+        },
+        temperature: match setup.facts.temperature {
+            true => rows
+                .iter()
+                .map(|at| signals.points[*at].temperature + setup.facts.reference_temperature)
+                .collect(),
+            false => Vec::new(),
+        },
         modelled: measured.iter().zip(&residual).map(|(m, r)| m - r).collect(),
         measured,
     }

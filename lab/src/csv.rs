@@ -120,17 +120,59 @@ pub fn read_file(
     read(std::io::BufReader::new(file), path, time, wanted)
 }
 
+/// The names of the file's columns.
+///
+/// # Errors
+///
+/// [`CsvError`].
+pub fn column_names(path: &Path) -> Result<Vec<String>, CsvError> {
+    let file = std::fs::File::open(path).map_err(|source| CsvError::Open {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(open(std::io::BufReader::new(file), path)?.1)
+}
+
 /// The same from anything that can be read; `path` is for messages.
 ///
 /// # Errors
 ///
 /// [`CsvError`].
 pub fn read(
-    mut source: impl Read,
+    source: impl Read,
     path: &Path,
     time: Option<&str>,
     wanted: &[(&str, &str)],
 ) -> Result<Columns, CsvError> {
+    let format = |error: csv::Error| CsvError::Format {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    };
+    let (mut reader, names) = open(source, path)?;
+    let columns = Selected::new(path, &names, time, wanted)?;
+    let mut read = Columns {
+        time: Vec::new(),
+        values: vec![Vec::new(); wanted.len()],
+        lines: Vec::new(),
+    };
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(format)? {
+        let line = record.position().map_or(0, csv::Position::line);
+        columns.take(path, &record, line, &mut read)?;
+    }
+    match read.time.is_empty() {
+        true => Err(CsvError::Empty {
+            path: path.to_owned(),
+        }),
+        false => Ok(read),
+    }
+}
+
+/// A reader behind the line of names, and these names.
+fn open<R: Read>(
+    mut source: R,
+    path: &Path,
+) -> Result<(csv::Reader<impl Read + use<R>>, Vec<String>), CsvError> {
     let format = |error: csv::Error| CsvError::Format {
         path: path.to_owned(),
         reason: error.to_string(),
@@ -157,7 +199,7 @@ pub fn read(
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .delimiter(delimiter(&head))
-        .from_reader(head.chain(source));
+        .from_reader(std::io::Cursor::new(head).chain(source));
     let names: Vec<String> = reader
         .headers()
         .map_err(format)?
@@ -169,23 +211,7 @@ pub fn read(
             path: path.to_owned(),
         });
     }
-    let columns = Selected::new(path, &names, time, wanted)?;
-    let mut read = Columns {
-        time: Vec::new(),
-        values: vec![Vec::new(); wanted.len()],
-        lines: Vec::new(),
-    };
-    let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(format)? {
-        let line = record.position().map_or(0, csv::Position::line);
-        columns.take(path, &record, line, &mut read)?;
-    }
-    match read.time.is_empty() {
-        true => Err(CsvError::Empty {
-            path: path.to_owned(),
-        }),
-        false => Ok(read),
-    }
+    Ok((reader, names))
 }
 
 /// Comma, semicolon or tabulator: which the first line with content has most.

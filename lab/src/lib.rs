@@ -6,7 +6,8 @@
 //! * [`recording`]: signals put on one time base and cut into sessions,
 //! * [`experiment`]: the file that names recordings, signals and model, and
 //!   how one came out of another,
-//! * [`report`]: a page to look at.
+//! * [`report`]: a page to look at,
+//! * [`work`]: what is done with all that, by command line and page alike.
 //!
 //! What the data say about a model is told by `ferntast-identification`.
 
@@ -16,6 +17,7 @@ pub mod message_path;
 pub mod recording;
 pub mod report;
 pub mod schema;
+pub mod work;
 
 /// Of `names` those most like `wanted`, the most alike first; at most 12.
 pub(crate) fn nearest<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {

@@ -6,7 +6,8 @@ use crate::{
     Message,
     sample::{
         AuthoritySample, ContactStateSample, HealthSample, JointSample, LawCommandSample,
-        LinkStatusSample, OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample,
+        LinkCommandSample, LinkStatusSample, OperatingStateSample, PoseSample,
+        RecorderCommandSample, RecorderStatusSample, StateCommandSample, TemperatureSample,
         WrenchSample,
     },
 };
@@ -121,6 +122,12 @@ topics! {
     LINK_FOLLOWER_STATUS: LinkStatusSample = "/link/follower_status", Stream;
     /// Command to the link: another delay law.
     LINK_LAW_COMMAND: LawCommandSample = "/link/law_command", Event;
+    /// What the emulated channel is to do.
+    LINK_COMMAND: LinkCommandSample = "/link/command", State;
+    /// What the recorder is to do; marks.
+    RECORDER_COMMAND: RecorderCommandSample = "/recorder/command", Event;
+    /// What the recorder does.
+    RECORDER_STATUS: RecorderStatusSample = "/recorder/status", State;
     /// Rate, age and faults of every node.
     DIAGNOSTICS: HealthSample = "/diagnostics", Event;
 }

@@ -46,6 +46,8 @@ fn comes_in(topic: &str, crtk: bool) -> bool {
         || topic == topics::LEADER_STATE_COMMAND.name
         || topic == topics::LINK_LAW_COMMAND.name
         || topic == topics::FOLLOWER_SERVO_JP.name
+        || topic == topics::LINK_COMMAND.name
+        || topic == topics::RECORDER_COMMAND.name
         || (crtk && topic == topics::LEADER_MEASURED_CP.name)
 }
 
@@ -99,6 +101,8 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         every,
         |_, _| {},
     )?;
+    carrier.add(topics::LINK_COMMAND, &ros, bus, stamp, every, |_, _| {})?;
+    carrier.add(topics::RECORDER_COMMAND, &ros, bus, stamp, every, |_, _| {})?;
     if crtk {
         carrier.add(
             topics::LEADER_MEASURED_CP,

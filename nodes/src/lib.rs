@@ -6,6 +6,7 @@ pub mod challenge;
 pub mod clock;
 pub mod command;
 pub mod config;
+mod console;
 pub mod doctor;
 pub mod estimator;
 mod gateway;

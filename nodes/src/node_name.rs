@@ -27,6 +27,8 @@ pub enum NodeName {
     Recorder,
     /// Puts a recording back on the topics.
     Player,
+    /// Serves the page.
+    Console,
 }
 
 impl NodeName {
@@ -42,6 +44,7 @@ impl NodeName {
             NodeName::Gateway => "gateway",
             NodeName::Recorder => "recorder",
             NodeName::Player => "player",
+            NodeName::Console => "console",
         }
     }
 }

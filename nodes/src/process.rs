@@ -17,6 +17,7 @@ use crate::{
     arm::{ArmNode, ArmPorts},
     clock::Clock,
     config::ConfigError,
+    console,
     estimator::{EstimatorNode, EstimatorPorts},
     gateway,
     link::{
@@ -52,6 +53,9 @@ pub enum ProcessError {
     /// The configuration cannot be used.
     #[error(transparent)]
     Config(#[from] ConfigError),
+    /// The page cannot be served.
+    #[error(transparent)]
+    Page(#[from] ferntast_console::ServerError),
     /// A recording is needed and none is named.
     #[error("no recording is named: give --bag DIR")]
     NoBag,
@@ -172,7 +176,9 @@ pub fn run(
     let scenario = &loaded.scenario;
     let session = session_number(&context.session);
     let standing = match name {
-        NodeName::Gateway | NodeName::Recorder | NodeName::Player => Faults::default(),
+        NodeName::Gateway | NodeName::Recorder | NodeName::Player | NodeName::Console => {
+            Faults::default()
+        }
         _ => around.request_realtime(),
     };
     match name {
@@ -227,5 +233,6 @@ pub fn run(
         NodeName::Gateway => gateway::run(&around),
         NodeName::Recorder => recorder::run(&around),
         NodeName::Player => player::run(&around),
+        NodeName::Console => console::run(&around),
     }
 }

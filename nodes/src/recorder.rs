@@ -1,9 +1,15 @@
-//! The recorder: writes every topic into a rosbag2 directory.
+//! The recorder: writes every topic into a rosbag2 directory, from the start
+//! of the session or when `/recorder/command` says so.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
-use ferntast_bus::{Bus, McapBus, SharedMemoryBus, mcap::BagOptions};
-use ferntast_msgs::sample::{Fault, Level};
+use chrono::DateTime;
+use ferntast_bus::{Bus, Depth, McapBus, SharedMemoryBus, mcap::BagOptions};
+use ferntast_msgs::{
+    Text, Time,
+    sample::{Fault, Level, RecorderAction, RecorderStatusSample},
+    topics,
+};
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
@@ -14,6 +20,8 @@ use crate::{
 
 /// The recorder looks this often \[ns\].
 const PERIOD_NANOS: i64 = 10_000_000;
+/// How often it tells what it does \[ns\].
+const STATUS_NANOS: i64 = 500_000_000;
 
 /// Opens a recording for writing, with what is needed to run it again.
 ///
@@ -37,40 +45,137 @@ pub fn folder(bag: &Path, generation: u32) -> PathBuf {
     bag.with_file_name(name)
 }
 
-/// Runs the recorder until it is told to stop; closes the recording.
-///
-/// # Errors
-///
-/// The recording cannot be made, a topic not opened; the recording cannot be closed.
-pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
-    let bag = around.context.bag.as_deref().ok_or(ProcessError::NoBag)?;
-    let path = folder(bag, around.generation);
-    let recording = create(
-        &path,
-        super::lockstep::bag_options(&around.context.loaded, "session"),
-    )?;
-    let to = Bus::Mcap(recording.clone());
+/// The folder that a command names: relative, and not up; without a name one
+/// named after the time.
+fn asked_for(label: &str, now: Time) -> Option<PathBuf> {
+    if label.is_empty() {
+        let time = DateTime::from_timestamp_nanos(now.nanos());
+        return Some(PathBuf::from(format!(
+            "recordings/{}",
+            time.format("%Y-%m-%d_%H-%M-%S")
+        )));
+    }
+    let path = Path::new(label);
+    let within = path
+        .components()
+        .all(|part| matches!(part, Component::Normal(_)));
+    within.then(|| path.to_owned())
+}
+
+/// A recording that is being written.
+struct Recording {
+    folder: PathBuf,
+    bag: McapBus,
+}
+
+fn begin(
+    around: &Surroundings,
+    relay: &mut Relay,
+    folder: PathBuf,
+) -> Result<Recording, ProcessError> {
+    let options = super::lockstep::bag_options(&around.context.loaded, "session");
+    let bag = create(&folder, options)?;
+    let to = Bus::Mcap(bag.clone());
     let mut carrier = Carrier::default();
     carrier.add_topics(&around.bus, &to, Stamp::Received, |_, delivery| {
         Carry::Every {
             queue: SharedMemoryBus::max_queue(delivery),
         }
     })?;
-    let mut relay = Relay::new(around, PERIOD_NANOS)?;
     relay.begin(carrier);
+    Ok(Recording { folder, bag })
+}
+
+fn finish(recording: Recording) -> Result<(), ProcessError> {
+    let Recording { folder, bag } = recording;
+    bag.finish()
+        .map(|_| ())
+        .map_err(|error| ProcessError::Broken(format!("{}: {error}", folder.display())))
+}
+
+/// Runs the recorder until it is told to stop; closes the recording.
+///
+/// # Errors
+///
+/// The session's recording cannot be made, a topic not opened; a recording
+/// cannot be closed.
+pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
+    let bus = &around.bus;
+    let mut commands =
+        bus.subscriber(topics::RECORDER_COMMAND, Depth::Queue(topics::EVENT_QUEUE))?;
+    let mut statuses = bus.publisher(topics::RECORDER_STATUS)?;
+    let mut relay = Relay::new(around, PERIOD_NANOS)?;
+    let mut recording = match &around.context.bag {
+        Some(bag) => Some(begin(around, &mut relay, folder(bag, around.generation))?),
+        None => None,
+    };
+    let mut status = RecorderStatusSample::idle(around.clock.now());
+    let mut trouble = Text::<96>::EMPTY;
+    let mut due = Time::INVALID;
     pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
-        relay.round(wake.now, wake, |health, failed| {
+        let now = wake.now;
+        while let Some(received) = commands.next(now) {
+            let command = received.message;
+            let outcome = match command.action {
+                RecorderAction::START if recording.is_none() => {
+                    match asked_for(command.label.as_str(), now) {
+                        Some(folder) => begin(around, &mut relay, folder)
+                            .map(|begun| recording = Some(begun))
+                            .map_err(Text::display),
+                        None => Err(Text::new(
+                            "/recorder/command: the folder must be relative, without ..",
+                        )),
+                    }
+                }
+                RecorderAction::STOP => match recording.take() {
+                    Some(ended) => {
+                        relay.begin(Carrier::default());
+                        finish(ended).map_err(Text::display)
+                    }
+                    None => Ok(()),
+                },
+                _ => Ok(()),
+            };
+            trouble = outcome.err().unwrap_or_default();
+            due = now;
+        }
+        relay.round(now, wake, |health, failed| {
             if health.lost > 0 {
                 health.raise(Fault::RecordingLost, Level::WARN);
             }
-            if failed > 0 {
+            if failed > 0 || !trouble.is_empty() {
                 health.raise(Fault::RecordingFailed, Level::ERROR);
+                health.message = trouble;
             }
         });
+        if let Some(recording) = &recording {
+            status.folder = Text::new(&recording.folder.to_string_lossy());
+            status.messages = relay.carried();
+        }
+        if now >= due {
+            due = now.plus_nanos(STATUS_NANOS);
+            status.stamp = now;
+            status.recording = u8::from(recording.is_some());
+            // What cannot be said now is said half a second later.
+            let _ = statuses.publish(now, &status);
+        }
     });
     relay.end(around.clock.now());
-    recording
-        .finish()
-        .map(|_| ())
-        .map_err(|error| ProcessError::Broken(format!("{}: {error}", path.display())))
+    recording.map_or(Ok(()), finish)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_below_the_sessions_own() {
+        let now = Time::from_nanos(1_111_658_400_000_000_000);
+        let named = |label| asked_for(label, now).map(|path| path.display().to_string());
+        assert_eq!(named(""), Some("recordings/2005-03-24_10-00-00".to_owned()));
+        assert_eq!(named("recordings/x"), Some("recordings/x".to_owned()));
+        for label in ["/tmp/x", "../x", "a/../../x"] {
+            assert_eq!(named(label), None, "{label}");
+        }
+    }
 }

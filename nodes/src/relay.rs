@@ -19,6 +19,8 @@ use crate::{
 pub struct Relay {
     carrier: Carrier,
     watch: InputWatch,
+    /// Messages that went over.
+    carried: u64,
     /// Messages that could not be sent on.
     failed: u64,
     meter: HealthMeter,
@@ -35,6 +37,7 @@ impl Relay {
         Ok(Relay {
             carrier: Carrier::default(),
             watch: InputWatch::default(),
+            carried: 0,
             failed: 0,
             meter: around.meter(period_nanos, Faults::default()),
             diagnostics: around.bus.publisher(topics::DIAGNOSTICS)?,
@@ -45,14 +48,22 @@ impl Relay {
     pub fn begin(&mut self, carrier: Carrier) {
         self.carrier = carrier;
         self.watch = InputWatch::default();
+        self.carried = 0;
         self.failed = 0;
+    }
+
+    /// Messages that went over since it began to carry what it carries.
+    pub fn carried(&self) -> u64 {
+        self.carried
     }
 
     /// One round: carries what is visible at `at`, and tells how it went.
     /// `judge` may raise faults; it is given the health and the number of
     /// messages that could not be sent on.
     pub fn round(&mut self, at: Time, wake: Wake, judge: impl FnOnce(&mut NodeHealth, u64)) {
-        self.failed += self.carrier.carry(at).failed;
+        let carried = self.carrier.carry(at);
+        self.carried += carried.messages;
+        self.failed += carried.failed;
         let mut health = NodeHealth {
             lost: self.failed,
             ..NodeHealth::default()

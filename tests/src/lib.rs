@@ -5,6 +5,7 @@
 //! What is missing (program, data, Python environment) panics with a text that
 //! says how to mend it: a test that cannot run has failed.
 
+mod browser;
 mod deadline;
 mod domain;
 mod hosts;
@@ -12,6 +13,7 @@ mod places;
 mod process;
 mod session;
 
+pub use browser::Browser;
 pub use deadline::{wait_for, wait_until};
 pub use domain::Domain;
 pub use hosts::{Host, TwoHosts};

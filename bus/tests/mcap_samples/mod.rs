@@ -9,9 +9,10 @@ use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, HealthSample, JointFields,
-        JointSample, LawCommandSample, Level, LinkEnd, LinkStatusSample, OperatingState,
-        OperatingStateSample, PoseSample, RefusedFrames, StateCommand, StateCommandSample,
-        TemperatureSample, WrenchSample,
+        JointSample, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
+        OperatingState, OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
+        RecorderStatusSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
+        WrenchSample,
     },
     topics::{self, Topic, Visitor},
 };
@@ -33,6 +34,9 @@ pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
         .or_else(|| pick(authority(k, stamp)))
         .or_else(|| pick(link_status(k, stamp)))
         .or_else(|| pick(health(k, stamp)))
+        .or_else(|| pick(link_command(x, stamp)))
+        .or_else(|| pick(recorder_command(stamp)))
+        .or_else(|| pick(recorder_status(k, stamp)))
 }
 
 fn pick<M: Message, T: Message>(value: T) -> Option<M> {
@@ -181,6 +185,28 @@ fn health(k: u32, stamp: Time) -> HealthSample {
         process: 4321,
         level: Level::WARN,
         reserved: [0; 3],
+    }
+}
+
+fn link_command(x: f64, stamp: Time) -> LinkCommandSample {
+    LinkCommandSample {
+        stamp,
+        round_trip: 0.5 + x,
+        jitter: 0.125,
+        loss: 0.25,
+    }
+}
+
+fn recorder_command(stamp: Time) -> RecorderCommandSample {
+    RecorderCommandSample::new(stamp, RecorderAction::MARK, "second contact")
+}
+
+fn recorder_status(k: u32, stamp: Time) -> RecorderStatusSample {
+    RecorderStatusSample {
+        messages: u64::from(k),
+        folder: Text::new("recordings/first"),
+        recording: 1,
+        ..RecorderStatusSample::idle(stamp)
     }
 }
 

@@ -180,6 +180,11 @@ impl Master {
         &self.authority
     }
 
+    /// Nobody holds the authority from now on: the next valid hand takes it.
+    pub fn release_authority(&mut self) {
+        self.authority.release();
+    }
+
     /// Hand commands refused since the start.
     pub fn refusals(&self) -> HandRefusalCounts {
         self.refusals

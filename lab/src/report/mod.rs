@@ -4,11 +4,13 @@
 //! Long curves are thinned out to what a screen can show: of every stretch
 //! the smallest and the largest value stay, so that no peak is lost.
 
+mod assemble;
 mod data;
 #[cfg(test)]
 mod tests;
 mod thin;
 
+pub use assemble::{assemble, significant};
 pub use data::{
     Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap, Trace,
     Verdict, Window,

@@ -49,7 +49,10 @@ texts! {
     "crtk_msgs/msg/StringStamped": "standard/crtk_msgs/msg/StringStamped.msg";
     "ferntast_msgs/msg/Authority": "msg/Authority.msg";
     "ferntast_msgs/msg/ContactState": "msg/ContactState.msg";
+    "ferntast_msgs/msg/LinkCommand": "msg/LinkCommand.msg";
     "ferntast_msgs/msg/LinkStatus": "msg/LinkStatus.msg";
+    "ferntast_msgs/msg/RecorderCommand": "msg/RecorderCommand.msg";
+    "ferntast_msgs/msg/RecorderStatus": "msg/RecorderStatus.msg";
 }
 
 /// Full names (`package/msg/Type`) of the interfaces that are built in.

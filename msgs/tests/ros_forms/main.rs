@@ -77,7 +77,10 @@ fn every_struct_has_the_fields_of_its_definition() {
         crtk_msgs::StringStamped,
         own::Authority,
         own::ContactState,
+        own::LinkCommand,
         own::LinkStatus,
+        own::RecorderCommand,
+        own::RecorderStatus,
     );
     assert_eq!(seen, interface::names().collect::<Vec<_>>());
 }

@@ -91,9 +91,12 @@ properties! {
     health: HealthSample;
     joint: JointSample;
     law_command: LawCommandSample;
+    link_command: LinkCommandSample;
     link_status: LinkStatusSample;
     operating_state: OperatingStateSample;
     pose: PoseSample;
+    recorder_command: RecorderCommandSample;
+    recorder_status: RecorderStatusSample;
     state_command: StateCommandSample;
     temperature: TemperatureSample;
     wrench: WrenchSample;

@@ -5,7 +5,9 @@ use ferntast_msgs::{
         builtin_interfaces::Time,
         crtk_msgs,
         diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue},
-        ferntast_msgs::{Authority, ContactState, LinkStatus},
+        ferntast_msgs::{
+            Authority, ContactState, LinkCommand, LinkStatus, RecorderCommand, RecorderStatus,
+        },
         geometry_msgs::{Pose, PoseStamped, Wrench, WrenchStamped},
         sensor_msgs::{JointState, Temperature},
         std_msgs::Header,
@@ -209,4 +211,38 @@ pub fn health() -> impl Strategy<Value = DiagnosticArray> {
         },
     );
     (header(), vec(status, 0..3)).prop_map(|(header, status)| DiagnosticArray { header, status })
+}
+
+/// Commands to the channel.
+pub fn link_command() -> impl Strategy<Value = LinkCommand> {
+    (header(), any::<f64>(), any::<f64>(), any::<f64>()).prop_map(
+        |(header, round_trip, jitter, loss)| LinkCommand {
+            header,
+            round_trip,
+            jitter,
+            loss,
+        },
+    )
+}
+
+/// Commands to the recorder.
+pub fn recorder_command() -> impl Strategy<Value = RecorderCommand> {
+    let action = prop_oneof!["start|stop|mark", any::<String>()];
+    (header(), action, any::<String>()).prop_map(|(header, action, label)| RecorderCommand {
+        header,
+        action,
+        label,
+    })
+}
+
+/// What the recorder does.
+pub fn recorder_status() -> impl Strategy<Value = RecorderStatus> {
+    (header(), any::<bool>(), any::<String>(), any::<u64>()).prop_map(
+        |(header, recording, folder, messages)| RecorderStatus {
+            header,
+            recording,
+            folder,
+            messages,
+        },
+    )
 }

@@ -254,3 +254,39 @@ pub fn health() -> impl Strategy<Value = HealthSample> {
             },
         )
 }
+
+/// Commands to the channel.
+pub fn link_command() -> impl Strategy<Value = LinkCommandSample> {
+    (time(), finite(), finite(), finite()).prop_map(|(stamp, round_trip, jitter, loss)| {
+        LinkCommandSample {
+            stamp,
+            round_trip,
+            jitter,
+            loss,
+        }
+    })
+}
+
+/// Commands to the recorder.
+pub fn recorder_command() -> impl Strategy<Value = RecorderCommandSample> {
+    let action = prop::sample::select(RecorderAction::ALL.as_slice());
+    (time(), action, text()).prop_map(|(stamp, action, label)| RecorderCommandSample {
+        stamp,
+        label,
+        action,
+        reserved: [0; 7],
+    })
+}
+
+/// What the recorder does.
+pub fn recorder_status() -> impl Strategy<Value = RecorderStatusSample> {
+    (time(), any::<u64>(), text(), 0..2u8).prop_map(|(stamp, messages, folder, recording)| {
+        RecorderStatusSample {
+            stamp,
+            messages,
+            folder,
+            recording,
+            reserved: [0; 7],
+        }
+    })
+}

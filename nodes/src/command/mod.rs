@@ -9,6 +9,7 @@ mod link;
 mod lockstep;
 mod node;
 mod output;
+mod page_options;
 mod play;
 mod replay;
 mod scenario_options;

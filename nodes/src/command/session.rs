@@ -2,7 +2,9 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
+use super::{
+    Failure, output::print_json, page_options::PageOptions, scenario_options::ScenarioOptions,
+};
 use crate::{
     session::{self, SessionContext, SessionOptions},
     stop,
@@ -16,7 +18,8 @@ use crate::{
     ferntast session --hand hand.csv --link relay_600ms\n  \
     ferntast session --scenario relay --law tdpa
     ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n\n\
-    While it runs: `ros2 topic list`, `ferntast state follower resume` (re-arm after a hold),\n`ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
+    While it runs: the page that it names, `ros2 topic list`, `ferntast state follower resume`
+(re-arm after a hold), `ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,
@@ -32,6 +35,13 @@ pub struct Arguments {
     /// Name of the session; two at once on one host need two names.
     #[arg(long, default_value = "default", value_name = "NAME")]
     session: String,
+
+    /// Serve no page.
+    #[arg(long)]
+    no_console: bool,
+
+    #[command(flatten)]
+    page: PageOptions,
 
     /// Do not arm at the start: wait for `ferntast state follower enable` or a CRTK client.
     #[arg(long)]
@@ -50,6 +60,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.bag = arguments.record;
+    let page = arguments.page.console()?;
+    context.console = (!arguments.no_console).then_some(page);
     let stop = stop::on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {
         duration: arguments.duration,

@@ -9,8 +9,8 @@ use ferntast_control::{
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Fault, Frame, Level, LinkEnd, LinkStatusSample, OperatingStateSample,
-        PoseSample, StateCommand, StateCommandSample, WrenchSample,
+        ContactStateSample, Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
+        OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
 
@@ -29,6 +29,7 @@ ports! {
         measured_cf: Newest<WrenchSample> = FOLLOWER_MEASURED_CF,
         contact_state: Newest<ContactStateSample> = FOLLOWER_CONTACT_STATE,
         operating_state: Newest<OperatingStateSample> = FOLLOWER_OPERATING_STATE,
+        link_command: Newest<LinkCommandSample> = LINK_COMMAND,
     }
     extra { frames: FrameInput, }
     /// What the follower end gives.
@@ -67,6 +68,10 @@ impl LinkNode for FollowerLinkNode {
 
     fn frame(output: &FollowerLinkOutput) -> &FrameOutput {
         &output.frame
+    }
+
+    fn command(input: &FollowerLinkInput) -> Option<&LinkCommandSample> {
+        input.link_command.fresh()
     }
 }
 

@@ -7,8 +7,8 @@ use ferntast_control::{
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, Frame, LawCommandSample, Level, LinkEnd, LinkStatusSample, OperatingStateSample,
-        PoseSample, StateCommand, StateCommandSample, WrenchSample,
+        Fault, Frame, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
+        OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
 
@@ -28,6 +28,7 @@ ports! {
         operating_state: Newest<OperatingStateSample> = LEADER_OPERATING_STATE,
         state_command: Batch<StateCommandSample> = LEADER_STATE_COMMAND,
         law_command: Batch<LawCommandSample> = LINK_LAW_COMMAND,
+        link_command: Newest<LinkCommandSample> = LINK_COMMAND,
     }
     extra { frames: FrameInput, }
     /// What the leader end gives.
@@ -69,6 +70,10 @@ impl LinkNode for LeaderLinkNode {
 
     fn frame(output: &LeaderLinkOutput) -> &FrameOutput {
         &output.frame
+    }
+
+    fn command(input: &LeaderLinkInput) -> Option<&LinkCommandSample> {
+        input.link_command.fresh()
     }
 }
 

@@ -6,7 +6,7 @@ use ferntast_bus::{
 };
 use ferntast_control::frame::FRAME_LENGTH;
 use ferntast_model::ParameterError;
-use ferntast_msgs::Time;
+use ferntast_msgs::{Time, sample::LinkCommandSample};
 use ferntast_sim::channel::{Channel, ChannelConfig};
 
 use crate::node::{Node, Output, Ports};
@@ -66,6 +66,8 @@ pub trait LinkNode: Node {
     fn frames(input: &mut Self::Input) -> &mut FrameInput;
     /// The frame of an output.
     fn frame(output: &Self::Output) -> &FrameOutput;
+    /// What the channel is to do, if that was said since the last step.
+    fn command(input: &Self::Input) -> Option<&LinkCommandSample>;
 }
 
 /// The wire to the other end, with the channel that is emulated on what arrives.
@@ -92,6 +94,12 @@ impl LinkTransport {
             receiver,
             channel: Channel::new(incoming, seed)?,
         })
+    }
+
+    /// Sets the channel anew; what is out of bounds changes nothing.
+    fn obey(&mut self, command: &LinkCommandSample) {
+        let way = command.round_trip / 2.0;
+        let _ = self.channel.retune(way, command.jitter, command.loss);
     }
 
     fn read(&mut self, now: Time, input: &mut FrameInput) {
@@ -140,6 +148,9 @@ where
 
     fn read(&mut self, now: Time, input: &mut <P::Node as Node>::Input) {
         self.topics.read(now, input);
+        if let Some(command) = P::Node::command(input) {
+            self.transport.obey(command);
+        }
         self.transport.read(now, P::Node::frames(input));
     }
 

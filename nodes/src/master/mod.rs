@@ -49,8 +49,10 @@ ports! {
 /// authority, renders the reflected force.
 pub struct MasterNode {
     master: Master,
-    /// A hand of its own; without one, CRTK clients are the hand.
+    /// A hand of its own; without one, clients are the hand.
     hand: Option<Hand>,
+    /// A client took the master: the own hand has let go for good.
+    taken: bool,
     force: [f64; 3],
     last: Option<Time>,
     states: StatePublisher,
@@ -69,6 +71,7 @@ impl MasterNode {
         Ok(MasterNode {
             master: Master::new(config)?,
             hand,
+            taken: false,
             force: [0.0; 3],
             last: None,
             states: StatePublisher::default(),
@@ -156,13 +159,21 @@ impl Node for MasterNode {
 
         // The own hand moves only once the master is enabled: a script starts then.
         let running = self.master.state() != OperatingState::Disabled;
-        if let Some(hand) = &mut self.hand {
+        let client = |pose: &PoseSample| pose.source > THIS_HOST;
+        let owned = self.hand.is_some();
+        if owned && !self.taken && running && input.measured_cp.iter().any(client) {
+            self.taken = true;
+            self.master.release_authority();
+        }
+        if let Some(hand) = self.hand.as_mut().filter(|_| !self.taken) {
             let moved = hand.step(if running { dt } else { 0.0 }, self.force);
             let pose = PoseSample::at(now, Frame::LEADER_BASE, moved.position);
             self.offer(now, &pose, &mut output.health);
             output.own_hand = Some(pose);
         } else {
-            for pose in input.measured_cp.iter() {
+            // What the own hand said last does not count any more.
+            let counts = |pose: &&PoseSample| !owned || client(pose);
+            for pose in input.measured_cp.iter().filter(counts) {
                 self.offer(now, pose, &mut output.health);
             }
         }

@@ -24,6 +24,18 @@ pub struct SessionContext {
     pub bag: Option<PathBuf>,
     /// How to play a recording.
     pub play: PlayOptions,
+    /// The page; `None` without one.
+    pub console: Option<ConsoleOptions>,
+}
+
+/// Where the page is served.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConsoleOptions {
+    /// Address and port; `None` for the first free port of the loopback from 8080 on.
+    pub listen: Option<std::net::SocketAddr>,
+    /// What pages have to show.
+    pub token: Option<String>,
 }
 
 /// How to play a recording.
@@ -89,6 +101,7 @@ impl SessionContext {
             loaded,
             bag: None,
             play: PlayOptions::default(),
+            console: None,
         })
     }
 

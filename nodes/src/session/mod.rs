@@ -9,7 +9,7 @@ mod run;
 mod summary;
 mod supervisor;
 
-pub use context::{ContextError, PlayOptions, SessionContext};
+pub use context::{ConsoleOptions, ContextError, PlayOptions, SessionContext};
 pub use monitor::Monitor;
 pub use place::runtime_folder;
 pub use play::{Played, play};

@@ -114,7 +114,11 @@ impl SessionError {
 /// The nodes of a session, in the order in which they are stopped: first what
 /// moves the arm, last the recorder.
 fn nodes(context: &SessionContext) -> Vec<NodeName> {
-    let mut nodes = vec![
+    let mut nodes = Vec::new();
+    if context.console.is_some() {
+        nodes.push(NodeName::Console);
+    }
+    nodes.extend([
         NodeName::Master,
         NodeName::LinkLeader,
         NodeName::LinkFollower,
@@ -122,8 +126,9 @@ fn nodes(context: &SessionContext) -> Vec<NodeName> {
         NodeName::Estimator,
         NodeName::Arm,
         NodeName::Gateway,
-    ];
-    if context.bag.is_some() {
+    ]);
+    // The page can have it record at any time.
+    if context.bag.is_some() || context.console.is_some() {
         nodes.push(NodeName::Recorder);
     }
     nodes
@@ -359,6 +364,9 @@ fn check_surroundings(context: &SessionContext) -> Result<(), SessionError> {
         &scenario.link.endpoint,
         "--link-endpoint",
     )?;
+    if let Some(listen) = context.console.as_ref().and_then(|console| console.listen) {
+        check_endpoint("the page's address", &format!("tcp/{listen}"), "--listen")?;
+    }
     if let Some(endpoint) = scenario.gateway.own_router() {
         check_endpoint("the Zenoh router's endpoint", endpoint, "--router-endpoint")?;
     }

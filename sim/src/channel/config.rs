@@ -174,7 +174,7 @@ impl Blackout {
 }
 
 /// Largest delay, jitter and hold-back \[s\].
-const LONGEST_DELAY: f64 = 5.0;
+pub(super) const LONGEST_DELAY: f64 = 5.0;
 
 impl ChannelConfig {
     /// A channel that only delays, by `delay` \[s\].

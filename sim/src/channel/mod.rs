@@ -10,7 +10,8 @@ mod config;
 pub use config::{Bandwidth, Blackout, ChannelConfig, Jitter, LinkConfig, Loss, Reordering};
 
 use crate::random::Random;
-use ferntast_model::ParameterError;
+use config::LONGEST_DELAY;
+use ferntast_model::{ParameterError, check};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -79,8 +80,17 @@ pub struct Channel {
     /// Latest release so far, of frames that keep their order [ns].
     released_ns: i64,
     bad: bool,
+    /// Delay at the last frame, on its way to that of the configuration \[s\].
+    delay: f64,
+    /// When that frame came \[ns\].
+    delay_ns: i64,
     counts: ChannelCounts,
 }
+
+/// Seconds that the delay changes in a second after it was set anew. A delay
+/// that grew at once would leave a silence as long as its growth, which is an
+/// outage and no longer way.
+const DELAY_RATE: f64 = 0.5;
 
 impl Channel {
     /// A channel with nothing on its way.
@@ -91,6 +101,8 @@ impl Channel {
     pub fn new(config: ChannelConfig, seed: u64) -> Result<Channel, ParameterError> {
         config.validate()?;
         Ok(Channel {
+            delay: config.delay,
+            delay_ns: 0,
             config,
             random: Random::new(seed),
             slots: vec![
@@ -120,6 +132,24 @@ impl Channel {
     /// Frames on their way.
     pub fn in_flight(&self) -> usize {
         self.due.len()
+    }
+
+    /// From now on frames are delayed by `delay` \[s\], give or take a jitter of
+    /// at most `jitter` \[s\], uniformly distributed, and lost independently with
+    /// probability `loss`. The delay gets there by half a second a second.
+    /// Allocates nothing.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds; everything stays as it was.
+    pub fn retune(&mut self, delay: f64, jitter: f64, loss: f64) -> Result<(), ParameterError> {
+        check("delay", delay, 0.0, LONGEST_DELAY, "s")?;
+        check("jitter", jitter, 0.0, LONGEST_DELAY, "s")?;
+        check("loss", loss, 0.0, 1.0, "-")?;
+        self.config.delay = delay;
+        self.config.jitter = (jitter > 0.0).then_some(Jitter::Uniform { half_width: jitter });
+        self.config.loss = (loss > 0.0).then_some(Loss::Independent { probability: loss });
+        Ok(())
     }
 
     /// Sends `frame` at `now_ns`.
@@ -152,7 +182,7 @@ impl Channel {
         if lost {
             return Pushed::Lost;
         }
-        let mut release_ns = sent_ns + nanoseconds(self.delay());
+        let mut release_ns = sent_ns + nanoseconds(self.delay(now_ns));
         let held_back = self
             .config
             .reordering
@@ -210,7 +240,11 @@ impl Channel {
         Some(self.sent_ns)
     }
 
-    fn delay(&mut self) -> f64 {
+    fn delay(&mut self, now_ns: i64) -> f64 {
+        let passed = (now_ns.saturating_sub(self.delay_ns)) as f64 * 1e-9;
+        let step = (passed * DELAY_RATE).clamp(0.0, 0.05);
+        self.delay += (self.config.delay - self.delay).clamp(-step, step);
+        self.delay_ns = now_ns;
         let jitter = match self.config.jitter {
             None => 0.0,
             Some(Jitter::Uniform { half_width }) => {
@@ -219,7 +253,7 @@ impl Channel {
             Some(Jitter::Normal { deviation }) => deviation * self.random.normal(),
             Some(Jitter::Exponential { mean }) => mean * self.random.exponential(),
         };
-        (self.config.delay + jitter).max(0.0)
+        (self.delay + jitter).max(0.0)
     }
 
     fn store(&mut self, release_ns: i64, frame: &[u8]) -> bool {

@@ -420,3 +420,60 @@ proptest! {
         prop_assert_eq!(send(&mut channel(config, seed), 300, 2 * MS), arrived);
     }
 }
+
+#[test]
+fn a_delay_set_anew_is_reached_without_a_silence() {
+    let mut channel = Channel::new(ChannelConfig::with_delay(0.010), 1).unwrap();
+    let mut buffer = [0; LONGEST_FRAME];
+    let (mut arrivals, mut ways) = (Vec::new(), Vec::new());
+    for step in 0..2000_i64 {
+        let now = step * 1_000_000;
+        if step == 200 {
+            channel.retune(0.300, 0.0, 0.0).unwrap();
+        }
+        if step % 2 == 0 {
+            channel.push(now, &now.to_le_bytes());
+        }
+        while let Some((length, at)) = channel.pop(now, &mut buffer) {
+            let sent = i64::from_le_bytes(buffer[..length].try_into().unwrap());
+            arrivals.push(at);
+            ways.push((at - sent) as f64 * 1e-9);
+        }
+    }
+    let silence = arrivals.windows(2).map(|pair| pair[1] - pair[0]).max();
+    // Frames every 2 ms, the way longer by half of that each.
+    assert!(
+        silence.is_some_and(|ns| (2_900_000..=3_100_000).contains(&ns)),
+        "{silence:?}"
+    );
+    assert!((ways[0] - 0.010).abs() < 1e-9);
+    assert!((ways.last().unwrap() - 0.300).abs() < 1e-9);
+}
+
+#[test]
+fn jitter_and_loss_can_be_set_anew_and_bounds_hold() {
+    let mut channel = Channel::new(ChannelConfig::with_delay(0.020), 7).unwrap();
+    assert!(channel.retune(-0.001, 0.0, 0.0).is_err());
+    assert!(channel.retune(f64::NAN, 0.0, 0.0).is_err());
+    assert!(channel.retune(0.020, 0.0, 1.5).is_err());
+    channel.retune(0.020, 0.005, 0.2).unwrap();
+    let mut buffer = [0; LONGEST_FRAME];
+    let mut ways = Vec::new();
+    for step in 0..50_000_i64 {
+        let now = step * 20_000_000;
+        channel.push(now, &now.to_le_bytes());
+        while let Some((_, at)) = channel.pop(now + 40_000_000, &mut buffer) {
+            ways.push((at - now) as f64 * 1e-9);
+        }
+    }
+    let loss = 1.0 - ways.len() as f64 / 50_000.0;
+    // Four standard deviations of 50 000 draws: 4 √(0.2·0.8/50 000) = 0.0072.
+    assert!((loss - 0.2).abs() < 0.0072, "{loss}");
+    let (low, high) = ways
+        .iter()
+        .fold((1.0_f64, 0.0_f64), |(l, h), w| (l.min(*w), h.max(*w)));
+    assert!(
+        (0.015..0.0151).contains(&low) && (0.0249..=0.025).contains(&high),
+        "{low} {high}"
+    );
+}

@@ -1,11 +1,13 @@
 //! The whole system: sessions with all their processes, against real peers.
 
 mod bad_frames;
+mod console;
 mod crashes;
 mod delay;
 mod dynamics;
 mod estimator;
 mod lab;
+mod lab_page;
 mod laws;
 mod lockstep;
 mod masters;

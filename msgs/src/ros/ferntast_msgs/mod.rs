@@ -2,8 +2,14 @@
 
 mod authority;
 mod contact_state;
+mod link_command;
 mod link_status;
+mod recorder_command;
+mod recorder_status;
 
 pub use authority::Authority;
 pub use contact_state::ContactState;
+pub use link_command::LinkCommand;
 pub use link_status::LinkStatus;
+pub use recorder_command::RecorderCommand;
+pub use recorder_status::RecorderStatus;

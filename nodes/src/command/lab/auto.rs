@@ -3,11 +3,11 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_identification::{Diagnosis, Term, Verdict};
+use ferntast_lab::work::{Added, beside};
 use serde::Serialize;
 
 use super::{
     super::{Failure, output::print_json},
-    add::{self, Added},
     diagnose::with_bar,
     open, table,
 };
@@ -58,11 +58,11 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             break diagnosis;
         };
         let effect = Term::Catalogue(best.effect.clone());
-        let mut output = add::beside(&path, effect.name());
+        let mut output = beside(&path, effect.name());
         if let (Some(folder), Some(name)) = (&arguments.output, output.file_name()) {
             output = folder.join(name);
         }
-        let added = add::extend(&opened, &effect, &output)?;
+        let added = opened.add(&effect, &output).map_err(Failure::refused)?;
         if !json {
             println!(
                 "{:<24} {:>12} -> {} {unit} on data held out; {}",

@@ -2,8 +2,6 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_identification::compare;
-
 use super::{super::Failure, open, table};
 
 /// Fit the model, tell its error on data it was not fitted to, and where it fails.
@@ -17,8 +15,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     let mut results = Vec::new();
     for opened in open::open(&arguments.experiment)? {
-        let result = compare(&opened.dataset, &opened.experiment.model)
-            .map_err(|error| open::refuse(&opened, error))?;
+        let result = opened.compare().map_err(Failure::refused)?;
         if !json {
             println!("{}", opened.experiment.title);
             table::comparison(&result, opened.torque_unit());

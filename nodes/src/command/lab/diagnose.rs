@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_identification::{Diagnosis, diagnose};
+use ferntast_identification::Diagnosis;
 
 use super::{
     super::Failure,
@@ -24,11 +24,11 @@ pub struct Arguments {
 /// Diagnoses with a progress bar.
 pub fn with_bar(opened: &Opened) -> Result<Diagnosis, Failure> {
     let bar = open::bar("diagnose");
-    let result = diagnose(&opened.dataset, &opened.experiment.model, &mut |share| {
+    let result = opened.diagnose(&mut |share| {
         bar.set_position((share * 1000.0) as u64);
     });
     bar.finish_and_clear();
-    result.map_err(|error| open::refuse(opened, error))
+    result.map_err(Failure::refused)
 }
 
 /// Runs it.

@@ -7,6 +7,7 @@ mod diagnose;
 mod history;
 mod open;
 mod report;
+mod serve;
 mod table;
 
 use std::process::ExitCode;
@@ -22,7 +23,7 @@ use super::Failure;
     ferntast lab diagnose E.toml             # which effect is missing\n  \
     ferntast lab add E.toml stribeck -o E2.toml\n  \
     ferntast lab history E2.toml             # the error falling\n  \
-    ferntast lab report E2.toml -o report.html\n\n\
+    ferntast lab report E2.toml -o report.html\n\n  All of it in the browser: ferntast lab serve\n\n\
     An experiment file names recording, signals and model:\n  \
     recording = \"bench.mcap\"                 # or a rosbag2 directory, a .csv, a list\n  \
     [signals]                                # message paths; in CSV names of columns\n  \
@@ -52,6 +53,8 @@ enum Action {
     History(history::Arguments),
     /// Write one page with charts.
     Report(report::Arguments),
+    /// Work in the browser.
+    Serve(serve::Arguments),
     /// List the effects of the catalogue.
     Effects,
 }
@@ -65,6 +68,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         Action::Auto(arguments) => auto::run(&arguments, json),
         Action::History(arguments) => history::run(&arguments, json),
         Action::Report(arguments) => report::run(&arguments, json),
+        Action::Serve(arguments) => serve::run(arguments, json),
         Action::Effects => effects(json),
     }
 }

@@ -2,61 +2,33 @@
 
 use std::path::Path;
 
-use ferntast_identification::{Dataset, JointType};
-use ferntast_lab::{
-    experiment::{self, Experiment},
-    recording,
-};
+use ferntast_lab::work;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use serde::Serialize;
 
 use super::super::{Failure, output::print_json};
 
-/// An experiment with its recordings read.
-pub struct Opened {
-    /// The experiment.
-    pub experiment: Experiment,
-    /// Its data.
-    pub dataset: Dataset,
-    /// What was noticed while reading.
-    pub notes: Vec<String>,
-}
-
-impl Opened {
-    /// Unit of torques or forces.
-    pub fn torque_unit(&self) -> &'static str {
-        match self.experiment.joint {
-            JointType::Revolute => "Nm",
-            JointType::Prismatic => "N",
-        }
-    }
-}
+pub use ferntast_lab::work::Opened;
 
 /// Opens an experiment file, or a recording of a session: one experiment a joint.
 pub fn open(path: &Path) -> Result<Vec<Opened>, Failure> {
-    let experiments =
-        Experiment::open(path, &experiment::data_folder()).map_err(Failure::refused)?;
-    experiments.into_iter().map(read).collect()
+    let opened = work::open(path).map_err(Failure::refused)?;
+    opened.iter().for_each(tell_notes);
+    Ok(opened)
 }
 
 /// Opens what has to be one experiment file.
 pub fn open_file(path: &Path) -> Result<Opened, Failure> {
-    let experiment =
-        Experiment::read(path, &experiment::data_folder()).map_err(Failure::refused)?;
-    read(experiment)
+    let opened = work::open_file(path).map_err(Failure::refused)?;
+    tell_notes(&opened);
+    Ok(opened)
 }
 
-fn read(experiment: Experiment) -> Result<Opened, Failure> {
-    let loaded = recording::load(&experiment).map_err(Failure::refused)?;
-    for note in &loaded.notes {
+fn tell_notes(opened: &Opened) {
+    for note in &opened.notes {
         eprintln!("note: {note}");
     }
-    Ok(Opened {
-        experiment,
-        dataset: loaded.dataset,
-        notes: loaded.notes,
-    })
 }
 
 /// A bar for work whose share done is told.
@@ -67,11 +39,6 @@ pub fn bar(label: &str) -> ProgressBar {
         bar.set_style(style);
     }
     bar
-}
-
-/// What the data or the model lack, with the experiment's name.
-pub fn refuse(opened: &Opened, error: impl std::fmt::Display) -> Failure {
-    Failure::refused(format!("{}: {error}", opened.experiment.title))
 }
 
 /// Prints results as JSON: of one joint an object, of a recording of both a list.

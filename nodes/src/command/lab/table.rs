@@ -9,6 +9,8 @@ use ferntast_identification::{
     residual_map::ResidualMap,
 };
 
+pub use ferntast_lab::report::significant;
+
 /// The parameters with their standard errors.
 pub fn parameters(parameters: &BTreeMap<String, Parameter>, not_excited: &[String]) {
     println!(
@@ -162,33 +164,5 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
             dependence.signals.join(" and "),
             dependence.strength * 100.0
         );
-    }
-}
-
-/// Four significant digits.
-pub fn significant(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if (-4..6).contains(&magnitude) {
-        let digits = usize::try_from(3 - magnitude).unwrap_or(0);
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.3e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::significant;
-
-    #[test]
-    fn four_digits() {
-        assert_eq!(significant(203.1349), "203.1");
-        assert_eq!(significant(-0.012345), "-0.01235");
-        assert_eq!(significant(12345.6), "12346");
-        assert_eq!(significant(1.5e-7), "1.500e-7");
-        assert_eq!(significant(0.0), "0");
     }
 }

@@ -1,0 +1,92 @@
+// The console: what is drawn when.
+
+import { byId, fill, make, toast } from "../common/dom.js";
+import { onTheme } from "../common/theme.js";
+import { connect, on, operates, session } from "./connection.js";
+import * as hand from "./hand.js";
+import * as panel from "./panel.js";
+import * as scene from "./scene.js";
+import * as strips from "./strips.js";
+
+/** Least time between drawings of the scene, and of strips and texts [ms]. */
+const SCENE = 30;
+const STRIPS = 125;
+const TEXTS = 200;
+
+let drawn = { scene: 0, strips: 0, texts: 0 };
+let shown = null;
+
+/** The snapshot that has crossed the link by now: what the operator would see. */
+function delayed() {
+  const way = session.now.link?.delay;
+  if (!way) return null;
+  const seen = session.now.t - way;
+  for (let n = session.past.length - 1; n >= 0; n--) {
+    if (session.past[n].t <= seen) return session.past[n];
+  }
+  return session.past[0];
+}
+
+function legend() {
+  const key = (style, colour, text) => make("span", {}, make("i", { className: style, style: colour }), text);
+  fill(byId("scene-legend"),
+    key("disc", "background:var(--model)", "tip"), key("", "border-color:var(--measured)", "arm"),
+    key("ring", "border-color:var(--hand)", "hand, its force and spring"), key("", "border-color:var(--force)", "contact force"),
+    key("ring dash", "border-color:var(--second)", "as the operator sees it"));
+}
+
+function frame(time) {
+  requestAnimationFrame(frame);
+  hand.beat(time);
+  const visible = !byId("console").hidden;
+  if (!session.now || !session.about) return;
+  if (time - drawn.texts >= TEXTS) {
+    drawn.texts = time;
+    panel.slow(session.now);
+    hint();
+  }
+  if (!visible) return;
+  if (session.now !== shown && time - drawn.scene >= SCENE - 4) {
+    drawn.scene = time;
+    shown = session.now;
+    const image = byId("delayed").checked ? delayed() : null;
+    const target = hand.wanted() || session.now.seat.target;
+    scene.draw(byId("scene"), session.about, session.now, image, target);
+    panel.quick(session.now);
+    counted += 1;
+  }
+  if (time - drawn.strips >= STRIPS) {
+    drawn.strips = time;
+    strips.draw(session.past, session.about);
+  }
+}
+
+let counted = 0;
+
+function hint() {
+  const mine = operates();
+  const canvas = byId("scene");
+  canvas.classList.toggle("hold", mine && !hand.wanted());
+  canvas.classList.toggle("holding", Boolean(hand.wanted()));
+  canvas.dataset.drawn = counted;
+  const text = !mine ? "Take the controls to move the hand." : hand.wanted()
+    ? "Space lets the hand go." : "Drag, or arrow keys, to take the hand.";
+  if (byId("scene-hint").textContent !== text) byId("scene-hint").textContent = text;
+}
+
+/** Starts the console. */
+export function start() {
+  legend();
+  on("hello", () => {
+    panel.build();
+    strips.build(byId("strips"));
+  });
+  on("refused", (reason) => toast(reason));
+  on("connection", () => { if (session.now) panel.slow(session.now); });
+  onTheme(() => { shown = null; });
+  hand.listen(byId("scene"), () => toast("Take the controls first: the button at the right, “Take the controls”.", 4));
+  byId("stop").onclick = panel.stop;
+  addEventListener("keydown", (event) => { if (event.key === "Escape") panel.stop(); });
+  connect();
+  requestAnimationFrame(frame);
+}

@@ -1,0 +1,192 @@
+// The controls beside the scene.
+
+import { byId, fill, make, toast, write } from "../common/dom.js";
+import { fixed, percent } from "../common/numbers.js";
+import { operates, send, session } from "./connection.js";
+import * as feel from "./feel.js";
+import { letGo } from "./hand.js";
+
+const parts = {};
+let rumble = false;
+
+function section(title, ...children) {
+  return make("section", { className: "panel" }, make("h2", { textContent: title }), ...children);
+}
+
+function button(id, text, onclick, more = {}) {
+  parts[id] = make("button", { id, type: "button", textContent: text, onclick, ...more });
+  return parts[id];
+}
+
+function slider(id, text, { max, step, value, unit, decimals }) {
+  const output = make("output", { for: id });
+  const input = make("input", { id, type: "range", min: 0, max, step, value, "aria-describedby": "measured" });
+  const tell = () => write(output, `${fixed(Number(input.value), decimals)} ${unit}`);
+  input.addEventListener("input", tell);
+  input.addEventListener("input", sendLink);
+  tell();
+  parts[id] = input;
+  return make("div", { className: "slider" }, make("label", { for: id, textContent: text }), output, input);
+}
+
+let linkTimer = 0;
+
+function sendLink() {
+  clearTimeout(linkTimer);
+  // While the slider moves, a few times a second is enough.
+  linkTimer = setTimeout(() => {
+    send({
+      type: "link",
+      round_trip: Number(parts["link-delay"].value) * 1e-3,
+      jitter: Number(parts["link-jitter"].value) * 1e-3,
+      loss: Number(parts["link-loss"].value) * 1e-2,
+    });
+  }, 120);
+}
+
+/** Stops: drives off. Anybody may. */
+export function stop() {
+  letGo();
+  send({ type: "state", word: "stop" });
+}
+
+function pairs(...names) {
+  return make("dl", { className: "pair" }, names.map(([id, name]) => {
+    parts[id] = make("dd", { id, textContent: "–" });
+    return [make("dt", { textContent: name }), parts[id]];
+  }));
+}
+
+/** Makes the controls. */
+export function build() {
+  const { about } = session;
+  parts.meter = make("i", { id: "force-bar" });
+  parts.nodes = make("table", { className: "nodes" });
+  parts.mark = make("input", { id: "mark-label", type: "text", placeholder: "what to note", maxLength: 90, "aria-label": "Label of the mark" });
+  parts.law = make("select", { id: "law", "aria-label": "Delay law", disabled: about.laws.length < 2 },
+    about.laws.map((law) => make("option", { textContent: law.replaceAll("_", "–"), value: law, selected: law === about.law })));
+  fill(byId("panel"),
+    section("Control",
+      make("div", { className: "row" }, button("operate", "Take the controls", () => send({ type: operates() ? "watch" : "operate" }), { className: "primary" })),
+      make("div", { className: "row" },
+        button("arm", "Arm", () => send({ type: "state", word: "arm" })),
+        button("hold", "Hold", () => { letGo(); send({ type: "state", word: "hold" }); }),
+        button("rearm", "Re-arm", () => send({ type: "state", word: "rearm" }))),
+      make("p", { id: "why", className: "quiet small", style: "margin:8px 0 6px" }),
+      pairs(["holder", "authority"], ["pages", "pages open"])),
+    section("Force on the hand",
+      make("div", { className: "row", style: "margin-bottom:6px" },
+        make("div", { className: "meter grow", role: "meter", "aria-label": "Force on the hand", id: "force-meter", "aria-valuemin": 0, "aria-valuemax": about.force_limit }, parts.meter),
+        parts.force = make("span", { className: "number", id: "force-value", style: "width:62px;text-align:right" })),
+      make("div", { className: "row" },
+        button("sound", "Sound", () => toggle("sound", (on) => feel.sound(on)), { "aria-pressed": "false" }),
+        button("rumble", "Rumble", () => toggle("rumble", (on) => { rumble = on; }), { "aria-pressed": "false" }))),
+    section("Link",
+      slider("link-delay", "round trip", { max: 1000, step: 5, value: Math.round(about.link.round_trip * 1e3), unit: "ms", decimals: 0 }),
+      slider("link-jitter", "jitter, ±", { max: 20, step: 0.5, value: about.link.jitter * 1e3, unit: "ms", decimals: 1 }),
+      slider("link-loss", "loss each way", { max: 30, step: 0.1, value: about.link.loss * 100, unit: "%", decimals: 1 }),
+      make("div", { className: "row", style: "margin-top:8px" }, make("label", { className: "quiet small", for: "law", textContent: "law" }), make("div", { className: "grow" }, parts.law)),
+      make("p", { id: "measured", className: "quiet small number", style: "margin-top:8px" })),
+    section("Recording",
+      make("div", { className: "row" }, button("record", "Record", () => send(session.now?.recorder.on ? { type: "end_record" } : { type: "record", folder: "" }))),
+      make("div", { className: "row" }, make("div", { className: "grow" }, parts.mark), button("mark", "Mark", mark, { style: "flex:none" })),
+      make("p", { id: "recording", className: "quiet small", style: "margin-top:8px;overflow-wrap:anywhere" })),
+    make("section", { className: "panel" }, make("details", {}, make("summary", { textContent: "Nodes" }), parts.nodes)));
+  parts.mark.addEventListener("keydown", (event) => { if (event.key === "Enter") mark(); });
+}
+
+function mark() {
+  send({ type: "mark", label: parts.mark.value || "mark" });
+  toast(session.now?.recorder.on ? "Marked." : "Marked, but nothing is being recorded.", 3);
+  parts.mark.value = "";
+}
+
+function toggle(id, change) {
+  const on = parts[id].getAttribute("aria-pressed") !== "true";
+  parts[id].setAttribute("aria-pressed", String(on));
+  change(on);
+}
+
+function holder({ authority }) {
+  if (authority.holder === "own") return session.about.hand;
+  if (authority.holder === "page") return Number(authority.identity) === session.page ? "this page" : `page ${authority.identity}`;
+  if (authority.holder === "client") return `ROS 2 client ${authority.identity.slice(0, 8)}…`;
+  return "nobody";
+}
+
+const LET_GO = {
+  silent: "The hand was let go: the page was hidden or stood still.",
+  idle: "The hand was let go: nobody touched the page for 20 s.",
+};
+
+function why(snapshot) {
+  const [state, reason] = snapshot.states.follower || ["?", ""];
+  if (!session.connected) return "No connection to the session.";
+  if (state === "DISABLED") return "The drives are off. Arm to go on.";
+  if (state === "FAULT") return `Fault: ${reason}. Arm to go on.`;
+  if (state === "PAUSED") return `${LET_GO[snapshot.seat.let_go] || "The arm holds:"} ${LET_GO[snapshot.seat.let_go] ? "" : `${reason}.`} Re-arm to go on.`;
+  return operates() ? "Drag in the picture to move the hand." : "This page watches.";
+}
+
+const TONE = { ENABLED: "good", PAUSED: "warn", FAULT: "bad", DISABLED: "" };
+
+function chip(tone, name, value) {
+  return make("span", { className: `chip ${tone}` }, make("i", { className: "dot", "aria-hidden": "true" }), name, " ", make("b", { textContent: value }));
+}
+
+let chipsShown = "";
+
+/** Shows what is slow: a few times a second. */
+export function slow(snapshot) {
+  const mine = operates();
+  const other = snapshot.seat.operator && !mine;
+  write(parts.operate, mine ? "Give up the controls" : other ? `Page ${snapshot.seat.operator} has the controls` : "Take the controls");
+  parts.operate.classList.toggle("primary", !mine && !other);
+  parts.operate.disabled = Boolean(other);
+  for (const id of ["arm", "hold", "rearm", "record", "mark", "link-delay", "link-jitter", "link-loss"]) parts[id].disabled = !mine;
+  const [state] = snapshot.states.follower || ["?"];
+  const [leader] = snapshot.states.leader || ["?"];
+  parts.rearm.disabled ||= state !== "PAUSED" && leader !== "PAUSED";
+  parts.hold.disabled ||= state !== "ENABLED";
+  parts.arm.disabled ||= state === "ENABLED" && leader === "ENABLED";
+  write(byId("why"), why(snapshot));
+  write(parts.holder, holder(snapshot));
+  write(parts.pages, String(snapshot.seat.pages));
+  const { link } = snapshot;
+  write(byId("measured"), link
+    ? `measured: ${fixed(link.round_trip && link.round_trip * 1e3, 1)} ms, ±${fixed(link.jitter * 1e3, 1)} ms, ${percent(link.loss)} lost`
+    : "measured: –");
+  const { recorder } = snapshot;
+  write(parts.record, recorder.on ? "End the recording" : "Record");
+  parts.record.setAttribute("aria-pressed", String(recorder.on));
+  write(byId("recording"), recorder.on ? `${recorder.messages} messages in ${recorder.folder}` : recorder.folder ? `last: ${recorder.folder}` : "Nothing is being recorded.");
+  const chips = JSON.stringify([state, leader, link?.connected, session.connected, holder(snapshot), snapshot.contact.on, snapshot.contact.edge, recorder.on]);
+  if (chips !== chipsShown) {
+    chipsShown = chips;
+    fill(byId("status"),
+      session.connected ? null : chip("bad", "page", "no connection"),
+      chip(TONE[state], "arm", state), chip(TONE[leader], "master", leader),
+      chip(link?.connected ? "good" : "bad", "link", link?.connected ? "up" : "down"),
+      chip(snapshot.contact.on ? "warn" : "", "contact", snapshot.contact.on ? snapshot.contact.edge : "free"),
+      chip("", "hand", holder(snapshot)),
+      recorder.on ? chip("bad", "rec", "on") : null);
+  }
+  if (parts.nodes.parentElement.open) {
+    fill(parts.nodes, session.nodes.map((node) => {
+      const tone = { ok: "good", warning: "warn" }[node.level] || "bad";
+      const title = [...node.faults, node.message].filter(Boolean).join("; ");
+      return make("tr", { title, className: tone },
+        make("td", {}, make("i", { className: "dot" }), node.name, node.level === "ok" ? "" : ` (${node.level})`),
+        make("td", { textContent: `${fixed(node.rate, 0)} Hz  ${fixed(node.late, 0)} µs` }));
+    }));
+  }
+}
+
+/** Shows what is quick: the force. */
+export function quick(snapshot) {
+  const newton = Math.hypot(...snapshot.hand_force);
+  const limit = session.about.force_limit;
+  parts.meter.style.width = `${Math.min(100, (newton / limit) * 100).toFixed(1)}%`;
+  write(parts.force, `${fixed(newton, 1)} N`);
+  feel.feel(newton, limit, rumble);
+}

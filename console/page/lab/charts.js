@@ -1,0 +1,58 @@
+// Charts by plotly.js, which comes with the program.
+
+import { colours, onTheme } from "../common/theme.js";
+
+let loading = null;
+const drawn = new Map();
+
+/** plotly.js, loaded when the first chart is drawn. */
+function plotly() {
+  loading ??= new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = "/plotly.js";
+    script.onload = () => resolve(window.Plotly);
+    script.onerror = () => reject(new Error("plotly.js could not be loaded"));
+    document.head.append(script);
+  });
+  return loading;
+}
+
+const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+
+/** An axis with its title and unit. */
+export function axis(title, unit, more = {}) {
+  return {
+    title: { text: unit ? `${title} [${unit}]` : title, font: { size: 12 }, standoff: 6 },
+    gridcolor: colours.grid, zerolinecolor: colours.line, linecolor: colours.line, tickfont: { size: 11 }, automargin: true, ...more,
+  };
+}
+
+function layout(more) {
+  return {
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: colours.text, size: 12, family: 'system-ui, "DejaVu Sans", sans-serif' },
+    margin: { l: 56, r: 12, t: 8, b: 40 }, hovermode: "closest", hoverlabel: { font: { size: 12 } },
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, font: { size: 12 } }, dragmode: "zoom", uirevision: "keep", ...more,
+  };
+}
+
+/**
+ * Draws in `element`. `make` gives { data, layout } with the colours of the
+ * theme, and is asked again when that changes.
+ */
+export async function draw(element, make) {
+  const library = await plotly();
+  drawn.set(element, make);
+  const chart = make();
+  await library.react(element, chart.data, layout(chart.layout), CONFIG);
+}
+
+/** Forgets charts that are no longer on the page. */
+export async function tidy() {
+  for (const element of drawn.keys()) {
+    if (element.isConnected) continue;
+    drawn.delete(element);
+    (await plotly()).purge(element);
+  }
+}
+
+onTheme(() => drawn.forEach((make, element) => draw(element, make)));

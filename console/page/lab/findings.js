@@ -1,0 +1,228 @@
+// What the comparison and the diagnosis found, as charts and tables.
+
+import { fill, make } from "../common/dom.js";
+import { percent, significant } from "../common/numbers.js";
+import { colours } from "../common/theme.js";
+import { axis, draw, tidy } from "./charts.js";
+
+const VERDICTS = {
+  missing: ["An effect is missing.", (best) => `${best} explains what the model leaves.`],
+  complete: ["The model is complete.", () => "What is left is noise."],
+  unexplained: ["Something is missing that has no name.", () => "The residual depends on signals below, and no effect of the catalogue has that shape. Write an expression of your own."],
+};
+
+const words = (effect) => effect.replaceAll("_", " ");
+
+function evidence(candidate) {
+  const alike = candidate.indistinguishable_from;
+  return make("div", { className: "evidence" },
+    make("p", { textContent: `explains ${percent(candidate.share)} of the residual's mean square; chance alone: p = ${candidate.p_value.toExponential(1)}, for everything that was tried` }),
+    alike.length ? make("p", { textContent: `These data cannot tell it from ${alike.map(words).join(", ")}.` }) : null,
+    candidate.separate_by ? make("p", { textContent: candidate.separate_by }) : null);
+}
+
+/** The verdict with its ranking and evidence. */
+export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
+  const { unit } = view.joints[joint];
+  const isFile = view.history.length > 0;
+  const [title, text] = VERDICTS[found.verdict];
+  const rows = found.candidates.map((candidate, rank) => make("tr", {},
+    make("td", {}, make("b", { textContent: `${rank + 1}. ${words(candidate.effect)}` }), evidence(candidate)),
+    make("td", { className: "right number", textContent: `${significant(candidate.held_out_before)} → ${significant(candidate.held_out_after)} ${unit}` }),
+    make("td", { className: "right number", textContent: percent(candidate.held_out_after / candidate.held_out_before - 1) .replace("-", "−") }),
+    make("td", { className: "right" }, isFile ? make("button", {
+      type: "button", className: rank ? "" : "primary", textContent: "Add", "data-effect": candidate.effect, "aria-label": `Add ${words(candidate.effect)}`, onclick: () => actions.add(candidate.effect),
+    }) : null)));
+  fill(parent,
+    make("h2", { textContent: "Diagnosis" }),
+    make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict },
+      make("b", { textContent: title }), text(words(found.candidates[0]?.effect || ""))),
+    make("p", { className: "quiet small", textContent: `${found.tried} variants tried, ${found.used.toLocaleString("en")} rows, error ${significant(found.rms.held_out)} ${unit} on data held out.` }),
+    rows.length ? make("div", { className: "scroll" }, make("table", {},
+      make("thead", {}, make("tr", {}, make("th", { textContent: "effect" }), make("th", { className: "right", textContent: "error on data held out" }), make("th", { className: "right", textContent: "change" }), make("th", {}))),
+      make("tbody", {}, rows))) : null,
+    found.residual_depends_on.length ? [
+      make("h2", { textContent: "The residual depends on", style: "margin-top:14px" }),
+      make("table", {}, make("tbody", {}, found.residual_depends_on.map((dependence) => make("tr", {},
+        make("td", { textContent: dependence.signals.map(words).join(" and ") }), make("td", { className: "right number", textContent: percent(dependence.strength) })))))] : null);
+}
+
+/** Every chart of an experiment. */
+export async function charts(parent, state, actions) {
+  const box = (title, id, height, note) => {
+    const chart = make("div", { className: "chart", id, style: `height:${height}px` });
+    return { chart, section: make("section", { className: "panel" }, make("h2", { textContent: title }), note || null, chart) };
+  };
+  const stairs = box("Error on data held out, step by step", "chart-stairs", 250);
+  const time = box("Measured against model", "chart-time", 380);
+  const over = make("section", { className: "panel" }, make("h2", { textContent: "Residual over each signal" }));
+  const map = box("Residual over two signals", "chart-map", 360);
+  fill(parent, make("div", { className: "two" }, stairs.section, parameters(state)), time.section, over, map.section);
+  await tidy();
+  await Promise.all([
+    staircase(stairs.chart, state, actions), overTime(time, state), residuals(over, state), residualMap(map, state),
+  ]);
+}
+
+function parameters({ results: { comparison }, view }) {
+  const idle = new Set(comparison.not_excited);
+  return make("section", { className: "panel" }, make("h2", { textContent: "Parameters" }),
+    make("div", { className: "scroll", style: "max-height:250px" }, make("table", {},
+      make("thead", {}, make("tr", {}, ["parameter", "value", "± std error", "unit"].map((name, n) => make("th", { textContent: name, className: n === 1 || n === 2 ? "right" : "" })))),
+      make("tbody", {}, Object.entries(comparison.parameters).map(([name, own]) => make("tr", { className: idle.has(name) ? "off" : "", title: idle.has(name) ? "These data do not excite it." : "" },
+        make("td", { textContent: idle.has(name) ? `${name} (not excited)` : name }),
+        make("td", { className: "right number", textContent: significant(own.value) }),
+        make("td", { className: "right number", textContent: own.std_error === null ? "searched" : significant(own.std_error, 2) }),
+        make("td", { className: "quiet", textContent: own.unit })))))));
+}
+
+async function staircase(element, { view, joint, results }, actions) {
+  const { unit } = view.joints[joint];
+  const steps = view.history.length ? view.history : [{ path: null, effects: view.joints[joint].effects, added: null, held_out: null }];
+  const names = steps.map((step, n) => (step.added ? `+ ${words(step.added)}` : n ? words(step.effects.at(-1)) : "begin"));
+  const errors = steps.map((step, n) => (n === steps.length - 1 ? results.comparison.rms.held_out : step.held_out));
+  const floor = results.comparison.noise.repeats;
+  element.dataset.errors = JSON.stringify(errors);
+  await draw(element, () => ({
+    data: [{
+      type: "bar", x: names.map((_, n) => n), y: errors, text: errors.map((error) => significant(error, 3)), textposition: "outside", cliponaxis: false,
+      marker: { color: errors.map((_, n) => (n === errors.length - 1 ? colours.measured : colours.residual)) }, width: 0.62,
+      customdata: steps.map((step) => step.path), hovertemplate: `%{y:.4g} ${unit}<extra></extra>`,
+    }],
+    layout: {
+      xaxis: axis("", "", { tickvals: names.map((_, n) => n), ticktext: names, range: [-0.6, Math.max(2.6, names.length - 0.4)], showgrid: false }),
+      yaxis: axis("error", unit, { rangemode: "tozero" }), showlegend: false, dragmode: false,
+      margin: { l: 56, r: 12, t: 18, b: 34 },
+      shapes: floor ? [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: floor, y1: floor, line: { color: colours.good, width: 1.5, dash: "dash" } }] : [],
+      annotations: floor ? [{ xref: "paper", x: 1, y: floor, text: "noise between repeats", showarrow: false, xanchor: "right", yanchor: "bottom", font: { size: 11, color: colours.good } }] : [],
+    },
+  }));
+  element.removeAllListeners?.("plotly_click");
+  element.on?.("plotly_click", (event) => {
+    const path = event.points[0]?.customdata;
+    if (path && path !== steps.at(-1).path) actions.open(path);
+  });
+}
+
+async function overTime({ chart, section }, { results: { drawings }, view, joint }) {
+  const { unit } = view.joints[joint];
+  let chosen = "all";
+  const show = async () => {
+    const sessions = drawings.filter((_, n) => chosen === "all" || String(n) === chosen);
+    let from = 0;
+    const columns = { x: [], measured: [], modelled: [], residual: [] };
+    const seams = [];
+    for (const drawing of sessions) {
+      const shift = from - (drawing.time[0] || 0);
+      for (let n = 0; n < drawing.time.length; n++) {
+        columns.x.push(drawing.time[n] + shift);
+        columns.measured.push(drawing.measured[n]);
+        columns.modelled.push(drawing.modelled[n]);
+        columns.residual.push(drawing.measured[n] - drawing.modelled[n]);
+      }
+      from = (columns.x.at(-1) || 0) + 1;
+      // A hole between sessions, so that no line joins them.
+      for (const [name, values] of Object.entries(columns)) values.push(name === "x" ? from : null);
+      seams.push(from);
+    }
+    chart.dataset.points = columns.x.length;
+    const begun = performance.now();
+    const line = (name, y, colour, more = {}) => ({ type: "scattergl", mode: "lines", name, x: columns.x, y, line: { color: colour, width: 1.3 }, hovertemplate: `%{y:.4g} ${unit}<extra>${name}</extra>`, ...more });
+    await draw(chart, () => ({
+      data: [
+        line("measured", columns.measured, colours.measured), line("model", columns.modelled, colours.model),
+        line("residual", columns.residual, colours.residual, { yaxis: "y2" }),
+      ],
+      layout: {
+        xaxis: axis("time", "s", { anchor: "y2", domain: [0, 1] }),
+        yaxis: axis("torque", unit, { domain: [0.36, 1] }), yaxis2: axis("residual", unit, { domain: [0, 0.28] }),
+        shapes: seams.slice(0, -1).map((x) => ({ type: "line", yref: "paper", y0: 0, y1: 1, x0: x - 0.5, x1: x - 0.5, line: { color: colours.line, width: 1 } })),
+        margin: { l: 56, r: 12, t: 30, b: 40 },
+      },
+    }));
+    chart.dataset.took = performance.now() - begun;
+  };
+  if (drawings.length > 1) {
+    const select = make("select", { "aria-label": "Session", style: "max-width:420px;margin-bottom:8px", onchange: () => { chosen = select.value; show(); } },
+      make("option", { value: "all", textContent: `all ${drawings.length} sessions, one behind the other` }),
+      drawings.map((drawing, n) => make("option", { value: n, textContent: `${drawing.session}${drawing.held_out ? " (held out)" : ""}` })));
+    section.insertBefore(select, chart);
+  }
+  await show();
+}
+
+async function residuals(section, { results: { comparison }, view, joint }) {
+  const { unit } = view.joints[joint];
+  const grid = make("div", { className: "maps" });
+  section.append(grid, make("p", { className: "quiet small", textContent: "Mean residual in each bin, with the standard deviation of the residual as a band." }));
+  await Promise.all(comparison.residual_maps.map((map) => {
+    const chart = make("div", { className: "chart", style: "height:200px", "data-signal": map.signal });
+    grid.append(chart);
+    const at = map.bins.map((bin) => bin.at);
+    const band = map.bins.map((bin) => bin.mean + bin.spread).concat(map.bins.map((bin) => bin.mean - bin.spread).reverse());
+    return draw(chart, () => ({
+      data: [
+        { x: at.concat([...at].reverse()), y: band, fill: "toself", mode: "lines", line: { width: 0 }, fillcolor: `${colours.measured}2e`, hoverinfo: "skip" },
+        { x: at, y: map.bins.map((bin) => bin.mean), mode: "lines+markers", line: { color: colours.measured, width: 2 }, marker: { size: 4 }, customdata: map.bins.map((bin) => bin.count), hovertemplate: `%{y:.4g} ${unit} at %{x:.4g} ${map.unit}<br>%{customdata} rows<extra></extra>` },
+      ],
+      layout: { showlegend: false, xaxis: axis(words(map.signal), map.unit, { zeroline: false }), yaxis: axis("residual", unit), margin: { l: 50, r: 8, t: 6, b: 38 } },
+    }));
+  }));
+}
+
+/** Bins along each axis of the map. */
+const BINS = 40;
+
+function binned(drawings, nameX, nameY) {
+  const [x, y, residual] = [[], [], []];
+  for (const drawing of drawings) {
+    for (let n = 0; n < drawing.time.length; n++) {
+      x.push(drawing[nameX][n]);
+      y.push(drawing[nameY][n]);
+      residual.push(drawing.measured[n] - drawing.modelled[n]);
+    }
+  }
+  const range = (values) => {
+    const sorted = Float64Array.from(values).sort();
+    return [sorted[Math.floor(sorted.length * 0.002)], sorted[Math.ceil(sorted.length * 0.998) - 1]];
+  };
+  const [[x0, x1], [y0, y1]] = [range(x), range(y)];
+  const sums = Array.from({ length: BINS }, () => new Float64Array(BINS));
+  const counts = Array.from({ length: BINS }, () => new Float64Array(BINS));
+  residual.forEach((value, n) => {
+    const i = Math.floor(((x[n] - x0) / (x1 - x0)) * BINS);
+    const j = Math.floor(((y[n] - y0) / (y1 - y0)) * BINS);
+    if (i < 0 || j < 0 || i >= BINS || j >= BINS) return;
+    sums[j][i] += value;
+    counts[j][i] += 1;
+  });
+  const middle = (low, high) => Array.from({ length: BINS }, (_, n) => low + ((high - low) * (n + 0.5)) / BINS);
+  return { x: middle(x0, x1), y: middle(y0, y1), z: sums.map((row, j) => Array.from(row, (sum, i) => (counts[j][i] > 2 ? sum / counts[j][i] : null))) };
+}
+
+async function residualMap({ chart, section }, { results: { drawings }, view, joint }) {
+  const { unit, joint: kind } = view.joints[joint];
+  const angle = kind === "prismatic" ? "m" : "rad";
+  const units = { position: angle, velocity: `${angle}/s`, acceleration: `${angle}/s²`, load: unit, temperature: "°C", time: "s" };
+  const names = Object.keys(units).filter((name) => drawings.every((drawing) => drawing[name].length));
+  const select = (label, value) => make("select", { "aria-label": label, style: "width:auto", onchange: () => show() },
+    names.map((name) => make("option", { value: name, textContent: name, selected: name === value })));
+  const [across, up] = [select("signal across", "position"), select("signal up", "velocity")];
+  section.insertBefore(make("div", { className: "row", style: "margin-bottom:6px" }, across, make("span", { className: "quiet small", textContent: "against" }), up), chart);
+  const show = () => {
+    const bins = binned(drawings, across.value, up.value);
+    const sizes = bins.z.flat().filter((value) => value !== null).map(Math.abs).sort((a, b) => a - b);
+    const most = sizes[Math.floor(sizes.length * 0.98)] || 1;
+    return draw(chart, () => ({
+      data: [{
+        type: "heatmap", ...bins, zmin: -most, zmax: most, hoverongaps: false,
+        // Blue to vermilion: told apart by everybody, and by lightness alone from the middle.
+        colorscale: [[0, "#0a5fa8"], [0.25, "#6fb1dd"], [0.5, colours.raised], [0.75, "#f0a169"], [1, "#b84300"]],
+        colorbar: { title: { text: unit, side: "top" }, thickness: 12, outlinewidth: 0, tickfont: { size: 11 } },
+        hovertemplate: `%{x:.4g}, %{y:.4g}: %{z:.4g} ${unit}<extra></extra>`,
+      }],
+      layout: { xaxis: axis(across.value, units[across.value], { zeroline: false }), yaxis: axis(up.value, units[up.value], { zeroline: false }) },
+    }));
+  };
+  await show();
+}

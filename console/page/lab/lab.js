@@ -1,0 +1,166 @@
+// The lab: files at the left, the work on one of them at the right.
+
+import { byId, fill, make, toast } from "../common/dom.js";
+import { getJson, work } from "../common/server.js";
+import * as files from "./files.js";
+import * as findings from "./findings.js";
+import * as mapping from "./mapping.js";
+import * as model from "./model.js";
+
+/** What is open: { path, joint, view (of the server), comparison, diagnosis }. */
+const state = { path: null, joint: 0, view: null, results: null, diagnosis: null, busy: false };
+let place = null;
+let side = null;
+
+const sections = {};
+
+function busy(text, share = null) {
+  state.busy = text !== null;
+  fill(sections.progress, text === null ? null : [
+    make("p", { className: "small quiet", textContent: text, style: "margin-bottom:6px" }),
+    make("progress", share === null ? { "aria-label": text } : { max: 1, value: share, "aria-label": text })]);
+  sections.progress.hidden = text === null;
+  place.setAttribute("aria-busy", String(state.busy));
+  model.enable(!state.busy);
+}
+
+/** Does something that takes long; what goes wrong is told. Gives null then. */
+async function long(text, path, body) {
+  if (state.busy) return null;
+  busy(text);
+  try {
+    return await work(path, body, (share) => busy(text, share));
+  } catch (error) {
+    fill(sections.trouble, make("p", { className: "error", role: "alert", textContent: error.message }));
+    sections.trouble.hidden = false;
+    return null;
+  } finally {
+    busy(null);
+  }
+}
+
+function frame() {
+  for (const name of ["head", "trouble", "progress", "diagnosis", "charts"]) {
+    sections[name] = make(name === "charts" ? "div" : "section", { className: name === "charts" ? "work" : "panel", id: `lab-${name}`, hidden: true });
+  }
+  fill(place, Object.values(sections));
+}
+
+/** Opens a file of the list: an experiment, or a recording. */
+async function open(entry, joint = 0) {
+  if (state.busy) return;
+  Object.assign(state, { path: entry.path, joint, view: null, results: null, diagnosis: null });
+  files.mark(entry.path);
+  frame();
+  busy(`Reading ${entry.path} …`);
+  try {
+    if (entry.kind === "recording") {
+      const offered = await getJson("/api/lab/offered", { path: entry.path });
+      if (!offered.own) {
+        busy(null);
+        sections.head.hidden = false;
+        mapping.show(sections.head, entry, offered, begun);
+        return;
+      }
+    }
+    state.view = await getJson("/api/lab/open", { path: entry.path });
+  } catch (error) {
+    fill(sections.trouble, make("p", { className: "error", role: "alert", textContent: error.message }));
+    sections.trouble.hidden = false;
+    busy(null);
+    return;
+  }
+  busy(null);
+  history.replaceState(null, "", `#lab/${encodeURIComponent(entry.path)}`);
+  sections.head.hidden = false;
+  model.show(sections.head, state, actions);
+  await compare();
+}
+
+/** An experiment file was written: the list knows it, and it is opened. */
+async function begun(path) {
+  await files.load();
+  await open({ path, kind: "experiment" });
+}
+
+const target = () => ({ path: state.path, joint: state.joint });
+
+async function compare() {
+  const results = await long("Holding the model against the recording …", "/api/lab/compare", target());
+  if (!results) return;
+  state.results = results;
+  model.figures(state);
+  sections.charts.hidden = false;
+  await findings.charts(sections.charts, state, actions);
+}
+
+async function diagnose() {
+  const diagnosis = await long("Trying every effect of the catalogue …", "/api/lab/diagnose", target());
+  if (!diagnosis) return null;
+  state.diagnosis = diagnosis;
+  sections.diagnosis.hidden = false;
+  findings.diagnosis(sections.diagnosis, state, actions);
+  return diagnosis;
+}
+
+async function add(effect, bounds = []) {
+  sections.trouble.hidden = true;
+  const done = await long(`Adding ${effect} and fitting anew …`, "/api/lab/add", { path: state.path, effect, bounds });
+  if (!done) return false;
+  const { held_out_before: before, held_out_after: after } = done.added;
+  toast(`${done.added.effect}: error on data held out ${after < before ? "falls" : "rises"} by ${Math.abs((1 - after / before) * 100).toFixed(1)} %`);
+  await begun(done.path);
+  return true;
+}
+
+async function auto() {
+  for (let step = 0; step < 8; step++) {
+    const diagnosis = await diagnose();
+    const best = diagnosis?.candidates[0];
+    if (!best || diagnosis.verdict !== "missing") return;
+    if (!(await add(best.effect))) return;
+  }
+}
+
+function undo() {
+  const steps = state.view.history;
+  const parent = steps[steps.length - 2];
+  if (parent) open({ path: parent.path, kind: "experiment" });
+}
+
+async function report() {
+  const done = await long("Writing the report …", "/api/lab/report", target());
+  if (!done) return;
+  const address = URL.createObjectURL(new Blob([done.html], { type: "text/html" }));
+  const name = state.path.split("/").pop().replace(/\.[a-z]+$/, "");
+  make("a", { href: address, download: `${name}-report.html` }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 60000);
+  toast("The report is saved by your browser.");
+}
+
+/** A recording of ours as a start for an experiment file of its own. */
+function own() {
+  mapping.show(sections.head, { path: state.path, kind: "recording" }, null, begun, state.view.joints[state.joint]);
+}
+
+const actions = {
+  diagnose, add, auto, undo, report, own,
+  joint: (number) => open({ path: state.path, kind: "experiment" }, number),
+  open: (path) => open({ path, kind: "experiment" }),
+};
+
+/** Starts the lab. */
+export async function start() {
+  place = make("div", { className: "work" });
+  side = make("aside", { className: "files panel", "aria-label": "Files" });
+  fill(byId("lab"), side, place);
+  fill(place, make("section", { className: "panel" },
+    make("h1", { textContent: "Where is the model off, and what does it lack?" }),
+    make("p", { className: "quiet", style: "margin-top:8px;max-width:66ch",
+      textContent: "Open an experiment at the left, or a recording of a session. Any other recording (rosbag2, MCAP, CSV) is asked for its signals first. Every step writes a new experiment file beside the old one; nothing is overwritten." })));
+  files.build(side, open);
+  await files.load();
+  const [, asked] = location.hash.split("/");
+  const entry = asked && files.find(decodeURIComponent(asked));
+  if (entry) open(entry);
+}

@@ -1,0 +1,90 @@
+// The head of an experiment: its model, its errors, what can be done.
+
+import { fill, make } from "../common/dom.js";
+import { percent, significant } from "../common/numbers.js";
+import { getJson } from "../common/server.js";
+
+let parts = {};
+
+/** Lets buttons be pressed, or not while work goes on. */
+export function enable(on) {
+  for (const button of document.querySelectorAll("#lab .work button")) button.disabled = !on;
+}
+
+const nameOf = (effect) => (typeof effect === "string" ? effect : effect.name);
+
+function inertia(joint) {
+  const unit = joint.joint === "prismatic" ? "kg" : "kg m²";
+  return joint.inertia === "fit" ? "inertia fitted" : `inertia ${significant(joint.inertia.given)} ${unit}`;
+}
+
+function figure(value, text) {
+  return make("div", { className: "figure" }, make("b", { textContent: value }), make("small", { textContent: text }));
+}
+
+/** Shows the errors of the model. */
+export function figures({ results, view, joint }) {
+  const { comparison: c } = results;
+  const { unit } = view.joints[joint];
+  fill(parts.figures,
+    figure(`${significant(c.rms.held_out)} ${unit}`, `error on data held out (${percent(c.relative_error_held_out)} of the torque)`),
+    figure(`${significant(c.rms.train)} ${unit}`, `error on data fitted (${percent(c.relative_error)})`),
+    figure(c.noise.repeats === null ? "–" : `${significant(c.noise.repeats)} ${unit}`, "noise between repeats: no model gets below it"),
+    figure(c.samples.toLocaleString("en"), `samples, ${c.used.toLocaleString("en")} used, held out by ${c.held_out_by}`));
+}
+
+function ownEffect(actions) {
+  const name = make("input", { type: "text", required: true, id: "own-name", placeholder: "cogging", pattern: "[a-z][a-z0-9_]*" });
+  const expression = make("input", { type: "text", required: true, id: "own-expression", placeholder: "a*sin(6*q) + b*cos(6*q)" });
+  const bounds = make("input", { type: "text", id: "own-bounds", placeholder: "vs=0.005,0.2   (only of parameters that are searched)" });
+  const form = make("form", { className: "form", style: "margin-top:10px" },
+    make("label", { for: "own-name", textContent: "name" }), name,
+    make("label", { for: "own-expression" }, "expression", make("small", { className: "quiet", textContent: " [Nm or N]" })), expression,
+    make("label", { for: "own-bounds", textContent: "bounds" }), bounds,
+    make("p", { className: "wide small quiet", textContent: "Over q, qd, qdd, tau, tau_m, T, t and extra signals. Other names are parameters: fitted where they enter linearly, searched where bounds are given." }),
+    make("div", { className: "wide row" }, make("button", { type: "submit", id: "own-add", textContent: "Add this effect" })));
+  form.onsubmit = (event) => {
+    event.preventDefault();
+    actions.add(`${name.value}=${expression.value}`, bounds.value.trim() ? bounds.value.trim().split(/[\s;]+/) : []);
+  };
+  return make("details", {}, make("summary", { textContent: "An effect of your own" }), form);
+}
+
+async function catalogue(select, effects) {
+  const has = new Set(effects.map(nameOf));
+  for (const effect of await getJson("/api/lab/effects")) {
+    if (!has.has(effect.id)) select.append(make("option", { value: effect.id, textContent: effect.id.replaceAll("_", " "), title: effect.equation }));
+  }
+}
+
+/** Shows the experiment in `parent`. */
+export function show(parent, { view, joint, path }, actions) {
+  const own = view.joints[joint];
+  const isFile = view.history.length > 0;
+  const added = view.history[view.history.length - 1]?.added;
+  const act = (text, id, onclick, more = {}) => make("button", { type: "button", id, textContent: text, onclick, ...more });
+  const select = make("select", { id: "add-effect", "aria-label": "Effect to add" }, make("option", { value: "", textContent: "add an effect of the catalogue …" }));
+  select.onchange = () => { if (select.value) actions.add(select.value); };
+  catalogue(select, own.effects);
+  parts = { figures: make("div", { className: "figures" }) };
+  fill(parent,
+    make("div", { className: "headline" },
+      make("div", {},
+        make("h1", { textContent: isFile ? own.title : `${path}, ${own.title}` }),
+        make("p", { className: "quiet small", textContent: `${own.sessions.length} sessions of ${own.recordings.join(", ")}` })),
+      make("div", { className: "row" },
+        act("Diagnose", "diagnose", actions.diagnose, { className: "primary" }),
+        isFile ? act("Add until complete", "auto", actions.auto) : act("Write an experiment file", "own", actions.own),
+        view.history.length > 1 ? act("Undo", "undo", actions.undo, { title: `Back to ${view.history[view.history.length - 2].path}` }) : null,
+        act("Report", "report", actions.report))),
+    view.joints.length > 1 ? make("div", { className: "row", style: "margin-top:10px" }, view.joints.map((other, number) =>
+      act(other.title.replace("_", " "), `joint-${number}`, () => actions.joint(number), { "aria-pressed": String(number === joint) }))) : null,
+    make("div", { className: "tags", "aria-label": "The model" },
+      make("span", { className: "tag", textContent: inertia(own) }),
+      own.effects.map((effect) => make("span", {
+        className: `tag${nameOf(effect) === added ? " new" : ""}`, title: typeof effect === "string" ? "" : effect.expression, textContent: nameOf(effect).replaceAll("_", " "),
+      }))),
+    parts.figures,
+    own.notes.map((note) => make("p", { className: "note", textContent: note })),
+    isFile ? make("div", { style: "margin-top:14px;display:grid;gap:10px;max-width:760px" }, select, ownEffect(actions)) : null);
+}

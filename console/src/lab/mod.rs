@@ -1,0 +1,271 @@
+//! The lab over HTTP: recordings and experiments of one folder, worked on by
+//! the same code as `ferntast lab`.
+//!
+//! Paths in requests are relative to the folder and never lead out of it; what
+//! an experiment file there names may lie elsewhere. Work that takes long
+//! answers in lines of JSON: `{"progress": 0.3}` …, then `{"result": …}` or
+//! `{"error": "…"}`. Work goes on one piece at a time.
+
+mod drawing;
+mod files;
+mod upload;
+mod view;
+mod work;
+
+use std::{
+    path::{Component, Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
+    time::SystemTime,
+};
+
+use axum::{
+    Json, Router,
+    extract::{DefaultBodyLimit, Query, State},
+    http::StatusCode,
+    response::{IntoResponse, Response},
+    routing::{get, post},
+};
+use ferntast_lab::work::{Opened, WorkError};
+use serde::Deserialize;
+use tokio::sync::Semaphore;
+
+use crate::ServerError;
+
+/// Why a request to the lab fails.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// The path leads out of the folder.
+    #[error("{0}: not a path within the lab's folder")]
+    Outside(String),
+    /// The file is not there.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// An upload has a name that recordings do not have.
+    #[error("{0}: drop an .mcap or .csv file")]
+    Kind(String),
+    /// There is a file of that name.
+    #[error("{0} exists already in the lab's folder: rename yours")]
+    Exists(String),
+    /// An upload was cut off.
+    #[error("the file did not arrive whole: {0}")]
+    CutOff(String),
+    /// There are fewer joints.
+    #[error("{path} has no joint {number}")]
+    Joint {
+        /// The recording.
+        path: String,
+        /// The number asked for, from 0.
+        number: usize,
+    },
+    /// The report cannot be made.
+    #[error(transparent)]
+    Render(#[from] ferntast_lab::report::RenderError),
+    /// The work cannot be done.
+    #[error(transparent)]
+    Work(#[from] WorkError),
+    /// The experiment's chain cannot be read.
+    #[error(transparent)]
+    Experiment(#[from] ferntast_lab::experiment::ExperimentError),
+    /// The work was broken off.
+    #[error("the work broke off; the server's terminal says why")]
+    Broken,
+}
+
+impl IntoResponse for LabError {
+    fn into_response(self) -> Response {
+        let body = Json(serde_json::json!({ "error": self.to_string() }));
+        (StatusCode::UNPROCESSABLE_ENTITY, body).into_response()
+    }
+}
+
+/// What was opened last, so that the next step need not read it again.
+struct Kept {
+    path: PathBuf,
+    changed: Option<SystemTime>,
+    opened: Arc<Vec<Opened>>,
+}
+
+/// The lab of one folder.
+pub struct Lab {
+    root: PathBuf,
+    kept: Mutex<Option<Kept>>,
+    turn: Arc<Semaphore>,
+}
+
+impl Lab {
+    /// The lab of `folder`.
+    ///
+    /// # Errors
+    ///
+    /// [`ServerError::Folder`].
+    pub fn new(folder: &Path) -> Result<Lab, ServerError> {
+        let folder = match folder == Path::new("") {
+            true => Path::new("."),
+            false => folder,
+        };
+        let root = folder
+            .canonicalize()
+            .map_err(|source| ServerError::Folder {
+                path: folder.to_owned(),
+                source,
+            })?;
+        Ok(Lab {
+            root,
+            kept: Mutex::new(None),
+            turn: Arc::new(Semaphore::new(1)),
+        })
+    }
+
+    /// A file in the folder that is there.
+    fn there(&self, path: &str) -> Result<PathBuf, LabError> {
+        let wanted = self.inside(path)?;
+        let found = wanted.canonicalize().map_err(|source| LabError::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        match found.starts_with(&self.root) {
+            true => Ok(wanted),
+            false => Err(LabError::Outside(path.to_owned())),
+        }
+    }
+
+    /// A path in the folder, whether there is something or not.
+    fn inside(&self, path: &str) -> Result<PathBuf, LabError> {
+        let relative = Path::new(path);
+        let plain = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+        if path.is_empty() || path.contains('\0') || !relative.components().all(plain) {
+            return Err(LabError::Outside(path.to_owned()));
+        }
+        Ok(self.root.join(relative))
+    }
+
+    /// A new file in the folder; its parent must be in there too.
+    fn new_file(&self, path: &str) -> Result<PathBuf, LabError> {
+        let wanted = self.inside(path)?;
+        let parent = wanted
+            .parent()
+            .and_then(|parent| parent.canonicalize().ok());
+        match parent {
+            Some(parent) if parent.starts_with(&self.root) => Ok(wanted),
+            _ => Err(LabError::Outside(path.to_owned())),
+        }
+    }
+
+    /// How a path in the folder is called in answers.
+    fn name(&self, path: &Path) -> String {
+        path.strip_prefix(&self.root)
+            .unwrap_or(path)
+            .display()
+            .to_string()
+    }
+
+    /// Experiments of a file, read once as long as the file stays as it is.
+    fn open(&self, path: &str) -> Result<Arc<Vec<Opened>>, LabError> {
+        let path = self.there(path)?;
+        let changed = path.metadata().and_then(|data| data.modified()).ok();
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(kept) = kept.as_ref()
+            && kept.path == path
+            && kept.changed == changed
+        {
+            return Ok(kept.opened.clone());
+        }
+        let opened = Arc::new(ferntast_lab::work::open(&path)?);
+        *kept = Some(Kept {
+            path,
+            changed,
+            opened: opened.clone(),
+        });
+        Ok(opened)
+    }
+}
+
+/// Does `work` beside the server's own, so that it answers others meanwhile.
+async fn aside<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, LabError> + Send + 'static,
+) -> Result<Json<T>, LabError> {
+    let done = tokio::task::spawn_blocking(work).await;
+    done.unwrap_or(Err(LabError::Broken)).map(Json)
+}
+
+/// A file in the folder.
+#[derive(Debug, Deserialize)]
+pub struct At {
+    path: String,
+}
+
+/// A joint of an experiment file or recording.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Joint {
+    path: String,
+    /// Which joint of a recording of ferntast's own, from 0.
+    #[serde(default)]
+    joint: usize,
+}
+
+/// The lab's addresses.
+pub fn routes(lab: Arc<Lab>) -> Router {
+    Router::new()
+        .route("/api/lab/files", get(list))
+        .route("/api/lab/offered", get(offered))
+        .route(
+            "/api/lab/effects",
+            get(|| async { Json(ferntast_identification::catalogue()) }),
+        )
+        .route("/api/lab/open", get(view::open))
+        .route("/api/lab/start", post(work::start))
+        .route("/api/lab/compare", post(work::compare))
+        .route("/api/lab/diagnose", post(work::diagnose))
+        .route("/api/lab/add", post(work::add))
+        .route("/api/lab/report", post(work::report))
+        .route(
+            "/api/lab/upload",
+            post(upload::take).layer(DefaultBodyLimit::disable()),
+        )
+        .with_state(lab)
+}
+
+async fn list(State(lab): State<Arc<Lab>>) -> Result<Json<files::Listing>, LabError> {
+    aside(move || Ok(files::list(&lab.root))).await
+}
+
+async fn offered(
+    State(lab): State<Arc<Lab>>,
+    Query(at): Query<At>,
+) -> Result<Json<ferntast_lab::work::Offered>, LabError> {
+    aside(move || Ok(ferntast_lab::work::offered(&lab.there(&at.path)?)?)).await
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_path_leads_out_of_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("lab");
+        std::fs::create_dir_all(root.join("sub")).unwrap();
+        std::fs::write(folder.path().join("secret.csv"), "t_s\n0\n").unwrap();
+        std::fs::write(root.join("sub/own.csv"), "t_s\n0\n").unwrap();
+        std::os::unix::fs::symlink(folder.path(), root.join("way_out")).unwrap();
+        let lab = Lab::new(&root).unwrap();
+        assert!(lab.there("sub/own.csv").is_ok());
+        assert!(lab.new_file("sub/new.toml").is_ok());
+        for path in [
+            "../secret.csv",
+            "/etc/passwd",
+            "sub/../../secret.csv",
+            "way_out/secret.csv",
+            "",
+            "sub/\0",
+        ] {
+            assert!(lab.there(path).is_err(), "{path}");
+            assert!(lab.new_file(path).is_err(), "{path}");
+        }
+    }
+}

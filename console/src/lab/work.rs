@@ -1,0 +1,186 @@
+//! Work that may take long: answers come line by line.
+
+use std::{convert::Infallible, sync::Arc};
+
+use axum::{
+    Json,
+    body::Body,
+    extract::State,
+    http::header,
+    response::{IntoResponse, Response},
+};
+use ferntast_identification::{Comparison, Diagnosis};
+use ferntast_lab::{
+    report,
+    work::{self, Beginning, Opened},
+};
+use futures_util::stream;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use tokio::sync::mpsc;
+
+use super::{
+    Joint, Lab, LabError,
+    drawing::{Drawing, MOST_POINTS},
+};
+
+/// Says how much is done.
+type Progress<'a> = &'a mut dyn FnMut(f64);
+
+/// Does `work` when it is its turn, and answers in lines of JSON. If nobody
+/// reads any more, it goes on to its end: what it writes is whole.
+fn in_lines<T: Serialize>(
+    lab: &Arc<Lab>,
+    work: impl FnOnce(&Lab, Progress<'_>) -> Result<T, LabError> + Send + 'static,
+) -> Response {
+    let (lines, reader) = mpsc::unbounded_channel::<String>();
+    let lab = lab.clone();
+    tokio::spawn(async move {
+        let turn = lab.turn.clone();
+        let Ok(_permit) = turn.acquire().await else {
+            return;
+        };
+        let broken = lines.clone();
+        let done = tokio::task::spawn_blocking(move || {
+            let mut told = 0.0;
+            let result = work(&lab, &mut |share: f64| {
+                if share - told >= 0.01 {
+                    told = share;
+                    say(&lines, &json!({ "progress": share }));
+                }
+            });
+            match result {
+                Ok(result) => say(&lines, &Done { result }),
+                Err(error) => say(&lines, &json!({ "error": error.to_string() })),
+            }
+        });
+        if done.await.is_err() {
+            say(&broken, &json!({ "error": LabError::Broken.to_string() }));
+        }
+    });
+    let body = stream::unfold(reader, |mut reader| async move {
+        let line = reader.recv().await?;
+        Some((Ok::<_, Infallible>(line), reader))
+    });
+    let kind = [(header::CONTENT_TYPE, "application/x-ndjson")];
+    (kind, Body::from_stream(body)).into_response()
+}
+
+/// The last line.
+#[derive(Serialize)]
+struct Done<T> {
+    result: T,
+}
+
+fn say(lines: &mpsc::UnboundedSender<String>, value: &impl Serialize) {
+    let Ok(line) = serde_json::to_string(value) else {
+        return;
+    };
+    // Nobody reads any more: then nobody has to be told.
+    let _ = lines.send(line + "\n");
+}
+
+/// The experiment on one joint, and what to do with it.
+fn with_joint<T>(
+    lab: &Lab,
+    joint: &Joint,
+    work: impl FnOnce(&Opened) -> Result<T, LabError>,
+) -> Result<T, LabError> {
+    let opened = lab.open(&joint.path)?;
+    let one = opened.get(joint.joint).ok_or_else(|| LabError::Joint {
+        path: joint.path.clone(),
+        number: joint.joint,
+    })?;
+    work(one)
+}
+
+/// A new experiment file.
+#[derive(Debug, Deserialize)]
+pub struct Start {
+    path: String,
+    experiment: Beginning,
+}
+
+/// Writes the first experiment file on a recording.
+pub async fn start(State(lab): State<Arc<Lab>>, Json(start): Json<Start>) -> Response {
+    in_lines(&lab, move |lab, _| {
+        work::start(&start.experiment, &lab.new_file(&start.path)?)?;
+        Ok(json!({ "path": start.path }))
+    })
+}
+
+/// The model against the recordings, and curves to draw.
+#[derive(Serialize)]
+struct Compared {
+    comparison: Comparison,
+    drawings: Vec<Drawing>,
+}
+
+/// Holds the model against the recordings, with curves to draw.
+pub async fn compare(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> Response {
+    in_lines(&lab, move |lab, progress| {
+        progress(0.05);
+        with_joint(lab, &joint, |opened| {
+            progress(0.3);
+            let sessions = opened.dataset.sessions.len() + opened.dataset.held_out.len();
+            let comparison = opened.compare_drawing(MOST_POINTS / sessions.max(1))?;
+            let drawings: Vec<Drawing> = comparison.series.iter().map(Drawing::of).collect();
+            Ok(Compared {
+                comparison,
+                drawings,
+            })
+        })
+    })
+}
+
+/// Tells which effect is missing.
+pub async fn diagnose(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> Response {
+    in_lines(&lab, move |lab, progress| {
+        with_joint(lab, &joint, |opened| Ok(opened.diagnose(progress)?))
+    })
+}
+
+/// What is to be added to which experiment.
+#[derive(Debug, Deserialize)]
+pub struct Addition {
+    path: String,
+    /// An id, or `NAME=EXPRESSION`.
+    effect: String,
+    /// `NAME=LOW,HIGH` of parameters that are searched.
+    #[serde(default)]
+    bounds: Vec<String>,
+    /// The new file; else beside the old one.
+    #[serde(default)]
+    output: Option<String>,
+}
+
+/// Adds an effect and writes the new experiment file.
+pub async fn add(State(lab): State<Arc<Lab>>, Json(addition): Json<Addition>) -> Response {
+    in_lines(&lab, move |lab, progress| {
+        let effect = work::own_effect(&addition.effect, &addition.bounds)?;
+        let parent = lab.there(&addition.path)?;
+        let output = match &addition.output {
+            Some(output) => lab.new_file(output)?,
+            None => work::beside(&parent, effect.name()),
+        };
+        progress(0.1);
+        let joint = Joint {
+            path: addition.path.clone(),
+            joint: 0,
+        };
+        let added = with_joint(lab, &joint, |opened| Ok(opened.add(&effect, &output)?))?;
+        Ok(json!({ "path": lab.name(&output), "added": added }))
+    })
+}
+
+/// Makes the report's page; the browser saves it.
+pub async fn report(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> Response {
+    in_lines(&lab, move |lab, progress| {
+        with_joint(lab, &joint, |opened| {
+            let comparison = opened.compare()?;
+            let diagnosis: Diagnosis = opened.diagnose(progress)?;
+            let report = report::assemble(opened, &comparison, &diagnosis)?;
+            Ok(json!({ "html": report::render(&report)? }))
+        })
+    })
+}

@@ -1,0 +1,20 @@
+//! One page in the browser: the console of a session, and the lab.
+//!
+//! ```text
+//! browser ── HTTP, WebSocket ── server ┬ session: desk ── the bus
+//!                                      └ lab: work of `ferntast-lab`
+//! ```
+//!
+//! * [`server`]: listens, and asks [`guard`] about every request,
+//! * [`assets`]: the page itself; nothing comes from a network,
+//! * [`session`]: who sits at the desk of a session, what is shown there, and
+//!   the hand that the mouse moves,
+//! * [`lab`]: recordings and experiments of a folder.
+
+pub mod assets;
+pub mod guard;
+pub mod lab;
+pub mod server;
+pub mod session;
+
+pub use server::{Listen, Server, ServerError};

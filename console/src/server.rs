@@ -1,0 +1,179 @@
+//! Listens, and answers.
+
+use std::{
+    io,
+    net::{SocketAddr, TcpListener},
+    path::PathBuf,
+    sync::Arc,
+    thread::JoinHandle,
+};
+
+use axum::{Router, middleware};
+use tokio::sync::oneshot;
+
+use crate::{
+    assets,
+    guard::{self, Guard},
+    lab, session,
+};
+
+/// Where the page is served, and to whom.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Listen {
+    /// Address and port; `None` for the first free port of this machine's
+    /// loopback from 8080 on.
+    pub address: Option<SocketAddr>,
+    /// What has to be shown; a must beyond loopback.
+    pub token: Option<String>,
+}
+
+/// Why the page is not served.
+#[derive(Debug, thiserror::Error)]
+pub enum ServerError {
+    /// Others could reach it, and it asks nothing of them.
+    #[error(
+        "--listen {0}: beyond this machine's loopback a token is needed; give --token WORD (16 characters or more)"
+    )]
+    NoToken(SocketAddr),
+    /// The token can be guessed, or cannot be part of an address.
+    #[error("--token: use 16 or more letters, digits, '-' or '_'")]
+    WeakToken,
+    /// The port is taken, or not ours to have.
+    #[error("cannot listen at {address}: {source}; choose another with --listen")]
+    Listen {
+        /// Where.
+        address: SocketAddr,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The folder of the lab is none.
+    #[error("{path}: {source}")]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The server cannot run.
+    #[error("the page cannot be served: {0}")]
+    Run(io::Error),
+}
+
+/// Ports that are tried one after the other where none is asked for.
+const PORTS: std::ops::Range<u16> = 8080..8180;
+
+impl Listen {
+    fn bind(&self) -> Result<TcpListener, ServerError> {
+        let bind = |address| {
+            TcpListener::bind(address).map_err(|source| ServerError::Listen { address, source })
+        };
+        if let Some(address) = self.address {
+            return bind(address);
+        }
+        let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
+        let free = PORTS.map(loopback).find_map(|address| bind(address).ok());
+        free.map_or_else(|| bind(loopback(0)), Ok)
+    }
+
+    /// That others than this machine cannot get in unasked.
+    ///
+    /// # Errors
+    ///
+    /// [`ServerError::NoToken`], [`ServerError::WeakToken`].
+    pub fn check(&self) -> Result<(), ServerError> {
+        let allowed = |sign: char| sign.is_ascii_alphanumeric() || sign == '-' || sign == '_';
+        let beyond = self.address.filter(|address| !address.ip().is_loopback());
+        match (&self.token, beyond) {
+            (Some(token), _) if token.len() < 16 || !token.chars().all(allowed) => {
+                Err(ServerError::WeakToken)
+            }
+            (None, Some(address)) => Err(ServerError::NoToken(address)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What the page serves.
+#[derive(Default)]
+pub struct Content {
+    /// The session, if one runs.
+    pub desk: Option<Arc<session::Desk>>,
+    /// The lab's folder.
+    pub folder: PathBuf,
+}
+
+/// A page that is being served, by threads of its own; dropping it ends that.
+pub struct Server {
+    /// Where to look at it, with the token.
+    pub url: String,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Server {
+    /// Serves from now on.
+    ///
+    /// # Errors
+    ///
+    /// [`ServerError`].
+    pub fn start(listen: &Listen, content: Content) -> Result<Server, ServerError> {
+        listen.check()?;
+        let listener = listen.bind()?;
+        listener.set_nonblocking(true).map_err(ServerError::Run)?;
+        let address = listener.local_addr().map_err(ServerError::Run)?;
+        let guard = Arc::new(Guard {
+            address,
+            token: listen.token.clone(),
+        });
+        let lab = lab::Lab::new(&content.folder)?;
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(2)
+            .thread_name("page")
+            .enable_all()
+            .build()
+            .map_err(ServerError::Run)?;
+        let (stop, stopped) = oneshot::channel::<()>();
+        let router = Router::new()
+            .merge(assets::routes())
+            .merge(lab::routes(Arc::new(lab)))
+            .merge(session::routes(content.desk))
+            .layer(middleware::from_fn_with_state(guard, guard::watch));
+        let thread = std::thread::Builder::new()
+            .name("page".to_owned())
+            .spawn(move || {
+                runtime.block_on(async move {
+                    let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
+                        return;
+                    };
+                    let serving =
+                        std::future::IntoFuture::into_future(axum::serve(listener, router));
+                    // Connections that are open are cut: nobody waits for a
+                    // page that somebody left open.
+                    tokio::select! {
+                        _ = serving => {}
+                        _ = stopped => {}
+                    }
+                });
+                // Nor for a diagnosis that nobody reads any more.
+                runtime.shutdown_background();
+            })
+            .map_err(ServerError::Run)?;
+        let token = listen.token.as_ref();
+        let query = token.map_or_else(String::new, |token| format!("/?token={token}"));
+        Ok(Server {
+            url: format!("http://{address}{query}"),
+            stop: Some(stop),
+            thread: Some(thread),
+        })
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            // A panic in there was told already.
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The hand that the mouse moves.
+//!
+//! The pointer does not move the master itself: it pulls a hand with mass and
+//! damping by a spring. So the force on the hand is felt as a distance between
+//! pointer and hand, steps of the mouse become motion, and a pointer far behind
+//! a wall presses no harder than the spring drawn out to its leash.
+
+/// What a hand does under the pull of its target and a force on it.
+pub trait GripModel: Send {
+    /// At rest at `position` \[m\].
+    fn rest_at(&mut self, position: [f64; 2]);
+
+    /// Moves on by `dt` \[s\] towards `target` \[m\] under `force` \[N\]; gives
+    /// the position \[m\].
+    fn step(&mut self, dt: f64, target: [f64; 2], force: [f64; 2]) -> [f64; 2];
+}
+
+/// Longest step of the model; after a longer pause it goes on from there \[s\].
+const LONGEST_STEP: f64 = 0.02;
+
+/// A hand on the master, while a page holds it.
+pub struct PageHand {
+    model: Box<dyn GripModel>,
+    /// Farthest that the hand goes from the middle along each axis \[m\].
+    reach: f64,
+    /// Farthest that the target is from the hand \[m\]: so much the spring is
+    /// drawn out, however far away the pointer is.
+    leash: f64,
+    /// Where the hand is \[m\], while it is held.
+    at: Option<[f64; 2]>,
+}
+
+impl PageHand {
+    /// A hand that nobody holds.
+    pub fn new(model: Box<dyn GripModel>, reach: f64, leash: f64) -> PageHand {
+        PageHand {
+            model,
+            reach,
+            leash,
+            at: None,
+        }
+    }
+
+    /// Moves on by `dt` \[s\]. `wanted` is where the page wants the hand,
+    /// `None` while it does not hold it; `at` is where the master is, from which
+    /// the hand begins; `force` is on the hand. Gives where the hand is, while
+    /// it is held. Lengths \[m\], leader base frame; force \[N\].
+    pub fn step(
+        &mut self,
+        dt: f64,
+        wanted: Option<[f64; 2]>,
+        at: [f64; 2],
+        force: [f64; 2],
+    ) -> Option<[f64; 2]> {
+        let Some(wanted) = wanted else {
+            self.at = None;
+            return None;
+        };
+        let reach = self.reach;
+        let inside = |point: [f64; 2]| point.map(|value| value.clamp(-reach, reach));
+        let from = match self.at {
+            Some(at) => at,
+            None => {
+                let begin = inside(at);
+                self.model.rest_at(begin);
+                begin
+            }
+        };
+        let wanted = inside(wanted);
+        let way = [wanted[0] - from[0], wanted[1] - from[1]];
+        let share = (self.leash / way[0].hypot(way[1]).max(1e-9)).min(1.0);
+        let target = [from[0] + share * way[0], from[1] + share * way[1]];
+        let now = inside(self.model.step(dt.clamp(0.0, LONGEST_STEP), target, force));
+        self.at = Some(now);
+        Some(now)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Follows its target at once, gives way by a millimetre a newton.
+    struct Stiff;
+
+    impl GripModel for Stiff {
+        fn rest_at(&mut self, _: [f64; 2]) {}
+        fn step(&mut self, _: f64, target: [f64; 2], force: [f64; 2]) -> [f64; 2] {
+            [target[0] + 1e-3 * force[0], target[1] + 1e-3 * force[1]]
+        }
+    }
+
+    #[test]
+    fn it_begins_where_the_master_is_and_is_pulled_no_farther_than_its_leash() {
+        let mut hand = PageHand::new(Box::new(Stiff), 0.06, 0.001);
+        let mut last = [0.02, -0.01];
+        for step in 0..200 {
+            let now = hand
+                .step(0.004, Some([-0.5, 0.04]), [0.02, -0.01], [0.0; 2])
+                .unwrap();
+            let way = (now[0] - last[0]).hypot(now[1] - last[1]);
+            assert!(way < 0.001 + 1e-12, "{way} m in step {step}");
+            last = now;
+        }
+        assert!((last[0] + 0.06).abs() < 1e-12 && (last[1] - 0.04).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_force_moves_it_and_nobody_holds_it_when_nobody_does() {
+        let mut hand = PageHand::new(Box::new(Stiff), 0.06, 0.1);
+        assert_eq!(hand.step(0.004, None, [0.0; 2], [0.0; 2]), None);
+        let at = hand
+            .step(0.004, Some([0.01, 0.0]), [0.01, 0.0], [-3.0, 2.0])
+            .unwrap();
+        assert!((at[0] - 0.007).abs() < 1e-12 && (at[1] - 0.002).abs() < 1e-12);
+        assert_eq!(hand.step(0.004, None, [0.0; 2], [0.0; 2]), None);
+        // Taken anew it begins anew, wherever it was before.
+        let at = hand
+            .step(0.0, Some([0.05, 0.0]), [-0.03, 0.0], [0.0; 2])
+            .unwrap();
+        assert_eq!(at, [-0.03, 0.0]);
+    }
+}

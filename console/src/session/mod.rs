@@ -1,0 +1,105 @@
+//! A session's console: pages over WebSocket on one side, the bus on the other.
+//!
+//! * [`seat`]: who operates, and whether the hand is held,
+//! * [`desk`]: what pages and the loop share,
+//! * [`link`](SessionPorts): the loop's side, topics of the bus,
+//! * [`message`]: what is said between page and server.
+
+pub mod desk;
+pub mod hand;
+pub mod message;
+mod ports;
+pub mod seat;
+
+use std::sync::Arc;
+
+use axum::{
+    Json, Router,
+    extract::{
+        State,
+        ws::{Message, WebSocket, WebSocketUpgrade},
+    },
+    response::Response,
+    routing::get,
+};
+
+pub use desk::Desk;
+pub use hand::{GripModel, PageHand};
+pub use ports::SessionPorts;
+
+use message::{Answer, Request};
+
+/// Longest request of a page \[bytes\].
+const LONGEST_REQUEST: usize = 4096;
+
+/// The session's addresses. Without a session there is only the word that
+/// there is none.
+pub fn routes(desk: Option<Arc<Desk>>) -> Router {
+    let about = desk.is_some();
+    let router = Router::new().route(
+        "/api/about",
+        get(move || async move { Json(serde_json::json!({ "session": about })) }),
+    );
+    match desk {
+        Some(desk) => router.merge(
+            Router::new()
+                .route("/api/session", get(connect))
+                .with_state(desk),
+        ),
+        None => router,
+    }
+}
+
+async fn connect(State(desk): State<Arc<Desk>>, upgrade: WebSocketUpgrade) -> Response {
+    upgrade
+        .max_message_size(LONGEST_REQUEST)
+        .on_upgrade(move |socket| async move {
+            let page = desk.enter();
+            serve(&desk, page, socket).await;
+            desk.leave(page);
+        })
+}
+
+/// Talks with a page until it goes.
+async fn serve(desk: &Desk, page: u64, mut socket: WebSocket) {
+    let hello = Answer::Hello {
+        page,
+        session: &desk.about,
+    };
+    if send(&mut socket, &hello).await.is_none() {
+        return;
+    }
+    let mut snapshots = desk.snapshots();
+    loop {
+        tokio::select! {
+            changed = snapshots.changed() => {
+                let text = snapshots.borrow_and_update().clone();
+                if changed.is_err() || socket.send(Message::Text(text)).await.is_err() {
+                    return;
+                }
+            }
+            received = socket.recv() => {
+                let text = match received {
+                    Some(Ok(Message::Text(text))) => text,
+                    Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
+                    _ => return,
+                };
+                let refused = match serde_json::from_str::<Request>(&text) {
+                    Ok(request) => desk.ask(page, request).err().map(|error| error.to_string()),
+                    Err(error) => Some(format!("not understood: {error}")),
+                };
+                if let Some(reason) = refused
+                    && send(&mut socket, &Answer::Refused { reason }).await.is_none()
+                {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// Says something to a page; `None` when it is gone.
+async fn send(socket: &mut WebSocket, answer: &Answer<'_>) -> Option<()> {
+    let text = serde_json::to_string(answer).ok()?;
+    socket.send(Message::Text(text.into())).await.ok()
+}

@@ -1,0 +1,235 @@
+//! From results to a report.
+
+use ferntast_identification::{Comparison, Diagnosis, compare::Series, diagnose};
+
+use super::{
+    Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap, Trace,
+    Verdict, Window,
+};
+use crate::{
+    experiment::{self, ExperimentError},
+    work::Opened,
+};
+
+/// The report on an experiment.
+///
+/// # Errors
+///
+/// A file of the experiment's chain cannot be used.
+pub fn assemble(
+    opened: &Opened,
+    comparison: &Comparison,
+    diagnosis: &Diagnosis,
+) -> Result<Report, ExperimentError> {
+    let unit = opened.torque_unit().to_owned();
+    let history = match &opened.experiment.path {
+        Some(path) => experiment::history(path, &experiment::data_folder())?,
+        None => Vec::new(),
+    };
+    let (kind, text) = match diagnosis.verdict {
+        diagnose::Verdict::Missing => (
+            "missing",
+            format!(
+                "{} explains what the model leaves.",
+                diagnosis
+                    .candidates
+                    .first()
+                    .map_or("An effect", |best| best.effect.as_str())
+            ),
+        ),
+        diagnose::Verdict::Complete => ("complete", "What is left is noise.".to_owned()),
+        diagnose::Verdict::Unexplained => (
+            "unexplained",
+            "Something is missing that the catalogue does not have.".to_owned(),
+        ),
+    };
+    let mut notes = opened.notes.clone();
+    notes.extend(comparison.extrapolated.iter().map(|beyond| {
+        format!(
+            "{}: {} goes beyond what was fitted in {:.0} % of it",
+            beyond.session,
+            beyond.signal,
+            beyond.share * 100.0
+        )
+    }));
+    Ok(Report {
+        title: opened.experiment.title.clone(),
+        subtitle: format!(
+            "{} samples in {} sessions, {} used",
+            comparison.samples,
+            opened.dataset.sessions.len(),
+            comparison.used
+        ),
+        verdict: Some(Verdict {
+            kind: kind.to_owned(),
+            text,
+        }),
+        figures: figures(comparison, &unit),
+        traces: comparison
+            .series
+            .iter()
+            .map(|series| trace(series, &unit))
+            .collect(),
+        maps: comparison
+            .residual_maps
+            .iter()
+            .map(|map| ResidualMap {
+                signal: map.signal.clone(),
+                signal_unit: map.unit.clone(),
+                unit: unit.clone(),
+                bins: map
+                    .bins
+                    .iter()
+                    .map(|bin| Bin {
+                        center: bin.at,
+                        mean: bin.mean,
+                        spread: bin.spread,
+                        count: bin.count as u64,
+                    })
+                    .collect(),
+            })
+            .collect(),
+        candidates: diagnosis
+            .candidates
+            .iter()
+            .map(|own| Candidate {
+                effect: own.effect.clone(),
+                held_out_before: own.held_out_before,
+                held_out_after: own.held_out_after,
+                unit: unit.clone(),
+                p_value: own.p_value,
+                indistinguishable_from: own.indistinguishable_from.clone(),
+                separate_by: own.separate_by.clone(),
+            })
+            .collect(),
+        dependences: diagnosis
+            .residual_depends_on
+            .iter()
+            .map(|own| Dependence {
+                signals: own.signals.clone(),
+                strength: own.strength,
+            })
+            .collect(),
+        history: history
+            .into_iter()
+            .filter_map(|step| {
+                Some(HistoryPoint {
+                    label: step.added.unwrap_or_else(|| step.effects.join(", ")),
+                    held_out: step.held_out?,
+                    unit: unit.clone(),
+                })
+            })
+            .collect(),
+        parameters: comparison
+            .parameters
+            .iter()
+            .map(|(name, own)| Parameter {
+                name: name.clone(),
+                value: own.value,
+                std_error: own.std_error,
+                unit: own.unit.clone(),
+                excited: !comparison.not_excited.contains(name),
+            })
+            .collect(),
+        worst: comparison
+            .worst
+            .iter()
+            .map(|own| Window {
+                session: own.session.clone(),
+                start: own.from,
+                end: own.to,
+                rms: own.rms,
+                unit: unit.clone(),
+            })
+            .collect(),
+        notes,
+    })
+}
+
+fn figures(comparison: &Comparison, unit: &str) -> Vec<Figure> {
+    let figure = |label: &str, value: String, note: &str| Figure {
+        label: label.to_owned(),
+        value,
+        note: note.to_owned(),
+    };
+    let mut figures = vec![
+        figure(
+            "error on data held out",
+            format!("{} {unit}", significant(comparison.rms.held_out)),
+            &format!(
+                "{:.2} % of the torque",
+                comparison.relative_error_held_out * 100.0
+            ),
+        ),
+        figure(
+            "error on data fitted",
+            format!("{} {unit}", significant(comparison.rms.train)),
+            &format!("{:.2} % of the torque", comparison.relative_error * 100.0),
+        ),
+    ];
+    if let Some(noise) = comparison.noise.repeats {
+        figures.push(figure(
+            "noise between repeats",
+            format!("{} {unit}", significant(noise)),
+            "no model gets below it",
+        ));
+    }
+    figures
+}
+
+fn trace(series: &Series, unit: &str) -> Trace {
+    let start = series.time.first().copied().unwrap_or(0.0);
+    let period = match series.time.as_slice() {
+        [first, .., last] => (last - first) / (series.time.len() - 1) as f64,
+        _ => 1.0,
+    };
+    let curve = |name: &str, values: Vec<f64>| Curve {
+        name: name.to_owned(),
+        values,
+    };
+    let residual = series
+        .measured
+        .iter()
+        .zip(&series.modelled)
+        .map(|(measured, modelled)| measured - modelled)
+        .collect();
+    Trace {
+        title: series.session.clone(),
+        unit: unit.to_owned(),
+        start,
+        period,
+        curves: vec![
+            curve("measured", series.measured.clone()),
+            curve("model", series.modelled.clone()),
+            curve("residual", residual),
+        ],
+    }
+}
+
+/// Four significant digits.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) {
+        let digits = usize::try_from(3 - magnitude).unwrap_or(0);
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::significant;
+
+    #[test]
+    fn four_digits() {
+        assert_eq!(significant(203.1349), "203.1");
+        assert_eq!(significant(-0.012345), "-0.01235");
+        assert_eq!(significant(12345.6), "12346");
+        assert_eq!(significant(1.5e-7), "1.500e-7");
+        assert_eq!(significant(0.0), "0");
+    }
+}

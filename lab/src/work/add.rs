@@ -1,0 +1,117 @@
+//! Adds an effect and writes the new experiment.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use ferntast_identification::{Addition, CustomEffect, Term, add, fit::Parameter};
+use serde::Serialize;
+
+use super::{Opened, WorkError};
+use crate::experiment::{AddedEffect, FittedParameter, write_child};
+
+/// What one addition did.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Added {
+    /// Id or name of the effect.
+    pub effect: String,
+    /// Error on data held out, before.
+    pub held_out_before: f64,
+    /// The same after.
+    pub held_out_after: f64,
+    /// The new experiment file.
+    pub experiment: PathBuf,
+    /// All parameters of the new model.
+    pub parameters: BTreeMap<String, Parameter>,
+    /// Those that the data do not excite.
+    pub not_excited: Vec<String>,
+}
+
+/// `E.toml` with `stribeck` added: `E+stribeck.toml`.
+#[must_use]
+pub fn beside(parent: &Path, effect: &str) -> PathBuf {
+    let mut name = parent.file_stem().unwrap_or_default().to_owned();
+    name.push("+");
+    name.push(effect);
+    name.push(".toml");
+    parent.with_file_name(name)
+}
+
+/// An effect as people write it: an id of the catalogue, or `NAME=EXPRESSION`
+/// with bounds `NAME=LOW,HIGH` of the parameters that are searched.
+///
+/// # Errors
+///
+/// [`WorkError::OwnEffect`].
+pub fn own_effect(text: &str, bounds: &[String]) -> Result<Term, WorkError> {
+    let Some((name, expression)) = text.split_once('=') else {
+        if let Some(bound) = bounds.first() {
+            return Err(WorkError::OwnEffect(format!(
+                "--bound {bound} belongs to an expression: give NAME=EXPRESSION as the effect"
+            )));
+        }
+        return Ok(Term::Catalogue(text.trim().to_owned()));
+    };
+    let mut searched = BTreeMap::new();
+    for text in bounds {
+        let parsed = text.split_once('=').and_then(|(name, range)| {
+            let (low, high) = range.split_once(',')?;
+            Some((
+                name.trim().to_owned(),
+                [low.trim().parse().ok()?, high.trim().parse().ok()?],
+            ))
+        });
+        let Some((name, range)) = parsed else {
+            return Err(WorkError::OwnEffect(format!(
+                "--bound {text:?}: write NAME=LOW,HIGH, as in vs=0.005,0.2"
+            )));
+        };
+        searched.insert(name, range);
+    }
+    Ok(Term::Custom(CustomEffect {
+        name: name.trim().to_owned(),
+        expression: expression.trim().to_owned(),
+        bounds: searched,
+    }))
+}
+
+impl Opened {
+    /// Adds `effect`, fits anew, and writes the new experiment to `output`.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Prepare`], [`WorkError::Write`]; nothing is written then.
+    pub fn add(&self, effect: &Term, output: &Path) -> Result<Added, WorkError> {
+        let addition: Addition = add(&self.dataset, &self.experiment.model, effect)
+            .map_err(|error| self.refuse(error))?;
+        let parameters = addition
+            .parameters
+            .iter()
+            .map(|(name, own)| {
+                let parameter = FittedParameter {
+                    value: own.value,
+                    std_error: own.std_error,
+                    unit: own.unit.clone(),
+                };
+                (name.clone(), parameter)
+            })
+            .collect();
+        let added = AddedEffect {
+            effect: effect.clone(),
+            held_out_before: addition.held_out_before,
+            held_out_after: addition.held_out_after,
+            unit: self.torque_unit().to_owned(),
+            parameters,
+        };
+        write_child(&self.experiment, &added, output)?;
+        Ok(Added {
+            effect: addition.effect,
+            held_out_before: addition.held_out_before,
+            held_out_after: addition.held_out_after,
+            experiment: output.to_owned(),
+            parameters: addition.parameters,
+            not_excited: addition.not_excited,
+        })
+    }
+}

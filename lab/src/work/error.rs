@@ -1,0 +1,58 @@
+//! Why work on an experiment does not go on.
+
+use std::path::PathBuf;
+
+use ferntast_identification::PrepareError;
+
+use crate::{
+    experiment::{ExperimentError, WriteError},
+    recording::LoadError,
+};
+
+/// Why work on an experiment does not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum WorkError {
+    /// The experiment file cannot be used.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
+    /// A recording cannot be used.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A CSV file cannot be used.
+    #[error(transparent)]
+    Csv(#[from] crate::csv::CsvError),
+    /// The data or the model lack something.
+    #[error("{title}: {source}")]
+    Prepare {
+        /// The experiment.
+        title: String,
+        /// What is lacking.
+        source: Box<PrepareError>,
+    },
+    /// The new experiment file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A new file would lie over another one.
+    #[error("{path} exists already: choose another name")]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file cannot be written.
+    #[error("cannot write {path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The recording holds no joint.
+    #[error("{path}: no joint in it")]
+    NoJoint {
+        /// The recording.
+        path: PathBuf,
+    },
+    /// An effect of one's own is not told as it has to be.
+    #[error("{0}")]
+    OwnEffect(String),
+}

@@ -1,0 +1,244 @@
+//! A browser without a window, driven as a person would.
+
+use std::{path::Path, process::Command, time::Duration};
+
+use fantoccini::{
+    Client, ClientBuilder, Locator,
+    actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction},
+    elements::Element,
+    wd::{Capabilities, WebDriverCompatibleCommand},
+};
+use hyper_util::client::legacy::connect::HttpConnector;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tokio::runtime::Runtime;
+use url::{ParseError, Url};
+
+use crate::{Process, session::free_tcp_port, wait_for};
+
+/// How long the driver may take to come up, and a page to show something.
+const PATIENCE: Duration = Duration::from_secs(40);
+
+/// Headless Chromium, by Debian's `chromium` and `chromium-driver`.
+pub struct Browser {
+    runtime: Runtime,
+    client: Option<Client>,
+    _profile: TempDir,
+    driver: Process,
+}
+
+/// What the page said on its console, and asks for it.
+#[derive(Debug)]
+struct ConsoleLog;
+
+impl WebDriverCompatibleCommand for ConsoleLog {
+    fn endpoint(&self, base: &Url, session: Option<&str>) -> Result<Url, ParseError> {
+        base.join(&format!("session/{}/se/log", session.unwrap_or_default()))
+    }
+
+    fn method_and_body(&self, _: &Url) -> (http::Method, Option<String>) {
+        (
+            http::Method::POST,
+            Some(json!({"type": "browser"}).to_string()),
+        )
+    }
+}
+
+impl Browser {
+    /// Starts one with a window of that many pixels.
+    ///
+    /// # Panics
+    ///
+    /// `chromedriver` or `chromium` is missing.
+    pub fn start(width: u32, height: u32) -> Browser {
+        let port = free_tcp_port();
+        let mut command = Command::new("chromedriver");
+        command.arg(format!("--port={port}"));
+        let driver = Process::spawn(command);
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .unwrap_or_else(|error| panic!("no runtime: {error}"));
+        let profile = TempDir::new().unwrap_or_else(|error| panic!("no scratch folder: {error}"));
+        let capabilities = json!({
+            "goog:loggingPrefs": {"browser": "ALL"},
+            "goog:chromeOptions": {"args": [
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-dev-shm-usage",
+                "--disable-background-networking",
+                "--force-color-profile=srgb",
+                "--hide-scrollbars",
+                format!("--user-data-dir={}", profile.path().display()),
+                format!("--window-size={width},{height}"),
+            ]},
+        });
+        let Value::Object(capabilities) = capabilities else {
+            unreachable!("an object was written");
+        };
+        let address = format!("http://127.0.0.1:{port}");
+        let client = wait_for(PATIENCE, || {
+            let mut builder = ClientBuilder::new(HttpConnector::new());
+            builder.capabilities(Capabilities::from_iter(capabilities.clone()));
+            runtime.block_on(builder.connect(&address)).ok()
+        });
+        let client = client.unwrap_or_else(|| {
+            panic!(
+                "no browser (apt-get install chromium chromium-driver):\n{}",
+                driver.stderr()
+            )
+        });
+        Browser {
+            runtime,
+            client: Some(client),
+            _profile: profile,
+            driver,
+        }
+    }
+
+    fn client(&self) -> &Client {
+        self.client
+            .as_ref()
+            .unwrap_or_else(|| unreachable!("it is there until it is dropped"))
+    }
+
+    fn wait<T, E: std::fmt::Debug>(
+        &self,
+        what: &str,
+        future: impl Future<Output = Result<T, E>>,
+    ) -> T {
+        self.runtime
+            .block_on(future)
+            .unwrap_or_else(|error| panic!("{what}: {error:?}"))
+    }
+
+    /// The driver's process, of which the browser's are descendants.
+    pub fn process(&self) -> u32 {
+        self.driver.id()
+    }
+
+    /// Opens an address.
+    pub fn open(&self, url: &str) {
+        self.wait(url, self.client().goto(url));
+    }
+
+    /// The element of that selector, once it is there.
+    pub fn find(&self, selector: &str) -> Element {
+        let found = wait_for(PATIENCE, || {
+            self.runtime
+                .block_on(self.client().find(Locator::Css(selector)))
+                .ok()
+        });
+        found.unwrap_or_else(|| panic!("no {selector} on the page:\n{}", self.text("body")))
+    }
+
+    /// Clicks on the element of that selector, once that can be done.
+    pub fn click(&self, selector: &str) {
+        let done = wait_for(PATIENCE, || {
+            let element = self.find(selector);
+            let enabled = self.runtime.block_on(element.is_enabled()).unwrap_or(false);
+            let clicked = enabled && self.runtime.block_on(element.click()).is_ok();
+            clicked.then_some(())
+        });
+        assert!(
+            done.is_some(),
+            "cannot click on {selector}:\n{}",
+            self.text("body")
+        );
+    }
+
+    /// Types into the element of that selector.
+    pub fn type_into(&self, selector: &str, text: &str) {
+        self.wait(selector, self.find(selector).send_keys(text));
+    }
+
+    /// What a person reads in the element of that selector.
+    pub fn text(&self, selector: &str) -> String {
+        self.run(
+            "return document.querySelector(arguments[0])?.innerText ?? ''",
+            vec![json!(selector)],
+        )
+        .as_str()
+        .unwrap_or_default()
+        .to_owned()
+    }
+
+    /// What a script returns.
+    pub fn run(&self, script: &str, arguments: Vec<Value>) -> Value {
+        self.wait(script, self.client().execute(script, arguments))
+    }
+
+    /// A number that a script returns; NaN while it returns none.
+    pub fn number(&self, script: &str) -> f64 {
+        self.run(script, Vec::new()).as_f64().unwrap_or(f64::NAN)
+    }
+
+    /// Waits until a script returns `true`.
+    pub fn until(&self, what: &str, limit: Duration, script: &str) {
+        let seen = wait_for(limit, || {
+            (self.run(script, Vec::new()) == true).then_some(())
+        });
+        assert!(
+            seen.is_some(),
+            "{what}: not within {limit:?}; the page:\n{}",
+            self.text("body")
+        );
+    }
+
+    /// Presses the pointer in the middle of an element and draws it along
+    /// `path`, pixels from the middle, each in `step`. The button stays down.
+    pub fn drag(&self, selector: &str, path: &[(f64, f64)], step: Duration) {
+        let element = self.find(selector);
+        let at = |x: f64, y: f64, duration: Duration| PointerAction::MoveToElement {
+            element: element.clone(),
+            duration: Some(duration),
+            x,
+            y,
+        };
+        let button = MOUSE_BUTTON_LEFT;
+        let mut mouse = MouseActions::new("mouse".to_owned())
+            .then(at(0.0, 0.0, Duration::ZERO))
+            .then(PointerAction::Down { button });
+        for &(x, y) in path {
+            mouse = mouse.then(at(x, y, step));
+        }
+        self.wait("drag", self.client().perform_actions(mouse));
+    }
+
+    /// Lets the pointer go.
+    pub fn release(&self) {
+        self.wait("release", self.client().release_actions());
+    }
+
+    /// Writes what is seen into `file`, as PNG.
+    pub fn screenshot(&self, file: &Path) {
+        let image = self.wait("screenshot", self.client().screenshot());
+        std::fs::write(file, image).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    }
+
+    /// Warnings and errors on the browser's console since the last call.
+    pub fn complaints(&self) -> Vec<String> {
+        let log = self.wait("log", self.client().issue_cmd(ConsoleLog));
+        let entries = log.as_array().cloned().unwrap_or_default();
+        entries
+            .iter()
+            .filter(|entry| entry["level"] == "SEVERE" || entry["level"] == "WARNING")
+            .map(|entry| entry["message"].as_str().unwrap_or_default().to_owned())
+            // The software renderer complains about itself.
+            .filter(|message| {
+                !message.contains("GPU stall")
+                    && !message.contains("swiftshader")
+                    && !message.contains("GroupMarkerNotSet")
+            })
+            .collect()
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        if let Some(client) = self.client.take() {
+            // What cannot be closed is killed with its driver.
+            let _ = self.runtime.block_on(client.close());
+        }
+    }
+}
