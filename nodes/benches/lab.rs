@@ -1,9 +1,10 @@
 //! The lab on ten minutes at 1 kHz (600 000 samples): compare, and diagnose
 //! over the whole catalogue. On one core, in this order, three runs each.
+//! `lab_peers.sh` beside this file puts the same samples to NumPy and pysindy.
 
-use std::time::Instant;
+use std::{path::Path, time::Instant};
 
-use ferntast_identification::{Dataset, ModelSpec, Session, compare, diagnose};
+use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, compare, diagnose};
 use ferntast_nodes::challenge;
 use ferntast_sim::joint_bench::{Bench, BenchConfig, HiddenEffect};
 
@@ -19,6 +20,11 @@ fn main() {
             return;
         }
     };
+    if let Some(path) = std::env::var_os("FERNTAST_BENCH_SAMPLES")
+        && let Err(error) = write_samples(Path::new(&path), &dataset, &model)
+    {
+        eprintln!("{}: {error}", Path::new(&path).display());
+    }
     let samples: usize = dataset.sessions.iter().map(Session::len).sum();
     println!("{samples} samples in {} sessions", dataset.sessions.len());
     for _ in 0..RUNS {
@@ -75,6 +81,32 @@ fn recording() -> Result<(Dataset, ModelSpec), String> {
     }
     dataset.sessions.retain(|session| session.len() > 1000);
     Ok((dataset, model))
+}
+
+/// The samples for `lab_peers.py`, rows of seven doubles: see there.
+fn write_samples(path: &Path, dataset: &Dataset, model: &ModelSpec) -> std::io::Result<()> {
+    let inertia = match model.inertia {
+        Inertia::Given(inertia) => inertia,
+        Inertia::Fit => 0.0,
+    };
+    let mut bytes = Vec::new();
+    for (number, session) in dataset.sessions.iter().enumerate() {
+        for index in 0..session.len() {
+            let at = |values: &Option<Vec<f64>>| values.as_ref().map_or(0.0, |own| own[index]);
+            for value in [
+                number as f64,
+                index as f64 * session.period,
+                session.position[index],
+                session.motor_torque[index],
+                at(&session.joint_torque),
+                at(&session.temperature),
+                inertia,
+            ] {
+                bytes.extend(value.to_le_bytes());
+            }
+        }
+    }
+    std::fs::write(path, bytes)
 }
 
 /// Largest resident memory of this process \[MiB\].

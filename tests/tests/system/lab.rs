@@ -113,6 +113,50 @@ fn the_error_falls_step_by_step_and_can_be_looked_up() {
     }
 }
 
+/// What was hidden, written down as it was: its form and what is not linear in
+/// it come from the answer, not from the catalogue.
+#[test]
+fn the_error_falls_as_far_as_with_the_true_effect() {
+    let session = Session::new();
+    let answers = answers();
+    for (case, effect, formula) in [
+        (
+            "stribeck-100",
+            "stribeck",
+            "truth=a*exp(-(qd/{vs})^2)*sign(qd)",
+        ),
+        (
+            "load_coulomb-100",
+            "load_coulomb",
+            "truth=a*abs(tau)*sign(qd)",
+        ),
+        (
+            "temperature_coulomb-100",
+            "temperature_coulomb",
+            "truth=a*(T-10)*sign(qd)",
+        ),
+        ("ripple-100", "ripple", "truth=a*sin(320*q+{ripple_ph})"),
+    ] {
+        let mut formula = formula.to_owned();
+        for name in ["vs", "ripple_ph"] {
+            if let Some(value) = answers[case]["truth"][name].as_f64() {
+                formula = formula.replace(&format!("{{{name}}}"), &value.to_string());
+            }
+        }
+        let reached = |added: &str| {
+            let from = hidden(&format!("{case}.toml"));
+            let output = format!("{case}-{}.toml", added.len());
+            let add = ["lab", "add", &from, added, "-o", &output, "--json"];
+            number(&run(&session, &add).success().json(), "held_out_after")
+        };
+        let (named, truth) = (reached(effect), reached(&formula));
+        assert!(
+            named < 1.05 * truth,
+            "{case}: {named} Nm with {effect}, {truth} Nm with {formula}"
+        );
+    }
+}
+
 #[test]
 fn an_effect_of_the_users_own_takes_part() {
     let session = Session::new();
@@ -201,6 +245,33 @@ fn real_recordings_are_identified() {
         assert!(
             (found - published).abs() < within,
             "{name}: {found} for {published}"
+        );
+    }
+    // With the publication's own filters, its own figures.
+    let published = ferntast_tests::root().join("config/experiments/emps_published.toml");
+    let published = published.to_str().expect("a path in UTF-8");
+    let told = environment(&["lab", "compare", published, "--json"])
+        .success()
+        .json();
+    for (name, figure, within) in [
+        ("inertia", 95.1089, 0.05),
+        ("b1", 203.5034, 1.0),
+        ("b0", 20.3935, 0.1),
+    ] {
+        let found = number(&told["parameters"][name], "value");
+        assert!(
+            (found - figure).abs() < within,
+            "{name}: {found} for {figure}"
+        );
+    }
+    for (name, percent) in [
+        ("relative_error", 4.083),
+        ("relative_error_held_out", 5.982),
+    ] {
+        let found = 100.0 * number(&told, name);
+        assert!(
+            (found - percent).abs() < 0.1,
+            "{name}: {found} for {percent} %"
         );
     }
     let told = environment(&["lab", "diagnose", emps, "--json"])

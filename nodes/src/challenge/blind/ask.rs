@@ -68,7 +68,7 @@ fn answer(case: &Case) -> Result<Given, String> {
         Some((proposal, was_family)) => {
             let after = put(&joined(&bench, &recording, data, proposal)?, &believed)?;
             let first = after.candidates.first();
-            let only = |own: &&ferntast_identification::diagnose::NamedCandidate| {
+            let only = |own: &&diagnose::NamedCandidate| {
                 is_right(&own.effect) && own.indistinguishable_from.iter().all(is_right)
             };
             Some(FollowedUp {

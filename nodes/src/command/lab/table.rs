@@ -154,6 +154,15 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
             println!("    {}", candidate.separate_by);
         }
     }
+    for suspect in &diagnosis.suspected {
+        println!(
+            "suspected, not proven: {} (p {:.2}); to be sure record {}: {}",
+            suspect.effect,
+            suspect.p_value,
+            suspect.next_experiment.id(),
+            suspect.next_experiment.instruction()
+        );
+    }
     if !diagnosis.residual_depends_on.is_empty() {
         println!();
         println!("the residual depends on");
