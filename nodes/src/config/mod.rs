@@ -4,7 +4,7 @@ mod load;
 mod scenario;
 mod shipped;
 
-pub use load::{ConfigError, Loaded, load_scenario, read_hand_recording};
+pub use load::{ConfigError, Loaded, load_arm, load_mission, load_scenario, read_hand_recording};
 pub use scenario::{
     GatewaySection, HandSection, HandSource, LinkSection, Middleware, RecorderSection, Scenario,
 };
