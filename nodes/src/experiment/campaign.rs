@@ -250,3 +250,35 @@ pub fn run_all(
         run_and_identify(arm, one, folder, &|slice| progress(slice))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::config;
+
+    #[test]
+    fn the_shipped_mission_fits_the_arm_and_no_two_runs_share_a_folder_or_seed() {
+        let mission = config::load_mission("mission").unwrap();
+        let arm = config::load_arm(&mission.arm).unwrap();
+        let seconds = duration(&mission, &arm).unwrap();
+        assert!(seconds > 2000.0 && seconds < 10_000.0, "{seconds} s");
+        let runs = mission.runs();
+        let folders: BTreeSet<PathBuf> = runs.iter().map(Run::folder).collect();
+        let seeds: BTreeSet<u64> = runs.iter().map(|one| one.seed).collect();
+        assert_eq!(
+            runs.len(),
+            (mission.days.len() + 1) * mission.experiment.len()
+        );
+        assert_eq!((folders.len(), seeds.len()), (runs.len(), runs.len()));
+        assert!(
+            Mission {
+                days: vec![-1.0],
+                ..mission
+            }
+            .validate()
+            .is_err()
+        );
+    }
+}

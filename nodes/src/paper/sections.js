@@ -9,9 +9,12 @@ function make(parent, tag, text, name) {
   return element;
 }
 
+const COLOURS = ["--curve-0", "--curve-1", "--curve-2", "--curve-3", "--quiet"];
+const colourOf = (n) => COLOURS[n % COLOURS.length];
+
 /** Dots as a curve with holes between, so that no line joins them. */
 function drawable(curve, n, many) {
-  const colour = many ? "--curve-0" : "--curve-" + (n % 4);
+  const colour = many ? COLOURS[0] : colourOf(n);
   if (!curve.dots) return { name: curve.name, colour, x: curve.x, y: curve.y };
   const x = [], y = [];
   curve.x.forEach((value, i) => { x.push(value, value); y.push(curve.y[i], null); });
@@ -26,7 +29,7 @@ function showChart(grid, each) {
     const bar = make(panel, "div", null, "bar");
     each.curves.forEach((curve, n) => {
       const entry = make(bar, "span", null, "quiet");
-      make(entry, "span", null, "swatch").style.background = "var(--curve-" + (n % 4) + ")";
+      make(entry, "span", null, "swatch").style.background = "var(" + colourOf(n) + ")";
       entry.append(curve.name);
     });
   }
@@ -37,18 +40,18 @@ function showItems(parent, items) {
   const wrap = make(parent, "div", null, "scroll panel");
   const rows = make(wrap, "table");
   const head = make(rows, "tr");
-  for (const [text, number] of [["item"], ["paper", 1], ["here", 1], ["± standard error", 1], ["unit"], ["holds"], ["asked for"]]) {
+  for (const [text, number] of [["item"], ["paper", 1], ["here", 1], ["± error", 1], ["unit"], ["holds"], ["asked for"]]) {
     make(head, "th", text, number ? "number" : "");
   }
   for (const item of items) {
     const row = make(rows, "tr");
-    make(row, "td", item.item);
+    make(row, "td", item.item).style.minWidth = "19em";
     make(row, "td", item.paper === null ? "a statement" : brief(item.paper), "number");
     make(row, "td", brief(item.here), "number");
     make(row, "td", brief(item.std_error), "number");
     make(row, "td", item.unit);
     make(row, "td", item.holds ? "yes" : "NO").style.color = item.holds ? "var(--good)" : "var(--bad)";
-    make(row, "td", item.criterion);
+    make(row, "td", item.criterion).style.minWidth = "15em";
   }
 }
 

@@ -122,3 +122,61 @@ impl Program for ContactMotion {
         Target::Tip([tip.x, tip.y])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ferntast_model::contact::ContactParameters;
+    use ferntast_model::contour::{EdgeParameters, Surface};
+
+    fn floor() -> Feature {
+        EdgeParameters {
+            surface: Surface::Lubricated,
+            from: [-0.1, 0.0],
+            to: [0.1, 0.0],
+            contact: ContactParameters {
+                stiffness: 2e4,
+                damping: 0.0,
+                friction: 0.0,
+            },
+        }
+        .feature()
+    }
+
+    #[test]
+    fn it_slides_its_amplitude_and_holds_the_force() {
+        let press = Press {
+            force: 20.0,
+            frequency: 0.5,
+        };
+        let mut motion = ContactMotion::new(floor(), 0.01, 0.02, 1e4, &[press], 6.0).unwrap();
+        let steps = (motion.duration() * 1e3) as usize;
+        let (mut seen, mut least, mut most) = (Seen::default(), f64::MAX, f64::MIN);
+        for k in 0..steps {
+            let time = k as f64 * 1e-3;
+            let Target::Tip([x, y]) = motion.target(time, 1e-3, &seen) else {
+                continue;
+            };
+            // A surface at y = 0 behind a servo: 1e4 N/m in all.
+            seen.normal_force = (-1e4 * y).max(0.0);
+            (least, most) = (least.min(x), most.max(x));
+            if time < APPROACH {
+                assert!(y > 0.001, "not yet at the surface");
+            }
+            if time > APPROACH + SETTLE + 0.5 {
+                assert!((seen.normal_force - 20.0).abs() < 0.5, "{time} s");
+            }
+        }
+        assert!((least + 0.01).abs() < 1e-4 && (most - 0.03).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_motion_beyond_the_edge_is_refused() {
+        let press = Press {
+            force: 20.0,
+            frequency: 0.5,
+        };
+        assert!(ContactMotion::new(floor(), 0.09, 0.02, 1e4, &[press], 6.0).is_err());
+        assert!(ContactMotion::new(floor(), 0.0, 0.02, 1e4, &[], 6.0).is_err());
+    }
+}

@@ -63,3 +63,34 @@ impl Program for StiffnessMotion {
         Target::Joints(joints)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn teeth_rise_slowly_and_fall_fast_with_joint_2_alone() {
+        let mut motion = StiffnessMotion::new([0.1, 1.0], [0.11, 0.98], -0.01, 3).unwrap();
+        let mut at = |time: f64| match motion.target(time, 1e-3, &Seen::default()) {
+            Target::Joints(joints) => joints,
+            Target::Tip(_) => [f64::NAN; 2],
+        };
+        assert_eq!(at(0.0), [0.1, 1.0]);
+        for (time, depth) in [
+            (2.0, 0.0),
+            (4.0, 0.005),
+            (6.0, 0.01),
+            (6.5, 0.005),
+            (9.0, 0.005),
+        ] {
+            let [first, second] = at(time);
+            assert_eq!(first, 0.11);
+            assert!(
+                (second - (0.98 - depth)).abs() < 1e-12,
+                "{time} s: {second}"
+            );
+        }
+        assert_eq!(motion.duration(), 17.0);
+        assert!(StiffnessMotion::new([0.0; 2], [0.0; 2], 0.2, 3).is_err());
+    }
+}
