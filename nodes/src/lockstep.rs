@@ -89,7 +89,8 @@ pub struct LockstepSession {
     monitor: Monitor,
 }
 
-fn add<P: Ports + 'static>(
+/// Puts a node on the bus and among the executor's tasks.
+pub(crate) fn add<P: Ports + 'static>(
     executor: &mut Lockstep<'static, Bus>,
     bus: &Bus,
     name: NodeName,

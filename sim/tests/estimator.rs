@@ -278,7 +278,7 @@ fn singularity_saturation_and_gaps_are_flagged() {
 
 fn flags_of(form: Form) {
     let config = with(form);
-    let new = || ContactEstimator::new(&config.model(), &config.estimator).unwrap();
+    let new = || ContactEstimator::new(&config.model(), &config.estimator).expect("valid");
     let bent = JointMeasurement {
         motor_position: [-0.785, 1.571],
         joint_torque: [0.0, 0.0],
@@ -288,7 +288,7 @@ fn flags_of(form: Form) {
         (0..100)
             .map(|_| estimator.step(TICK, measurement))
             .last()
-            .unwrap()
+            .expect("ticks")
     };
     assert!(settle(&mut estimator, &bent).valid);
     // The end of the torque sensor's range, until the filter has forgotten it.

@@ -52,10 +52,10 @@ impl SensorWatch {
     ) -> SensorState {
         let mut state = SensorState::default();
         let mut at_end = false;
-        for joint in 0..JOINTS {
+        for (joint, parameters) in joints.iter().enumerate() {
             let torque = measurement.joint_torque[joint];
             let position = measurement.motor_position[joint];
-            at_end |= torque.abs() >= SATURATION * joints[joint].torque_sensor_range;
+            at_end |= torque.abs() >= SATURATION * parameters.torque_sensor_range;
             if torque == self.torque[joint] {
                 self.same_for[joint] += dt;
             } else {

@@ -33,15 +33,22 @@ pub struct RenderError(#[from] serde_json::Error);
 /// None in practice: everything in a report can be written as JSON.
 pub fn render(report: &Report) -> Result<String, RenderError> {
     let data = serde_json::to_string(&thin::thinned(report))?;
+    Ok(page(&report.title, SECTIONS, "showReport", &data))
+}
+
+/// A page in the same style: `data` is JSON that the function named `show` of
+/// the script `sections` takes; charts are at its hand.
+pub fn page(title: &str, sections: &str, show: &str, data: &str) -> String {
     // Nothing in it may end the script element or begin a comment.
     let data = data.replace('<', "\\u003c");
-    let title = report.title.replace('&', "&amp;").replace('<', "&lt;");
+    let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let parts = [
         ("@TITLE@", title.as_str()),
         ("@STYLE@", STYLE),
         ("@CHARTS@", CHARTS),
-        ("@SECTIONS@", SECTIONS),
+        ("@SECTIONS@", sections),
         ("@DATA@", &data),
+        ("@SHOW@", show),
     ];
     // Piece by piece, so that what is put in is never searched.
     let mut page = String::with_capacity(PAGE.len() + data.len() + CHARTS.len());
@@ -54,5 +61,5 @@ pub fn render(report: &Report) -> Result<String, RenderError> {
         }
     }
     page.push_str(rest);
-    Ok(page)
+    page
 }

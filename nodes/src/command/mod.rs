@@ -3,6 +3,7 @@
 mod bag;
 mod challenge;
 mod doctor;
+mod experiment;
 mod interfaces;
 mod lab;
 mod link;
@@ -10,6 +11,7 @@ mod lockstep;
 mod node;
 mod output;
 mod page_options;
+mod paper;
 mod play;
 mod replay;
 mod scenario_options;
@@ -64,6 +66,10 @@ enum Command {
     Lab(lab::Arguments),
     /// Make a recording with a hidden effect, to learn on; test the lab with many.
     Challenge(challenge::Arguments),
+    /// Run an identification experiment on the arm, or a whole campaign; record it, say what it shows.
+    Experiment(experiment::Arguments),
+    /// Run the paper's experiments and hold its table and figures against what the recordings say.
+    Paper(paper::Arguments),
     /// Look into recordings, mend them.
     Bag(bag::Arguments),
     /// Tell the operating state, or change it: enable, disable, pause, resume (re-arm).
@@ -80,8 +86,11 @@ impl Command {
     /// Whether it holds processes or a recording, so that nobody who stops
     /// reading its output may end it.
     fn keeps_running(&self) -> bool {
-        use Command::{Lockstep, Node, Play, Session};
-        matches!(self, Session(_) | Node(_) | Play(_) | Lockstep(_))
+        use Command::{Experiment, Lockstep, Node, Paper, Play, Session};
+        matches!(
+            self,
+            Session(_) | Node(_) | Play(_) | Lockstep(_) | Experiment(_) | Paper(_)
+        )
     }
 }
 
@@ -106,6 +115,8 @@ pub fn main() -> ExitCode {
         Command::Challenge(arguments) => challenge::run(arguments, json),
         Command::Sweep(arguments) => sweep::run(arguments, json),
         Command::Lab(arguments) => lab::run(arguments, json),
+        Command::Experiment(arguments) => experiment::run(arguments, json),
+        Command::Paper(arguments) => paper::run(&arguments, json),
         Command::Bag(arguments) => bag::run(arguments, json),
         Command::State(arguments) => state::run(arguments, json),
         Command::Link(arguments) => link::run(arguments, json),

@@ -14,6 +14,7 @@ use ferntast_sim::{
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::{HandSource, Scenario, shipped};
+use crate::experiment::campaign::Mission;
 use crate::sweep::SweepConfig;
 
 /// Why configuration cannot be used.
@@ -158,6 +159,30 @@ fn load_link(name: &str) -> Result<LinkConfig, ConfigError> {
     checked(&source, link, valid)
 }
 
+/// Loads the arm `name`, shipped or a file.
+///
+/// # Errors
+///
+/// What is wrong, in which file, and how to mend it.
+pub fn load_arm(name: &str) -> Result<ArmConfig, ConfigError> {
+    let source = find("arm", "arms", name)?;
+    let arm: ArmConfig = parse(&source)?;
+    let valid = arm.validate();
+    checked(&source, arm, valid)
+}
+
+/// Loads the campaign `name`, shipped or a file.
+///
+/// # Errors
+///
+/// What is wrong, in which file, and how to mend it.
+pub fn load_mission(name: &str) -> Result<Mission, ConfigError> {
+    let source = find("campaign", "experiments", name)?;
+    let mission: Mission = parse(&source)?;
+    let valid = mission.validate();
+    checked(&source, mission, valid)
+}
+
 /// Loads the scenario `name`, shipped or a file, with the arm and the link that it names.
 ///
 /// # Errors
@@ -168,10 +193,7 @@ pub fn load_scenario(name: &str) -> Result<Loaded, ConfigError> {
     let scenario: Scenario = parse(&source)?;
     let valid = scenario.validate();
     let scenario = checked(&source, scenario, valid)?;
-    let arm_source = find("arm", "arms", &scenario.arm)?;
-    let arm: ArmConfig = parse(&arm_source)?;
-    let valid = arm.validate();
-    let arm = checked(&arm_source, arm, valid)?;
+    let arm = load_arm(&scenario.arm)?;
     let link = load_link(&scenario.link.channel)?;
     Ok(Loaded {
         path: source.path,

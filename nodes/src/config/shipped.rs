@@ -8,6 +8,10 @@ pub const FILES: &[(&str, &str)] = &[
         include_str!("../../../config/arms/rokviss.toml"),
     ),
     (
+        "experiments/mission.toml",
+        include_str!("../../../config/experiments/mission.toml"),
+    ),
+    (
         "links/direct.toml",
         include_str!("../../../config/links/direct.toml"),
     ),

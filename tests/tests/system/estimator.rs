@@ -35,7 +35,8 @@ fn recorded(session: &Session, arm: &str, scenario: &str) -> Vec<(Truth, Contact
     fs::write(folder.join("sliding.toml"), scenario).expect("scratch");
     let path = folder.join("run");
     let scenario = folder.join("sliding.toml");
-    let (scenario, record) = (scenario.to_str().unwrap(), path.to_str().unwrap());
+    let text = |path: &std::path::Path| path.to_str().expect("a path in UTF-8").to_owned();
+    let (scenario, record) = (&text(&scenario), &text(&path));
     let summary = run(
         session,
         &[

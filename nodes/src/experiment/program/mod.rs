@@ -1,0 +1,39 @@
+//! Motions of the identification experiments: what the servo is told to do.
+
+mod contact;
+mod sine;
+mod spring;
+mod stiffness;
+
+pub use contact::{ContactMotion, Press};
+pub use sine::SineMotion;
+pub use spring::{SpringMotion, Stroke};
+pub use stiffness::StiffnessMotion;
+
+use ferntast_model::JOINTS;
+
+/// Where the servo is told to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// Joint positions \[rad\], on `servo_jp`.
+    Joints([f64; JOINTS]),
+    /// Tip \[m\], base frame, on `servo_cp`.
+    Tip([f64; 2]),
+}
+
+/// What a motion may look at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// F_N as estimated \[N\]; zero without contact.
+    pub normal_force: f64,
+}
+
+/// A motion: targets over time.
+pub trait Program: Send {
+    /// How long it takes \[s\].
+    fn duration(&self) -> f64;
+
+    /// The target `time` \[s\] after its begin, `dt` \[s\] after the one before.
+    /// Before its begin `time` is zero: the arm goes to where the motion starts.
+    fn target(&mut self, time: f64, dt: f64, seen: &Seen) -> Target;
+}

@@ -1,0 +1,36 @@
+//! Every system of the paper held against this one, table by table and figure
+//! by figure ("Robotic Joints and Contact Dynamics Experiments: Lessons
+//! Learned from ROKVISS").
+//!
+//! All numbers come from recordings: the experiments run in virtual time on
+//! the simulated arm ([`evidence`]), and the lab identifies from what was
+//! recorded. Where the paper gives a number it stands beside ours; where it
+//! makes a statement, the statement is what has to hold.
+
+mod contacts;
+pub mod evidence;
+mod item;
+mod joints;
+mod page;
+mod stiffness;
+mod table1;
+mod temperature;
+mod time;
+
+pub use evidence::{Evidence, PaperError, collect, duration};
+pub use item::{Chart, Curve, Item, Section};
+pub use page::render;
+
+/// Judges what was recorded: table 1 and Figs. 4 to 17.
+pub fn judge(evidence: &Evidence) -> Vec<Section> {
+    let mut sections = vec![table1::section(evidence)];
+    sections.extend(joints::linear_and_cubic(evidence));
+    sections.extend(time::at_low_speed(evidence));
+    sections.push(joints::shares(evidence));
+    sections.push(joints::other_trajectory(evidence));
+    sections.extend(time::by_speed(evidence));
+    sections.extend(temperature::sections(evidence));
+    sections.push(stiffness::section(evidence));
+    sections.extend(contacts::sections(evidence));
+    sections
+}
