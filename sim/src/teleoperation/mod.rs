@@ -58,6 +58,8 @@ pub struct Trial {
     pub hand: ImpedanceParameters,
     /// The arm behind its servo.
     pub tip: TipParameters,
+    /// Jitter buffer at both ends \[s\]; none by default.
+    pub buffer: f64,
     /// Of all chance.
     pub seed: u64,
 }
@@ -75,6 +77,7 @@ impl Trial {
                 stiffness: 300.0,
             },
             tip: TipParameters::default(),
+            buffer: 0.0,
             seed,
         }
     }
@@ -229,8 +232,8 @@ impl<'a> Run<'a> {
             schedule,
             leader: trial.law.leader(),
             follower: trial.law.follower(),
-            up: Line::new(trial.link.up.clone(), trial.seed)?,
-            down: Line::new(trial.link.down.clone(), !trial.seed)?,
+            up: Line::new(trial.link.up.clone(), trial.buffer, trial.seed)?,
+            down: Line::new(trial.link.down.clone(), trial.buffer, !trial.seed)?,
             hand: HandImpedance::new(trial.hand, start),
             hand_velocity: Filtered::default(),
             tip: Tip::new(trial.tip, trial.environment, tip),
