@@ -288,10 +288,9 @@ impl<'a> Run<'a> {
         }
         self.felt = [output.force[0], output.force[1]];
         if let Some(command) = answer.command {
-            for axis in 0..2 {
-                self.command[axis] =
-                    (command.position[axis] - offset[axis]).clamp(-WORKSPACE, WORKSPACE);
-            }
+            self.command = [0, 1].map(|axis: usize| {
+                (command.position[axis] - offset[axis]).clamp(-WORKSPACE, WORKSPACE)
+            });
         }
         let scaled = |own: [f64; 2], scale: f64| [scale * own[0], scale * own[1]];
         let (leader, follower) = (self.leader.energy(), self.follower.energy());
