@@ -206,7 +206,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                LeaderLinkNode::new(scenario.laws(), session),
+                LeaderLinkNode::new(scenario.laws(), session, scenario.link.buffer),
                 LinkPorts::new(LeaderLinkPorts::connect(bus)?, transport),
             )
         }
@@ -220,7 +220,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                FollowerLinkNode::new(scenario.laws(), session),
+                FollowerLinkNode::new(scenario.laws(), session, scenario.link.buffer),
                 LinkPorts::new(FollowerLinkPorts::connect(bus)?, transport),
             )
         }
