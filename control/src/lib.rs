@@ -11,6 +11,7 @@ pub mod frame;
 pub mod haptics;
 pub mod meter;
 pub mod operating;
+pub mod playout;
 pub mod servo;
 pub mod switching;
 

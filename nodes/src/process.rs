@@ -212,7 +212,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                LeaderLinkNode::new(scenario.laws(), session),
+                LeaderLinkNode::new(scenario.laws(), session, scenario.link.buffer),
                 LinkPorts::new(LeaderLinkPorts::connect(bus)?, transport),
             )
         }
@@ -226,7 +226,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                FollowerLinkNode::new(scenario.laws(), session),
+                FollowerLinkNode::new(scenario.laws(), session, scenario.link.buffer),
                 LinkPorts::new(FollowerLinkPorts::connect(bus)?, transport),
             )
         }

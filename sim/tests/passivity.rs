@@ -100,6 +100,9 @@ impl Draw {
         };
         let environment = Environment::ALL[(seed % 5) as usize];
         let mut trial = Trial::new(law, link, environment, seed);
+        if outages && self.chance(0.3) {
+            trial.buffer = self.between(0.0, 0.05);
+        }
         trial.hand = ImpedanceParameters {
             mass: self.between(0.3, 2.0),
             damping: self.between(5.0, 50.0),

@@ -62,7 +62,7 @@ law_parameters! {
         /// \[N·s/m\].
         yield_damping = 50.0 in 1.0 .. 10000.0 "N·s/m",
         /// Stiffness of the arm's servo at the tip \[N/m\].
-        servo_stiffness = 5000.0 in 1.0 .. 1000000.0 "N/m",
+        servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
     }
 }
 law_ends!(

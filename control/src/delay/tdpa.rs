@@ -65,7 +65,7 @@ law_parameters! {
         /// Largest speed at which the tip gives way, at the hand's scale \[m/s\].
         yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
         /// Stiffness of the arm's servo at the tip \[N/m\].
-        servo_stiffness = 5000.0 in 1.0 .. 1000000.0 "N/m",
+        servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
     }
 }
 law_ends!(Tdpa, "tdpa", Passive, TdpaLeader, TdpaFollower);

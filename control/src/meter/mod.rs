@@ -252,7 +252,7 @@ impl Meter {
 }
 
 /// Whether sequence number `a` comes before `b`, with wrapping (RFC 1982).
-fn behind(a: u32, b: u32) -> bool {
+pub(crate) fn behind(a: u32, b: u32) -> bool {
     (a.wrapping_sub(b) as i32) < 0
 }
 

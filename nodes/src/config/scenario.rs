@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use ferntast_control::{delay::Law, haptics::MasterConfig, servo::ServoConfig};
+use ferntast_control::{
+    delay::Law, haptics::MasterConfig, playout::LONGEST_BUFFER, servo::ServoConfig,
+};
 use ferntast_model::{ParameterError, check};
 use ferntast_sim::hand::{RecordedHandConfig, ScriptedHandConfig};
 use serde::{Deserialize, Serialize};
@@ -85,6 +87,10 @@ pub struct LinkSection {
     /// Where the arm's end listens and the operator's end connects to.
     #[serde(default = "link_endpoint")]
     pub endpoint: String,
+    /// Jitter buffer at both ends: frames are played out evenly, this much after
+    /// the quickest way; 0 acts on the newest at once \[s\].
+    #[serde(default)]
+    pub buffer: f64,
 }
 
 fn link_endpoint() -> String {
@@ -182,6 +188,8 @@ impl Scenario {
         self.master
             .validate()
             .map_err(|error| error.within("master"))?;
+        check("buffer", self.link.buffer, 0.0, LONGEST_BUFFER, "s")
+            .map_err(|error| error.within("link"))?;
         let gateway = &self.gateway;
         let within = |error: ParameterError| error.within("gateway");
         check("stream_rate", gateway.stream_rate, 1.0, 1000.0, "Hz").map_err(within)?;

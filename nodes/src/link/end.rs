@@ -5,6 +5,7 @@ use ferntast_control::{
     frame::{self, FRAME_LENGTH, Frame},
     meter::{Arrival, Meter},
     operating::OperatingState,
+    playout::{Offered, PlayOut},
     switching::{MarkedPacket, Outgoing},
 };
 use ferntast_msgs::{
@@ -29,13 +30,22 @@ pub struct End {
     sequence: u32,
     send_due: Time,
     status_due: Time,
+    play_out: PlayOut,
+    /// Whether frames that were overtaken may still fall into place.
+    buffered: bool,
+    /// Sequence number of the newest frame that arrived.
+    highest: u32,
+    /// Frames that came after their time, which the meter took for good.
+    late: u64,
+    /// The frame that is acted on.
     newest: Option<Frame>,
     fresh: bool,
     last: Option<Time>,
 }
 
 impl End {
-    pub fn new(which: LinkEnd, session: u16) -> End {
+    /// An end whose frames wait for up to `buffer` \[s\] to be played out evenly.
+    pub fn new(which: LinkEnd, session: u16, buffer: f64) -> End {
         End {
             which,
             session,
@@ -43,27 +53,49 @@ impl End {
             sequence: 0,
             send_due: Time::INVALID,
             status_due: Time::INVALID,
+            play_out: PlayOut::new(buffer),
+            buffered: buffer > 0.0,
+            highest: 0,
+            late: 0,
             newest: None,
             fresh: false,
             last: None,
         }
     }
 
-    /// Takes what arrived; gives the newest frame if there is a new one.
-    pub fn receive(&mut self, frames: &FrameInput) -> Option<Frame> {
-        self.fresh = false;
+    /// Takes what arrived; gives the frame to act on from `now` on if there is a new one.
+    pub fn receive(&mut self, now: Time, frames: &FrameInput) -> Option<Frame> {
         for (bytes, arrived) in frames.iter() {
             match frame::decode(bytes, self.session, arrived.nanos()) {
-                Ok(frame) => {
-                    if self.meter.received(&frame, arrived.nanos()) == Arrival::Newest {
-                        self.newest = Some(frame);
-                        self.fresh = true;
-                    }
-                }
+                Ok(frame) => self.decoded(&frame, arrived.nanos()),
                 Err(error) => self.meter.refused(&error),
             }
         }
-        self.newest.filter(|_| self.fresh)
+        let taken = self.play_out.take(now.nanos());
+        self.fresh = taken.is_some();
+        self.newest = taken.or(self.newest);
+        taken
+    }
+
+    fn decoded(&mut self, frame: &Frame, arrived_nanos: i64) {
+        match self.meter.received(frame, arrived_nanos) {
+            Arrival::Newest => {
+                self.highest = frame.sequence;
+                if self.play_out.offer(frame, arrived_nanos) != Offered::Waiting {
+                    self.late += 1;
+                }
+            }
+            // With a higher number it would be left from before a restart.
+            Arrival::Late if self.buffered && self.is_overtaken(frame) => {
+                self.play_out.offer(frame, arrived_nanos);
+            }
+            Arrival::Late | Arrival::Replayed => {}
+        }
+    }
+
+    /// Whether the frame's number comes before the newest's, with wrapping.
+    fn is_overtaken(&self, frame: &Frame) -> bool {
+        (frame.sequence.wrapping_sub(self.highest) as i32) < 0
     }
 
     /// The newest packet as the laws want it, and which law made it.
@@ -155,7 +187,7 @@ impl End {
             energy_out: energy.left,
             energy_dissipated: dissipated,
             sent: measured.sent,
-            received: measured.received,
+            received: measured.received.saturating_sub(self.late),
             lost: measured.lost,
             refused: RefusedFrames {
                 length: refused.length,
@@ -165,7 +197,7 @@ impl End {
                 time: refused.time,
                 value: refused.value,
                 replayed: refused.replayed,
-                late: refused.late,
+                late: refused.late + self.late,
             },
             law: Text::new(law),
             session: self.session,
@@ -176,7 +208,7 @@ impl End {
 
     /// Frames refused so far.
     pub fn refused(&mut self, now: Time) -> u64 {
-        self.meter.measure(now.nanos()).refused.total()
+        self.meter.measure(now.nanos()).refused.total() + self.late
     }
 
     /// Time since the newest frame \[s\]; NaN before the first.

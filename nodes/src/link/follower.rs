@@ -51,9 +51,10 @@ pub struct FollowerLinkNode {
 
 impl FollowerLinkNode {
     /// An end that starts with the first of `laws` and follows the leader's end to the others.
-    pub fn new(laws: Laws, session: u16) -> FollowerLinkNode {
+    /// Frames wait for up to `buffer` \[s\] to be played out evenly.
+    pub fn new(laws: Laws, session: u16, buffer: f64) -> FollowerLinkNode {
         FollowerLinkNode {
-            end: End::new(LinkEnd::FOLLOWER, session),
+            end: End::new(LinkEnd::FOLLOWER, session, buffer),
             law: FollowerSwitch::new(laws),
             velocity: VelocityFilter::default(),
             arming: ArmingWatch::default(),
@@ -100,7 +101,7 @@ impl Node for FollowerLinkNode {
     type Output = FollowerLinkOutput;
 
     fn step(&mut self, now: Time, input: &FollowerLinkInput, output: &mut FollowerLinkOutput) {
-        if let Some(frame) = self.end.receive(&input.frames)
+        if let Some(frame) = self.end.receive(now, &input.frames)
             && self.arming.observe(frame.arming)
         {
             output.state_command = Some(StateCommandSample::new(now, StateCommand::RESUME));

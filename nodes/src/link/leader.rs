@@ -52,9 +52,10 @@ pub struct LeaderLinkNode {
 
 impl LeaderLinkNode {
     /// An end that starts with the first of `laws` and may switch to the others.
-    pub fn new(laws: Laws, session: u16) -> LeaderLinkNode {
+    /// Frames wait for up to `buffer` \[s\] to be played out evenly.
+    pub fn new(laws: Laws, session: u16, buffer: f64) -> LeaderLinkNode {
         LeaderLinkNode {
-            end: End::new(LinkEnd::LEADER, session),
+            end: End::new(LinkEnd::LEADER, session, buffer),
             law: LeaderSwitch::new(laws),
             velocity: VelocityFilter::default(),
             arming: 0,
@@ -92,7 +93,7 @@ impl Node for LeaderLinkNode {
             let taken = known.is_some_and(|code| self.law.switch_to(code));
             self.unknown_law = (!taken).then_some(sample.law);
         }
-        self.end.receive(&input.frames);
+        self.end.receive(now, &input.frames);
         let hand = input.setpoint_cp.message.as_ref().map(|pose| {
             let motion = self.velocity.step(pose);
             (motion, input.setpoint_cp.silence(now) <= HAND_LIFE)

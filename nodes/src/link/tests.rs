@@ -27,8 +27,12 @@ struct Rig {
 
 impl Rig {
     fn new() -> Rig {
+        Rig::with_buffer(0.0)
+    }
+
+    fn with_buffer(buffer: f64) -> Rig {
         Rig {
-            node: FollowerLinkNode::new(Laws::new(Law::default()), SESSION),
+            node: FollowerLinkNode::new(Laws::new(Law::default()), SESSION, buffer),
             now: START,
             sequence: 0,
             refused: RefusedFrames::default(),
@@ -225,6 +229,26 @@ fn what_was_there_before_or_was_overtaken_is_not_acted_on() {
     assert!(!rig.step(&[&one, &two, &three]), "a recording of all of it");
     let counts = rig.counts();
     assert_eq!((counts.late, counts.replayed), (1, 4), "{counts:?}");
+}
+
+#[test]
+fn a_buffer_lets_overtaken_frames_fall_into_place() {
+    let mut rig = Rig::with_buffer(0.005);
+    let mut commanded = 0;
+    // Frames two by two, each pair in the wrong order.
+    for _ in 0..20 {
+        let one = bytes(&rig.good());
+        rig.now = rig.now.plus_nanos(TICK_NANOS);
+        let two = bytes(&rig.good());
+        rig.now = rig.now.plus_nanos(2 * TICK_NANOS);
+        commanded += usize::from(rig.step(&[&two]));
+        commanded += usize::from(rig.step(&[&one]));
+    }
+    for _ in 0..10 {
+        commanded += usize::from(rig.step(&[]));
+    }
+    // All but those whose time fell between two steps with another's.
+    assert!((20..=40).contains(&commanded), "{commanded}");
 }
 
 #[test]

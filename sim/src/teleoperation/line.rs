@@ -6,6 +6,7 @@ use ferntast_control::delay::{Packet, Received};
 use ferntast_control::frame::{FRAME_LENGTH, Frame, decode, encode};
 use ferntast_control::meter::{Arrival, Meter};
 use ferntast_control::operating::OperatingState;
+use ferntast_control::playout::PlayOut;
 use ferntast_model::ParameterError;
 
 const SESSION: u16 = 1;
@@ -14,15 +15,21 @@ const SESSION: u16 = 1;
 pub(super) struct Line {
     channel: Channel,
     meter: Meter,
+    playout: PlayOut,
     sequence: u32,
-    newest: Option<Packet>,
+    newest: Option<Frame>,
 }
 
 impl Line {
-    pub(super) fn new(config: ChannelConfig, seed: u64) -> Result<Self, ParameterError> {
+    pub(super) fn new(
+        config: ChannelConfig,
+        buffer: f64,
+        seed: u64,
+    ) -> Result<Self, ParameterError> {
         Ok(Line {
             channel: Channel::new(config, seed)?,
             meter: Meter::new(),
+            playout: PlayOut::new(buffer),
             sequence: 0,
             newest: None,
         })
@@ -46,27 +53,28 @@ impl Line {
         self.channel.push(now_ns, &bytes);
     }
 
-    /// The newest packet, as the nodes of a session hand it to the laws.
+    /// The packet to act on, as the nodes of a session hand it to the laws.
     pub(super) fn receive(&mut self, now_ns: i64) -> Option<Received> {
-        let mut fresh = false;
         let mut bytes = [0; FRAME_LENGTH];
         while let Some((_, arrived_ns)) = self.channel.pop(now_ns, &mut bytes) {
             match decode(&bytes, SESSION, arrived_ns) {
                 Ok(frame) => {
-                    if self.meter.received(&frame, arrived_ns) == Arrival::Newest {
-                        self.newest = Some(frame.packet);
-                        fresh = true;
+                    if self.meter.received(&frame, arrived_ns) != Arrival::Replayed {
+                        self.playout.offer(&frame, arrived_ns);
                     }
                 }
                 Err(error) => self.meter.refused(&error),
             }
         }
-        let measured = self.meter.measure(now_ns);
-        self.newest.map(|packet| Received {
-            packet,
+        let taken = self.playout.take(now_ns);
+        let fresh = taken.is_some();
+        self.newest = taken.or(self.newest);
+        let silence = self.meter.silence(now_ns);
+        self.newest.map(|frame| Received {
+            packet: frame.packet,
             fresh,
-            silence: measured.silence,
-            age: measured.age,
+            silence,
+            age: (now_ns - frame.sent_ns) as f64 * 1e-9,
         })
     }
 }

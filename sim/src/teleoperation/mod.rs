@@ -58,6 +58,8 @@ pub struct Trial {
     pub hand: ImpedanceParameters,
     /// The arm behind its servo.
     pub tip: TipParameters,
+    /// Jitter buffer at both ends \[s\]; none by default.
+    pub buffer: f64,
     /// Of all chance.
     pub seed: u64,
 }
@@ -75,6 +77,7 @@ impl Trial {
                 stiffness: 300.0,
             },
             tip: TipParameters::default(),
+            buffer: 0.0,
             seed,
         }
     }
@@ -229,8 +232,8 @@ impl<'a> Run<'a> {
             schedule,
             leader: trial.law.leader(),
             follower: trial.law.follower(),
-            up: Line::new(trial.link.up.clone(), trial.seed)?,
-            down: Line::new(trial.link.down.clone(), !trial.seed)?,
+            up: Line::new(trial.link.up.clone(), trial.buffer, trial.seed)?,
+            down: Line::new(trial.link.down.clone(), trial.buffer, !trial.seed)?,
             hand: HandImpedance::new(trial.hand, start),
             hand_velocity: Filtered::default(),
             tip: Tip::new(trial.tip, trial.environment, tip),
@@ -285,10 +288,9 @@ impl<'a> Run<'a> {
         }
         self.felt = [output.force[0], output.force[1]];
         if let Some(command) = answer.command {
-            for axis in 0..2 {
-                self.command[axis] =
-                    (command.position[axis] - offset[axis]).clamp(-WORKSPACE, WORKSPACE);
-            }
+            self.command = [0, 1].map(|axis: usize| {
+                (command.position[axis] - offset[axis]).clamp(-WORKSPACE, WORKSPACE)
+            });
         }
         let scaled = |own: [f64; 2], scale: f64| [scale * own[0], scale * own[1]];
         let (leader, follower) = (self.leader.energy(), self.follower.energy());

@@ -75,13 +75,15 @@ impl Tip {
         let damping = 2.0 * damping_ratio * mass * frequency;
         let part = dt / f64::from(SUBSTEPS);
         for k in 0..SUBSTEPS {
-            for axis in 0..2 {
-                let stretch = (command[axis] - self.position[axis]).clamp(-reach, reach);
-                let pull = stiffness * stretch + self.force[axis];
+            let axes = self.position.iter_mut().zip(&mut self.velocity);
+            for ((position, velocity), (command, force)) in
+                axes.zip(command.iter().zip(&self.force))
+            {
+                let stretch = (command - *position).clamp(-reach, reach);
+                let pull = stiffness * stretch + force;
                 // Implicit in the damper.
-                self.velocity[axis] =
-                    (mass * self.velocity[axis] + part * pull) / (mass + part * damping);
-                self.position[axis] += part * self.velocity[axis];
+                *velocity = (mass * *velocity + part * pull) / (mass + part * damping);
+                *position += part * *velocity;
             }
             let since = time + f64::from(k + 1) * part;
             self.force = self.surface.step(part, since, self.position, self.velocity);

@@ -1,0 +1,307 @@
+//! Play-out: which of the frames that arrived is acted on, and when.
+//!
+//! Keyed by sequence number. Without a buffer the newest frame counts as soon as it
+//! is there. With one, each frame waits until `buffer` after the quickest way: due =
+//! sent + base + buffer, base the smallest transit time, which forgets slowly
+//! (Ramjee, Kurose, Towsley, Schulzrinne 1994, "Adaptive playout mechanisms for
+//! packetized audio applications in wide-area networks", take a mean instead);
+//! jitter up to `buffer` is evened out, reordered frames fall into place.
+//!
+//! * A frame older than the one acted on last is late, and dropped.
+//! * With a buffer, so is a frame that comes after it is due; but when all frames
+//!   come late for [`REBASE`], the way has become longer, and base follows.
+//! * Of several that are due only the newest is acted on.
+//! * After an outage, nothing that was queued is acted on: what waits when
+//!   nothing has arrived for [`OUTAGE`] is dropped. What the arm does then is not
+//!   decided here: the servo's watchdog has paused it, and it waits to be re-armed
+//!   and approaches on a ramp.
+//!
+//! Allocates when made, never afterwards.
+
+use crate::frame::Frame;
+use crate::meter::behind;
+use crate::nanoseconds;
+
+/// Longest buffer \[s\].
+pub const LONGEST_BUFFER: f64 = 0.2;
+/// Silence after which what waits is dropped \[s\].
+pub const OUTAGE: f64 = 0.1;
+/// When all frames are late for this long, base follows \[s\].
+pub const REBASE: f64 = 0.5;
+/// Frames that wait at most; a power of two: 0.25 s at 500 Hz.
+const SLOTS: usize = 128;
+/// Part of the difference by which base grows with each frame: some seconds.
+const FORGET: i64 = 1024;
+
+/// What became of a frame that was offered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offered {
+    /// It waits for its turn.
+    Waiting,
+    /// Overtaken, or past its time: dropped.
+    Late,
+    /// It is there already, or was acted on: dropped.
+    Replayed,
+}
+
+/// Frames that wait for their turn.
+#[derive(Clone, Debug)]
+pub struct PlayOut {
+    buffer_ns: i64,
+    slots: Box<[Option<Frame>; SLOTS]>,
+    waiting: usize,
+    /// Smallest transit time [ns].
+    base_ns: Option<i64>,
+    late_since_ns: Option<i64>,
+    arrived_ns: Option<i64>,
+    /// Acted on last: sequence number, sent [ns].
+    last: Option<(u32, i64)>,
+}
+
+impl PlayOut {
+    /// Nothing waits. `buffer` \[s\] is clamped to 0 … [`LONGEST_BUFFER`].
+    pub fn new(buffer: f64) -> Self {
+        PlayOut {
+            // Not a number counts as none.
+            buffer_ns: nanoseconds(buffer.clamp(0.0, LONGEST_BUFFER)),
+            slots: Box::new([None; SLOTS]),
+            waiting: 0,
+            base_ns: None,
+            late_since_ns: None,
+            arrived_ns: None,
+            last: None,
+        }
+    }
+
+    /// Frames that wait.
+    pub fn waiting(&self) -> usize {
+        self.waiting
+    }
+
+    /// A frame arrived at `now_ns`.
+    pub fn offer(&mut self, frame: &Frame, now_ns: i64) -> Offered {
+        self.after_outage(now_ns);
+        self.arrived_ns = Some(now_ns);
+        if let Some((sequence, sent_ns)) = self.last {
+            let older = !behind(sequence, frame.sequence);
+            if older && frame.sent_ns > sent_ns {
+                // The sender began anew.
+                self.clear();
+                self.base_ns = None;
+            } else if frame.sequence == sequence {
+                return Offered::Replayed;
+            } else if older {
+                return Offered::Late;
+            }
+        }
+        let transit_ns = now_ns.saturating_sub(frame.sent_ns);
+        let base_ns = self
+            .base_ns
+            .map_or(transit_ns, |base_ns| base_ns.min(transit_ns));
+        if self.buffer_ns > 0 && transit_ns.saturating_sub(base_ns) > self.buffer_ns {
+            let since_ns = *self.late_since_ns.get_or_insert(now_ns);
+            if now_ns.saturating_sub(since_ns) < nanoseconds(REBASE) {
+                return Offered::Late;
+            }
+            self.base_ns = Some(transit_ns);
+        } else {
+            let growth = transit_ns.saturating_sub(base_ns) / FORGET;
+            self.base_ns = Some(base_ns.saturating_add(growth));
+        }
+        self.late_since_ns = None;
+        let Some(slot) = self.slots.get_mut(frame.sequence as usize % SLOTS) else {
+            return Offered::Late;
+        };
+        match slot {
+            Some(own) if own.sequence == frame.sequence => return Offered::Replayed,
+            // Further ahead than there is room: the older one gives way.
+            Some(own) if behind(frame.sequence, own.sequence) => return Offered::Late,
+            Some(_) => {}
+            None => self.waiting += 1,
+        }
+        *slot = Some(*frame);
+        Offered::Waiting
+    }
+
+    /// The frame to act on from `now_ns` on, when there is a new one: the newest
+    /// that is due. Those before it are dropped.
+    pub fn take(&mut self, now_ns: i64) -> Option<Frame> {
+        self.after_outage(now_ns);
+        if self.waiting == 0 {
+            return None;
+        }
+        let base_ns = self.base_ns.unwrap_or(0);
+        let buffer_ns = self.buffer_ns;
+        let due = |frame: &Frame| {
+            let due_ns = frame.sent_ns.saturating_add(base_ns);
+            buffer_ns == 0 || due_ns.saturating_add(buffer_ns) <= now_ns
+        };
+        let mut newest: Option<Frame> = None;
+        for frame in self.slots.iter().flatten().filter(|frame| due(frame)) {
+            if newest.is_none_or(|own| behind(own.sequence, frame.sequence)) {
+                newest = Some(*frame);
+            }
+        }
+        let newest = newest?;
+        for slot in self.slots.iter_mut() {
+            if slot.is_some_and(|own| !behind(newest.sequence, own.sequence)) {
+                *slot = None;
+                self.waiting -= 1;
+            }
+        }
+        self.last = Some((newest.sequence, newest.sent_ns));
+        Some(newest)
+    }
+
+    fn after_outage(&mut self, now_ns: i64) {
+        let silent = self
+            .arrived_ns
+            .is_some_and(|own| now_ns.saturating_sub(own) > nanoseconds(OUTAGE));
+        if silent && self.waiting > 0 {
+            self.clear();
+        }
+    }
+
+    fn clear(&mut self) {
+        *self.slots = [None; SLOTS];
+        self.waiting = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::Packet;
+    use crate::operating::OperatingState;
+    use proptest::prelude::*;
+
+    const START: i64 = 1_700_000_000_000_000_000;
+    const MS: i64 = 1_000_000;
+
+    fn frame(sequence: u32, sent_ms: i64) -> Frame {
+        Frame {
+            session: 1,
+            sequence,
+            sent_ns: START + sent_ms * MS,
+            echo: None,
+            hold: false,
+            state: OperatingState::Enabled,
+            arming: 0,
+            law: 0,
+            packet: Packet::default(),
+        }
+    }
+
+    fn taken(playout: &mut PlayOut, now_ms: i64) -> Option<u32> {
+        playout.take(START + now_ms * MS).map(|own| own.sequence)
+    }
+
+    fn offered(playout: &mut PlayOut, sequence: u32, sent_ms: i64, now_ms: i64) -> Offered {
+        playout.offer(&frame(sequence, sent_ms), START + now_ms * MS)
+    }
+
+    #[test]
+    fn without_a_buffer_the_newest_counts_at_once() {
+        let mut playout = PlayOut::new(0.0);
+        assert_eq!(offered(&mut playout, 5, 10, 30), Offered::Waiting);
+        assert_eq!(offered(&mut playout, 4, 8, 30), Offered::Waiting);
+        assert_eq!(taken(&mut playout, 30), Some(5));
+        assert_eq!(taken(&mut playout, 31), None);
+        assert_eq!(offered(&mut playout, 5, 10, 31), Offered::Replayed);
+        assert_eq!(offered(&mut playout, 3, 6, 31), Offered::Late);
+    }
+
+    #[test]
+    fn a_buffer_evens_jitter_out_and_puts_frames_in_order() {
+        // Sent every 2 ms, on their way for 20 … 28 ms, every third overtakes.
+        let mut playout = PlayOut::new(0.010);
+        let arrivals: Vec<i64> = (0..200).map(|k| 2 * k + 20 + 4 * (k % 3)).collect();
+        let mut seen = Vec::new();
+        for now in 0..420_i64 {
+            for (k, at) in arrivals.iter().enumerate() {
+                if *at == now {
+                    offered(&mut playout, k as u32, 2 * k as i64, now);
+                }
+            }
+            if let Some(sequence) = taken(&mut playout, now) {
+                seen.push((now, i64::from(sequence)));
+            }
+        }
+        // Each comes 30 ms after it was sent, but for the little that base forgets.
+        assert!(seen.len() > 190, "{}", seen.len());
+        for (now, sequence) in seen {
+            let delay = now - 2 * sequence;
+            assert!((30..=31).contains(&delay), "{sequence} after {delay} ms");
+        }
+    }
+
+    #[test]
+    fn nothing_queued_is_acted_on_after_an_outage() {
+        let mut playout = PlayOut::new(0.150);
+        for k in 0..20 {
+            offered(&mut playout, k, 2 * i64::from(k), 2 * i64::from(k) + 20);
+        }
+        assert_eq!(playout.waiting(), 20);
+        assert_eq!(taken(&mut playout, 160), None);
+        assert_eq!(playout.waiting(), 0);
+        // What was held up on the way comes late, what is sent now counts.
+        assert_eq!(offered(&mut playout, 20, 40, 400), Offered::Late);
+        let mut first = None;
+        for now in 420..600 {
+            if now % 2 == 0 {
+                let sequence = 200 + (now as u32 - 420) / 2;
+                offered(&mut playout, sequence, now - 20, now);
+            }
+            let own = taken(&mut playout, now);
+            first = first.or(own.map(|sequence| (now, sequence)));
+        }
+        assert_eq!(first, Some((570, 200)));
+    }
+
+    #[test]
+    fn a_way_that_has_become_longer_is_followed() {
+        let mut playout = PlayOut::new(0.010);
+        offered(&mut playout, 0, 0, 20);
+        let mut first = None;
+        for k in 1..1000_u32 {
+            let sent = 2 * i64::from(k);
+            if offered(&mut playout, k, sent, sent + 300) == Offered::Waiting && first.is_none() {
+                first = Some(k);
+            }
+        }
+        // 0.5 s of frames at 500 Hz.
+        assert_eq!(first, Some(251));
+    }
+
+    #[test]
+    fn a_sender_that_began_anew_is_heard() {
+        let mut playout = PlayOut::new(0.0);
+        offered(&mut playout, 1000, 0, 20);
+        assert_eq!(taken(&mut playout, 20), Some(1000));
+        assert_eq!(offered(&mut playout, 0, 50, 70), Offered::Waiting);
+        assert_eq!(taken(&mut playout, 70), Some(0));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_taken_is_always_newer_than_before(
+            arrivals in proptest::collection::vec((0..400u32, 0..60i64), 1..300),
+            buffer in 0.0..0.05f64,
+            first: u32,
+        ) {
+            let mut playout = PlayOut::new(buffer);
+            let mut newest: Option<u32> = None;
+            for (now, (number, held)) in arrivals.into_iter().enumerate() {
+                let now = now as i64 * 3;
+                let frame = frame(first.wrapping_add(number), 2 * i64::from(number) - 800);
+                playout.offer(&frame, START + (now + held) * MS);
+                if let Some(own) = playout.take(START + (now + held) * MS) {
+                    let ahead = own.sequence.wrapping_sub(first);
+                    prop_assert!(newest.is_none_or(|before| before < ahead));
+                    newest = Some(ahead);
+                }
+                prop_assert!(playout.waiting() <= SLOTS);
+            }
+        }
+    }
+}
