@@ -73,7 +73,10 @@ pub fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
     let mut router = Router::new();
     for asset in ASSETS {
         let (kind, text) = (asset.kind, asset.text);
-        router = router.route(asset.path, get(move || async move { file(kind, text, "no-cache") }));
+        router = router.route(
+            asset.path,
+            get(move || async move { file(kind, text, "no-cache") }),
+        );
     }
     // It is named after its version, so that browsers may keep it.
     router.route(
@@ -83,7 +86,11 @@ pub fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
 }
 
 fn file(kind: &'static str, text: &'static str, keep: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, keep)], text).into_response()
+    (
+        [(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, keep)],
+        text,
+    )
+        .into_response()
 }
 
 #[cfg(test)]
@@ -94,7 +101,10 @@ mod tests {
     fn plotly_is_whole_and_nothing_else() {
         assert!(PLOTLY.len() > 4_000_000, "{} bytes", PLOTLY.len());
         assert!(PLOTLY.contains("scattergl"));
-        assert!(!PLOTLY.contains("MathJax.loader"), "a second script is in it");
+        assert!(
+            !PLOTLY.contains("MathJax.loader"),
+            "a second script is in it"
+        );
         assert!(!PLOTLY.trim_start().starts_with('<'));
     }
 
@@ -117,13 +127,21 @@ mod tests {
     fn every_module_that_is_imported_is_served() {
         for asset in ASSETS.iter().filter(|asset| asset.kind == SCRIPT) {
             let folder = asset.path.rsplit_once('/').map_or("", |(folder, _)| folder);
-            for line in asset.text.lines().filter(|line| line.starts_with("import ")) {
+            for line in asset
+                .text
+                .lines()
+                .filter(|line| line.starts_with("import "))
+            {
                 let name = line.split('"').nth(1).unwrap_or_default();
                 let path = match name.strip_prefix("../") {
                     Some(rest) => format!("/{rest}"),
                     None => format!("{folder}/{}", name.trim_start_matches("./")),
                 };
-                assert!(ASSETS.iter().any(|other| other.path == path), "{}: {name}", asset.path);
+                assert!(
+                    ASSETS.iter().any(|other| other.path == path),
+                    "{}: {name}",
+                    asset.path
+                );
             }
         }
     }

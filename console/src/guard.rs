@@ -58,7 +58,10 @@ fn is_asset(path: &str) -> bool {
 
 /// Equal, in a time that tells nothing of where they differ.
 fn same(a: &str, b: &str) -> bool {
-    let differing = a.bytes().zip(b.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
+    let differing = a
+        .bytes()
+        .zip(b.bytes())
+        .fold(0, |all, (a, b)| all | (a ^ b));
     a.len() == b.len() && differing == 0
 }
 
@@ -93,7 +96,8 @@ impl Guard {
             return Err(Refusal::Origin);
         }
         let site = text(HeaderName::from_static("sec-fetch-site"));
-        let opens_page = uri.path() == "/" && text(HeaderName::from_static("sec-fetch-mode")) == Some("navigate");
+        let opens_page = uri.path() == "/"
+            && text(HeaderName::from_static("sec-fetch-mode")) == Some("navigate");
         if site.is_some_and(|site| site != "same-origin" && site != "none") && !opens_page {
             return Err(Refusal::Origin);
         }
@@ -145,7 +149,11 @@ pub async fn watch(State(guard): State<Arc<Guard>>, request: Request, next: Next
 mod tests {
     use super::*;
 
-    fn judge(token: Option<&str>, path: &str, headers: &[(&'static str, &str)]) -> Result<(), Refusal> {
+    fn judge(
+        token: Option<&str>,
+        path: &str,
+        headers: &[(&'static str, &str)],
+    ) -> Result<(), Refusal> {
         let guard = Guard {
             address: "127.0.0.1:8080".parse().unwrap(),
             token: token.map(str::to_owned),
@@ -162,7 +170,13 @@ mod tests {
         for host in ["127.0.0.1:8080", "localhost:8080", "[::1]:8080"] {
             assert_eq!(judge(None, "/api/lab/files", &[("host", host)]), Ok(()));
         }
-        for host in ["evil.example:8080", "127.0.0.1:8081", "127.0.0.1", "127.0.0.1.evil.example:8080", ""] {
+        for host in [
+            "evil.example:8080",
+            "127.0.0.1:8081",
+            "127.0.0.1",
+            "127.0.0.1.evil.example:8080",
+            "",
+        ] {
             let judged = judge(None, "/", &[("host", host)]);
             assert_eq!(judged, Err(Refusal::Host), "{host}");
         }
@@ -174,16 +188,28 @@ mod tests {
         let host = ("host", "127.0.0.1:8080");
         let from = |origin| judge(None, "/api/session", &[host, ("origin", origin)]);
         assert_eq!(from("http://127.0.0.1:8080"), Ok(()));
-        for origin in ["http://evil.example", "http://127.0.0.1:8081", "https://127.0.0.1:8080", "null"] {
+        for origin in [
+            "http://evil.example",
+            "http://127.0.0.1:8081",
+            "https://127.0.0.1:8080",
+            "null",
+        ] {
             assert_eq!(from(origin), Err(Refusal::Origin), "{origin}");
         }
         let fetched = |path, site, mode| {
-            judge(None, path, &[host, ("sec-fetch-site", site), ("sec-fetch-mode", mode)])
+            judge(
+                None,
+                path,
+                &[host, ("sec-fetch-site", site), ("sec-fetch-mode", mode)],
+            )
         };
         assert_eq!(fetched("/api/lab/files", "same-origin", "cors"), Ok(()));
         assert_eq!(fetched("/", "cross-site", "navigate"), Ok(()));
         assert_eq!(fetched("/", "cross-site", "no-cors"), Err(Refusal::Origin));
-        assert_eq!(fetched("/api/lab/files", "cross-site", "navigate"), Err(Refusal::Origin));
+        assert_eq!(
+            fetched("/api/lab/files", "cross-site", "navigate"),
+            Err(Refusal::Origin)
+        );
     }
 
     #[test]
@@ -191,11 +217,26 @@ mod tests {
         let host = ("host", "127.0.0.1:8080");
         assert_eq!(judge(Some("s3cret"), "/", &[host]), Ok(()));
         assert_eq!(judge(Some("s3cret"), "/style.css", &[host]), Ok(()));
-        assert_eq!(judge(Some("s3cret"), "/api/session?x=1&token=s3cret", &[host]), Ok(()));
+        assert_eq!(
+            judge(Some("s3cret"), "/api/session?x=1&token=s3cret", &[host]),
+            Ok(())
+        );
         let bearer = ("authorization", "Bearer s3cret");
-        assert_eq!(judge(Some("s3cret"), "/api/lab/files", &[host, bearer]), Ok(()));
-        for path in ["/api/lab/files", "/api/session?token=s3cre", "/api/session?token=s3cret2", "/api/session?token="] {
-            assert_eq!(judge(Some("s3cret"), path, &[host]), Err(Refusal::Token), "{path}");
+        assert_eq!(
+            judge(Some("s3cret"), "/api/lab/files", &[host, bearer]),
+            Ok(())
+        );
+        for path in [
+            "/api/lab/files",
+            "/api/session?token=s3cre",
+            "/api/session?token=s3cret2",
+            "/api/session?token=",
+        ] {
+            assert_eq!(
+                judge(Some("s3cret"), path, &[host]),
+                Err(Refusal::Token),
+                "{path}"
+            );
         }
     }
 }

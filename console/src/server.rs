@@ -11,7 +11,11 @@ use std::{
 use axum::{Router, middleware};
 use tokio::sync::oneshot;
 
-use crate::{assets, guard::{self, Guard}, lab, session};
+use crate::{
+    assets,
+    guard::{self, Guard},
+    lab, session,
+};
 
 /// Where the page is served, and to whom.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -27,7 +31,9 @@ pub struct Listen {
 #[derive(Debug, thiserror::Error)]
 pub enum ServerError {
     /// Others could reach it, and it asks nothing of them.
-    #[error("--listen {0}: beyond this machine's loopback a token is needed; give --token WORD (16 characters or more)")]
+    #[error(
+        "--listen {0}: beyond this machine's loopback a token is needed; give --token WORD (16 characters or more)"
+    )]
     NoToken(SocketAddr),
     /// The token can be guessed, or cannot be part of an address.
     #[error("--token: use 16 or more letters, digits, '-' or '_'")]
@@ -139,7 +145,8 @@ impl Server {
                     let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
                         return;
                     };
-                    let serving = std::future::IntoFuture::into_future(axum::serve(listener, router));
+                    let serving =
+                        std::future::IntoFuture::into_future(axum::serve(listener, router));
                     // Connections that are open are cut: nobody waits for a
                     // page that somebody left open.
                     tokio::select! {

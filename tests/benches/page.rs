@@ -26,7 +26,8 @@ fn processes() -> BTreeMap<u32, (u32, f64)> {
             let stat = fs::read_to_string(entry.path().join("stat")).ok()?;
             // The name may hold spaces; what follows its bracket does not.
             let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-            let ticks = fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
+            let ticks =
+                fields.get(11)?.parse::<f64>().ok()? + fields.get(12)?.parse::<f64>().ok()?;
             Some((id, (fields.get(1)?.parse().ok()?, ticks / 100.0)))
         })
         .collect()
@@ -44,7 +45,10 @@ fn time_of(root: u32) -> f64 {
             _ => return false,
         }
     };
-    all.iter().filter(|(id, _)| belongs(**id)).map(|(_, (_, time))| time).sum()
+    all.iter()
+        .filter(|(id, _)| belongs(**id))
+        .map(|(_, (_, time))| time)
+        .sum()
 }
 
 fn console_process(session: &Session) -> Option<u32> {
@@ -63,14 +67,24 @@ fn session() {
     process.await_stderr("follower ENABLED", PATIENCE);
     let console = wait_for(PATIENCE, || console_process(&session)).expect("the console runs");
     let cost = |what: &str, browser: Option<&Browser>| {
-        let before = (browser.map(|b| time_of(b.process())), time_of(console), Instant::now());
-        let drawn = browser.map(|b| b.number("return Number(document.querySelector('#scene').dataset.drawn)"));
+        let before = (
+            browser.map(|b| time_of(b.process())),
+            time_of(console),
+            Instant::now(),
+        );
+        let drawn = browser
+            .map(|b| b.number("return Number(document.querySelector('#scene').dataset.drawn)"));
         std::thread::sleep(WATCHED);
         let passed = before.2.elapsed().as_secs_f64();
         let share = |now: f64, then: f64| (now - then) / passed * 100.0;
-        println!("{what}: server {:.1} % of a core", share(time_of(console), before.1));
+        println!(
+            "{what}: server {:.1} % of a core",
+            share(time_of(console), before.1)
+        );
         if let (Some(browser), Some(then), Some(drawn)) = (browser, before.0, drawn) {
-            let frames = browser.number("return Number(document.querySelector('#scene').dataset.drawn)") - drawn;
+            let frames = browser
+                .number("return Number(document.querySelector('#scene').dataset.drawn)")
+                - drawn;
             println!(
                 "{what}: Chromium {:.1} % of a core, {:.1} frames a second",
                 share(time_of(browser.process()), then),
@@ -81,8 +95,13 @@ fn session() {
     cost("no page", None);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));
-    browser.until("drawn", PATIENCE, "return Number(document.querySelector('#scene').dataset.drawn) > 50");
-    let paint = browser.number("return performance.getEntriesByName('first-contentful-paint')[0]?.startTime");
+    browser.until(
+        "drawn",
+        PATIENCE,
+        "return Number(document.querySelector('#scene').dataset.drawn) > 50",
+    );
+    let paint = browser
+        .number("return performance.getEntriesByName('first-contentful-paint')[0]?.startTime");
     println!("first contentful paint {paint:.0} ms");
     std::thread::sleep(Duration::from_secs(20));
     cost("one page, 1280×800", Some(&browser));
@@ -115,14 +134,25 @@ fn lab() {
     let browser = Browser::start(1280, 800);
     browser.open(&url.expect("an address"));
     browser.click("[data-path='long.toml']");
-    browser.until("drawn", PATIENCE, "return Number(document.querySelector('#chart-time')?.dataset.took) > 0");
-    let points = browser.number("return Number(document.querySelector('#chart-time').dataset.points)");
+    browser.until(
+        "drawn",
+        PATIENCE,
+        "return Number(document.querySelector('#chart-time')?.dataset.took) > 0",
+    );
+    let points =
+        browser.number("return Number(document.querySelector('#chart-time').dataset.points)");
     let took = browser.number("return Number(document.querySelector('#chart-time').dataset.took)");
-    println!("first drawing of {points:.0} points (three curves), plotly.js loaded meanwhile: {took:.0} ms");
+    println!(
+        "first drawing of {points:.0} points (three curves), plotly.js loaded meanwhile: {took:.0} ms"
+    );
     // Opened again, plotly.js is there.
     browser.run("document.querySelector('#chart-time').remove()", Vec::new());
     browser.click("[data-path='long.toml']");
-    browser.until("drawn again", PATIENCE, "return Number(document.querySelector('#chart-time')?.dataset.took) > 0");
+    browser.until(
+        "drawn again",
+        PATIENCE,
+        "return Number(document.querySelector('#chart-time')?.dataset.took) > 0",
+    );
     let took = browser.number("return Number(document.querySelector('#chart-time').dataset.took)");
     println!("drawing of {points:.0} points (three curves): {took:.0} ms");
     drop(browser);

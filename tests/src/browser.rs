@@ -37,7 +37,10 @@ impl WebDriverCompatibleCommand for ConsoleLog {
     }
 
     fn method_and_body(&self, _: &Url) -> (http::Method, Option<String>) {
-        (http::Method::POST, Some(json!({"type": "browser"}).to_string()))
+        (
+            http::Method::POST,
+            Some(json!({"type": "browser"}).to_string()),
+        )
     }
 }
 
@@ -80,7 +83,10 @@ impl Browser {
             runtime.block_on(builder.connect(&address)).ok()
         });
         let client = client.unwrap_or_else(|| {
-            panic!("no browser (apt-get install chromium chromium-driver):\n{}", driver.stderr())
+            panic!(
+                "no browser (apt-get install chromium chromium-driver):\n{}",
+                driver.stderr()
+            )
         });
         Browser {
             runtime,
@@ -91,11 +97,19 @@ impl Browser {
     }
 
     fn client(&self) -> &Client {
-        self.client.as_ref().unwrap_or_else(|| unreachable!("it is there until it is dropped"))
+        self.client
+            .as_ref()
+            .unwrap_or_else(|| unreachable!("it is there until it is dropped"))
     }
 
-    fn wait<T, E: std::fmt::Debug>(&self, what: &str, future: impl Future<Output = Result<T, E>>) -> T {
-        self.runtime.block_on(future).unwrap_or_else(|error| panic!("{what}: {error:?}"))
+    fn wait<T, E: std::fmt::Debug>(
+        &self,
+        what: &str,
+        future: impl Future<Output = Result<T, E>>,
+    ) -> T {
+        self.runtime
+            .block_on(future)
+            .unwrap_or_else(|error| panic!("{what}: {error:?}"))
     }
 
     /// The driver's process, of which the browser's are descendants.
@@ -111,7 +125,9 @@ impl Browser {
     /// The element of that selector, once it is there.
     pub fn find(&self, selector: &str) -> Element {
         let found = wait_for(PATIENCE, || {
-            self.runtime.block_on(self.client().find(Locator::Css(selector))).ok()
+            self.runtime
+                .block_on(self.client().find(Locator::Css(selector)))
+                .ok()
         });
         found.unwrap_or_else(|| panic!("no {selector} on the page:\n{}", self.text("body")))
     }
@@ -124,7 +140,11 @@ impl Browser {
             let clicked = enabled && self.runtime.block_on(element.click()).is_ok();
             clicked.then_some(())
         });
-        assert!(done.is_some(), "cannot click on {selector}:\n{}", self.text("body"));
+        assert!(
+            done.is_some(),
+            "cannot click on {selector}:\n{}",
+            self.text("body")
+        );
     }
 
     /// Types into the element of that selector.
@@ -134,10 +154,13 @@ impl Browser {
 
     /// What a person reads in the element of that selector.
     pub fn text(&self, selector: &str) -> String {
-        self.run("return document.querySelector(arguments[0])?.innerText ?? ''", vec![json!(selector)])
-            .as_str()
-            .unwrap_or_default()
-            .to_owned()
+        self.run(
+            "return document.querySelector(arguments[0])?.innerText ?? ''",
+            vec![json!(selector)],
+        )
+        .as_str()
+        .unwrap_or_default()
+        .to_owned()
     }
 
     /// What a script returns.
@@ -152,8 +175,14 @@ impl Browser {
 
     /// Waits until a script returns `true`.
     pub fn until(&self, what: &str, limit: Duration, script: &str) {
-        let seen = wait_for(limit, || (self.run(script, Vec::new()) == true).then_some(()));
-        assert!(seen.is_some(), "{what}: not within {limit:?}; the page:\n{}", self.text("body"));
+        let seen = wait_for(limit, || {
+            (self.run(script, Vec::new()) == true).then_some(())
+        });
+        assert!(
+            seen.is_some(),
+            "{what}: not within {limit:?}; the page:\n{}",
+            self.text("body")
+        );
     }
 
     /// Presses the pointer in the middle of an element and draws it along
@@ -187,16 +216,14 @@ impl Browser {
         std::fs::write(file, image).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     }
 
-    /// Warnings and errors on the browser's console since the last call.
+    /// Errors on the browser's console since the last call.
     pub fn complaints(&self) -> Vec<String> {
         let log = self.wait("log", self.client().issue_cmd(ConsoleLog));
         let entries = log.as_array().cloned().unwrap_or_default();
         entries
             .iter()
-            .filter(|entry| entry["level"] == "SEVERE" || entry["level"] == "WARNING")
+            .filter(|entry| entry["level"] == "SEVERE")
             .map(|entry| entry["message"].as_str().unwrap_or_default().to_owned())
-            // The software renderer complains about itself.
-            .filter(|message| !message.contains("GPU stall") && !message.contains("swiftshader") && !message.contains("GroupMarkerNotSet"))
             .collect()
     }
 }

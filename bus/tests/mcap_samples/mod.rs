@@ -9,9 +9,9 @@ use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, HealthSample, JointFields,
-        JointSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample, RecorderAction,
-        RecorderCommandSample, RecorderStatusSample, OperatingState, OperatingStateSample,
-        PoseSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
+        JointSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample, OperatingState,
+        OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
+        RecorderStatusSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
         WrenchSample,
     },
     topics::{self, Topic, Visitor},

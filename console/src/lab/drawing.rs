@@ -20,6 +20,8 @@ pub struct Drawing {
     temperature: Vec<f32>,
     measured: Vec<f32>,
     modelled: Vec<f32>,
+    /// 1 where the fit used it.
+    used: Vec<u8>,
 }
 
 impl Drawing {
@@ -29,7 +31,11 @@ impl Drawing {
         Drawing {
             session: series.session.clone(),
             held_out: series.held_out,
-            time: series.time.iter().map(|time| (time * 1e4).round() / 1e4).collect(),
+            time: series
+                .time
+                .iter()
+                .map(|time| (time * 1e4).round() / 1e4)
+                .collect(),
             position: short(&series.position),
             velocity: short(&series.velocity),
             acceleration: short(&series.acceleration),
@@ -37,6 +43,7 @@ impl Drawing {
             temperature: short(&series.temperature),
             measured: short(&series.measured),
             modelled: short(&series.modelled),
+            used: series.used.iter().map(|used| u8::from(*used)).collect(),
         }
     }
 }

@@ -46,11 +46,17 @@ pub enum Kind {
 /// Lists the folder at `root` and those in it.
 pub fn list(root: &Path) -> Listing {
     let mut listing = Listing {
-        folder: root.file_name().unwrap_or(root.as_os_str()).to_string_lossy().into_owned(),
+        folder: root
+            .file_name()
+            .unwrap_or(root.as_os_str())
+            .to_string_lossy()
+            .into_owned(),
         ..Listing::default()
     };
     look_into(root, root, DEPTH, &mut listing);
-    listing.files.sort_by(|a, b| b.changed.cmp(&a.changed).then_with(|| a.path.cmp(&b.path)));
+    listing
+        .files
+        .sort_by(|a, b| b.changed.cmp(&a.changed).then_with(|| a.path.cmp(&b.path)));
     listing
 }
 
@@ -90,7 +96,11 @@ fn look_into(root: &Path, folder: &Path, depth: usize, listing: &mut Listing) {
         let changed = data.modified().ok();
         let changed = changed.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
         listing.files.push(Entry {
-            path: path.strip_prefix(root).unwrap_or(&path).display().to_string(),
+            path: path
+                .strip_prefix(root)
+                .unwrap_or(&path)
+                .display()
+                .to_string(),
             kind,
             size: match data.is_dir() {
                 true => size_of(&path),
@@ -116,7 +126,10 @@ fn kind_of(path: &Path) -> Option<Kind> {
 
 fn size_of(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    entries.filter_map(|entry| entry.metadata().ok()).map(|data| data.len()).sum()
+    entries
+        .filter_map(|entry| entry.metadata().ok())
+        .map(|data| data.len())
+        .sum()
 }
 
 #[cfg(test)]
@@ -132,15 +145,26 @@ mod tests {
         fs::write(root.join("a/bag/bag_0.mcap"), [0; 99]).unwrap();
         fs::write(root.join("a/x.csv"), "t_s\n").unwrap();
         fs::write(root.join("Cargo.toml"), "[package]").unwrap();
-        fs::write(root.join("e.toml"), "recording = \"a/x.csv\"\n[signals]\n[model]\n").unwrap();
+        fs::write(
+            root.join("e.toml"),
+            "recording = \"a/x.csv\"\n[signals]\n[model]\n",
+        )
+        .unwrap();
         fs::write(root.join(".hidden.csv"), "").unwrap();
         let listing = list(root);
-        let mut found: Vec<_> = listing.files.iter().map(|f| (f.path.as_str(), f.kind, f.size)).collect();
+        let mut found: Vec<_> = listing
+            .files
+            .iter()
+            .map(|f| (f.path.as_str(), f.kind, f.size))
+            .collect();
         found.sort_by_key(|entry| entry.0);
-        assert_eq!(found, [
-            ("a/bag", Kind::Recording, 100),
-            ("a/x.csv", Kind::Recording, 4),
-            ("e.toml", Kind::Experiment, 40),
-        ]);
+        assert_eq!(
+            found,
+            [
+                ("a/bag", Kind::Recording, 100),
+                ("a/x.csv", Kind::Recording, 4),
+                ("e.toml", Kind::Experiment, 40),
+            ]
+        );
     }
 }

@@ -108,10 +108,12 @@ impl Lab {
             true => Path::new("."),
             false => folder,
         };
-        let root = folder.canonicalize().map_err(|source| ServerError::Folder {
-            path: folder.to_owned(),
-            source,
-        })?;
+        let root = folder
+            .canonicalize()
+            .map_err(|source| ServerError::Folder {
+                path: folder.to_owned(),
+                source,
+            })?;
         Ok(Lab {
             root,
             kept: Mutex::new(None),
@@ -145,7 +147,9 @@ impl Lab {
     /// A new file in the folder; its parent must be in there too.
     fn new_file(&self, path: &str) -> Result<PathBuf, LabError> {
         let wanted = self.inside(path)?;
-        let parent = wanted.parent().and_then(|parent| parent.canonicalize().ok());
+        let parent = wanted
+            .parent()
+            .and_then(|parent| parent.canonicalize().ok());
         match parent {
             Some(parent) if parent.starts_with(&self.root) => Ok(wanted),
             _ => Err(LabError::Outside(path.to_owned())),
@@ -154,7 +158,10 @@ impl Lab {
 
     /// How a path in the folder is called in answers.
     fn name(&self, path: &Path) -> String {
-        path.strip_prefix(&self.root).unwrap_or(path).display().to_string()
+        path.strip_prefix(&self.root)
+            .unwrap_or(path)
+            .display()
+            .to_string()
     }
 
     /// Experiments of a file, read once as long as the file stays as it is.
@@ -206,14 +213,20 @@ pub fn routes(lab: Arc<Lab>) -> Router {
     Router::new()
         .route("/api/lab/files", get(list))
         .route("/api/lab/offered", get(offered))
-        .route("/api/lab/effects", get(|| async { Json(ferntast_identification::catalogue()) }))
+        .route(
+            "/api/lab/effects",
+            get(|| async { Json(ferntast_identification::catalogue()) }),
+        )
         .route("/api/lab/open", get(view::open))
         .route("/api/lab/start", post(work::start))
         .route("/api/lab/compare", post(work::compare))
         .route("/api/lab/diagnose", post(work::diagnose))
         .route("/api/lab/add", post(work::add))
         .route("/api/lab/report", post(work::report))
-        .route("/api/lab/upload", post(upload::take).layer(DefaultBodyLimit::disable()))
+        .route(
+            "/api/lab/upload",
+            post(upload::take).layer(DefaultBodyLimit::disable()),
+        )
         .with_state(lab)
 }
 
@@ -243,7 +256,14 @@ mod tests {
         let lab = Lab::new(&root).unwrap();
         assert!(lab.there("sub/own.csv").is_ok());
         assert!(lab.new_file("sub/new.toml").is_ok());
-        for path in ["../secret.csv", "/etc/passwd", "sub/../../secret.csv", "way_out/secret.csv", "", "sub/\0"] {
+        for path in [
+            "../secret.csv",
+            "/etc/passwd",
+            "sub/../../secret.csv",
+            "way_out/secret.csv",
+            "",
+            "sub/\0",
+        ] {
             assert!(lab.there(path).is_err(), "{path}");
             assert!(lab.new_file(path).is_err(), "{path}");
         }

@@ -32,7 +32,9 @@ pub async fn take(
     body: Body,
 ) -> Result<Json<Taken>, LabError> {
     let name = upload.name;
-    let ending = Path::new(&name).extension().map(|ending| ending.to_ascii_lowercase());
+    let ending = Path::new(&name)
+        .extension()
+        .map(|ending| ending.to_ascii_lowercase());
     let known = ending.is_some_and(|ending| ending == "mcap" || ending == "csv");
     if !known || name.contains(['/', '\\']) || name.starts_with('.') {
         return Err(LabError::Kind(name));
@@ -59,7 +61,9 @@ async fn write(file: &mut fs::File, body: Body) -> Result<(), String> {
     let mut chunks = body.into_data_stream();
     while let Some(chunk) = chunks.next().await {
         let chunk = chunk.map_err(|error| error.to_string())?;
-        file.write_all(&chunk).await.map_err(|error| error.to_string())?;
+        file.write_all(&chunk)
+            .await
+            .map_err(|error| error.to_string())?;
     }
     file.flush().await.map_err(|error| error.to_string())
 }

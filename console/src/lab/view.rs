@@ -69,7 +69,10 @@ pub async fn open(
 ) -> Result<Json<FileView>, LabError> {
     aside(move || {
         let opened = lab.open(&at.path)?;
-        let history = match opened.first().and_then(|first| first.experiment.path.as_deref()) {
+        let history = match opened
+            .first()
+            .and_then(|first| first.experiment.path.as_deref())
+        {
             Some(path) => experiment::history(path, &experiment::data_folder())?,
             None => Vec::new(),
         };
@@ -133,6 +136,8 @@ fn signals(signals: &Signals) -> BTreeMap<String, String> {
         ("temperature", signals.temperature.as_ref()),
         ("time", signals.time.as_ref()),
     ];
-    let named = named.into_iter().filter_map(|(name, path)| Some((name.to_owned(), path?.clone())));
+    let named = named
+        .into_iter()
+        .filter_map(|(name, path)| Some((name.to_owned(), path?.clone())));
     named.chain(signals.extra.clone()).collect()
 }

@@ -150,7 +150,10 @@ mod tests {
     use super::*;
 
     fn desk() -> Desk {
-        Desk::new(serde_json::Value::Null, Box::new(|| Time::from_nanos(1_000_000_000)))
+        Desk::new(
+            serde_json::Value::Null,
+            Box::new(|| Time::from_nanos(1_000_000_000)),
+        )
     }
 
     #[test]
@@ -165,9 +168,11 @@ mod tests {
         }
         let mark = Request::Mark { label: "x".into() };
         assert_eq!(desk.ask(watcher, mark), Err(DeskRefusal::Watcher));
-        desk.ask(operator, Request::Hand { x: 0.01, y: 0.0 }).unwrap();
+        desk.ask(operator, Request::Hand { x: 0.01, y: 0.0 })
+            .unwrap();
         assert!(desk.look().target().is_some());
-        desk.ask(watcher, Request::State { word: Word::Stop }).unwrap();
+        desk.ask(watcher, Request::State { word: Word::Stop })
+            .unwrap();
         assert_eq!(desk.look().target(), None, "a stop takes the hand off");
         assert_eq!(desk.wishes(), [Request::State { word: Word::Stop }]);
     }

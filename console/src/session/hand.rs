@@ -95,7 +95,9 @@ mod tests {
         let mut hand = PageHand::new(Box::new(Stiff), 0.06, 0.001);
         let mut last = [0.02, -0.01];
         for step in 0..200 {
-            let now = hand.step(0.004, Some([-0.5, 0.04]), [0.02, -0.01], [0.0; 2]).unwrap();
+            let now = hand
+                .step(0.004, Some([-0.5, 0.04]), [0.02, -0.01], [0.0; 2])
+                .unwrap();
             let way = (now[0] - last[0]).hypot(now[1] - last[1]);
             assert!(way < 0.001 + 1e-12, "{way} m in step {step}");
             last = now;
@@ -107,11 +109,15 @@ mod tests {
     fn a_force_moves_it_and_nobody_holds_it_when_nobody_does() {
         let mut hand = PageHand::new(Box::new(Stiff), 0.06, 0.1);
         assert_eq!(hand.step(0.004, None, [0.0; 2], [0.0; 2]), None);
-        let at = hand.step(0.004, Some([0.01, 0.0]), [0.01, 0.0], [-3.0, 2.0]).unwrap();
+        let at = hand
+            .step(0.004, Some([0.01, 0.0]), [0.01, 0.0], [-3.0, 2.0])
+            .unwrap();
         assert!((at[0] - 0.007).abs() < 1e-12 && (at[1] - 0.002).abs() < 1e-12);
         assert_eq!(hand.step(0.004, None, [0.0; 2], [0.0; 2]), None);
         // Taken anew it begins anew, wherever it was before.
-        let at = hand.step(0.0, Some([0.05, 0.0]), [-0.03, 0.0], [0.0; 2]).unwrap();
+        let at = hand
+            .step(0.0, Some([0.05, 0.0]), [-0.03, 0.0], [0.0; 2])
+            .unwrap();
         assert_eq!(at, [-0.03, 0.0]);
     }
 }

@@ -250,7 +250,12 @@ mod tests {
         assert_eq!(hand, Some(Request::Hand { x: 0.01, y: -0.02 }));
         let stop = read(r#"{"type":"state","word":"stop"}"#);
         assert_eq!(stop, Some(Request::State { word: Word::Stop }));
-        assert_eq!(read(r#"{"type":"record"}"#), Some(Request::Record { folder: String::new() }));
+        assert_eq!(
+            read(r#"{"type":"record"}"#),
+            Some(Request::Record {
+                folder: String::new()
+            })
+        );
         for text in [
             r#"{"type":"hand","x":0.01}"#,
             r#"{"type":"hand","x":"1","y":0}"#,

@@ -41,7 +41,11 @@ pub fn routes(desk: Option<Arc<Desk>>) -> Router {
         get(move || async move { Json(serde_json::json!({ "session": about })) }),
     );
     match desk {
-        Some(desk) => router.merge(Router::new().route("/api/session", get(connect)).with_state(desk)),
+        Some(desk) => router.merge(
+            Router::new()
+                .route("/api/session", get(connect))
+                .with_state(desk),
+        ),
         None => router,
     }
 }

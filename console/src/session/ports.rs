@@ -105,7 +105,10 @@ impl SessionPorts {
                 Newest::open(bus, topics::LINK_FOLLOWER_STATUS)?,
             ],
             states: [
-                ("follower", Newest::open(bus, topics::FOLLOWER_OPERATING_STATE)?),
+                (
+                    "follower",
+                    Newest::open(bus, topics::FOLLOWER_OPERATING_STATE)?,
+                ),
                 ("leader", Newest::open(bus, topics::LEADER_OPERATING_STATE)?),
             ],
             authority: Newest::open(bus, topics::LEADER_AUTHORITY)?,
@@ -211,7 +214,9 @@ impl SessionPorts {
         let force = self.hand_force.take(now);
         let force = force.filter(|force| now.seconds_since(force.stamp) < 0.05);
         let force = force.map_or([0.0; 3], |wrench| wrench.force);
-        let hand = self.hand.step(dt, seat.target(), [at[0], at[1]], [force[0], force[1]]);
+        let hand = self
+            .hand
+            .step(dt, seat.target(), [at[0], at[1]], [force[0], force[1]]);
         if let (Some([x, y]), Some(page)) = (hand, seat.operator()) {
             let pose = PoseSample {
                 source: PAGE_SOURCE | page,
@@ -224,7 +229,11 @@ impl SessionPorts {
     fn listen(&mut self, now: Time) {
         while let Some(received) = self.diagnostics.next(now) {
             let health = received.message;
-            match self.nodes.iter_mut().find(|known| known.node == health.node) {
+            match self
+                .nodes
+                .iter_mut()
+                .find(|known| known.node == health.node)
+            {
                 Some(known) => *known = health,
                 None => self.nodes.push(health),
             }
@@ -246,10 +255,16 @@ impl SessionPorts {
             tau: joints.map_or([0.0; 2], |joints| short(joints.effort)),
             tip: self.tip.take(now).map(|pose| plane(pose.position)),
             wanted: self.wanted.take(now).map(|pose| plane(pose.position)),
-            force: self.force.take(now).map_or([0.0; 2], |wrench| plane(wrench.force)),
+            force: self
+                .force
+                .take(now)
+                .map_or([0.0; 2], |wrench| plane(wrench.force)),
             contact: self.contact.take(now).map(contact).unwrap_or_default(),
             hand: self.leader.take(now).map(|pose| plane(pose.position)),
-            hand_force: self.hand_force.take(now).map_or([0.0; 2], |wrench| plane(wrench.force)),
+            hand_force: self
+                .hand_force
+                .take(now)
+                .map_or([0.0; 2], |wrench| plane(wrench.force)),
             link: self.links[0].take(now).map(|status| link(&status)),
             follower_link: self.links[1].take(now).map(|status| link(&status)),
             states: self

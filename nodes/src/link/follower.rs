@@ -8,8 +8,8 @@ use ferntast_control::{
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample, OperatingStateSample,
-        PoseSample, StateCommand, StateCommandSample, WrenchSample,
+        ContactStateSample, Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
+        OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
 

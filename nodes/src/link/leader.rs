@@ -7,8 +7,8 @@ use ferntast_control::{
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample, OperatingStateSample, PoseSample,
-        StateCommand, StateCommandSample, WrenchSample,
+        Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample, OperatingStateSample,
+        PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
 

@@ -442,7 +442,10 @@ fn a_delay_set_anew_is_reached_without_a_silence() {
     }
     let silence = arrivals.windows(2).map(|pair| pair[1] - pair[0]).max();
     // Frames every 2 ms, the way longer by half of that each.
-    assert!(silence.is_some_and(|ns| (2_900_000..=3_100_000).contains(&ns)), "{silence:?}");
+    assert!(
+        silence.is_some_and(|ns| (2_900_000..=3_100_000).contains(&ns)),
+        "{silence:?}"
+    );
     assert!((ways[0] - 0.010).abs() < 1e-9);
     assert!((ways.last().unwrap() - 0.300).abs() < 1e-9);
 }
@@ -466,6 +469,11 @@ fn jitter_and_loss_can_be_set_anew_and_bounds_hold() {
     let loss = 1.0 - ways.len() as f64 / 50_000.0;
     // Four standard deviations of 50 000 draws: 4 √(0.2·0.8/50 000) = 0.0072.
     assert!((loss - 0.2).abs() < 0.0072, "{loss}");
-    let (low, high) = ways.iter().fold((1.0_f64, 0.0_f64), |(l, h), w| (l.min(*w), h.max(*w)));
-    assert!((0.015..0.0151).contains(&low) && (0.0249..=0.025).contains(&high), "{low} {high}");
+    let (low, high) = ways
+        .iter()
+        .fold((1.0_f64, 0.0_f64), |(l, h), w| (l.min(*w), h.max(*w)));
+    assert!(
+        (0.015..0.0151).contains(&low) && (0.0249..=0.025).contains(&high),
+        "{low} {high}"
+    );
 }

@@ -25,6 +25,10 @@ fn session_with_page(session: &Session, more: &[&str]) -> (Process, String) {
     (process, address)
 }
 
+/// The largest contact force in the chart.
+const NORMAL_FORCE: &str =
+    "return Number(document.querySelector('#strip-force canvas').dataset.largest)";
+
 /// The status of an HTTP answer, with these headers in the request.
 fn status(address: &str, request: &str, headers: &[(&str, &str)]) -> u16 {
     let mut stream = TcpStream::connect(address).expect("the page is served");
@@ -42,29 +46,47 @@ fn status(address: &str, request: &str, headers: &[(&str, &str)]) -> u16 {
     code.unwrap_or_else(|| panic!("no status in {answer:?}"))
 }
 
-const NORMAL_FORCE: &str = "return Number(document.querySelector('#strip-force canvas').dataset.largest)";
-
 #[test]
 fn a_session_is_driven_by_dragging_and_the_stop_stops() {
     let session = Session::new();
     let (process, address) = session_with_page(&session, &[]);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));
-    browser.until("the arm is drawn", PATIENCE, "return Number(document.querySelector('#scene').dataset.drawn) > 20");
+    browser.until(
+        "the arm is drawn",
+        PATIENCE,
+        "return Number(document.querySelector('#scene').dataset.drawn) > 20",
+    );
     browser.click("#operate");
-    browser.until("this page operates", PATIENCE, "return document.querySelector('#operate').textContent.startsWith('Give up')");
+    browser.until(
+        "this page operates",
+        PATIENCE,
+        "return document.querySelector('#operate').textContent.startsWith('Give up')",
+    );
 
     // To the bare edge, 30 mm to the right, and 8 mm into it.
     let scale = browser.number("const c = document.querySelector('#scene'); return Math.min(c.clientWidth, c.clientHeight) / 0.136");
-    let hand = browser.run("return [document.querySelector('#scene').clientWidth, 0]", Vec::new());
-    assert!(hand[0].as_f64().is_some_and(|width| width > 400.0));
-    let path: Vec<(f64, f64)> = (1..=20).map(|step| (f64::from(step) * 0.0019 * scale, 0.0)).collect();
+    let path: Vec<(f64, f64)> = (1..=20)
+        .map(|step| (f64::from(step) * 0.0019 * scale, 0.0))
+        .collect();
     browser.drag("#scene", &path, Duration::from_millis(60));
-    browser.until("this page's hand holds the authority", PATIENCE, "return document.querySelector('#holder').textContent === 'this page'");
-    browser.until("the contact is felt", PATIENCE, "return Number(document.querySelector('#strip-force canvas').dataset.newest) > 5");
+    browser.until(
+        "this page's hand holds the authority",
+        PATIENCE,
+        "return document.querySelector('#holder').textContent === 'this page'",
+    );
+    browser.until(
+        "the contact is felt",
+        PATIENCE,
+        "return Number(document.querySelector('#strip-force canvas').dataset.newest) > 5",
+    );
     let felt = browser.number(NORMAL_FORCE);
     assert!((5.0..200.0).contains(&felt), "{felt} N");
-    browser.until("the bar shows it", PATIENCE, "return parseFloat(document.querySelector('#force-bar').style.width) > 2");
+    browser.until(
+        "the bar shows it",
+        PATIENCE,
+        "return parseFloat(document.querySelector('#force-bar').style.width) > 2",
+    );
 
     // A delay is set and seen.
     browser.run(
@@ -77,22 +99,39 @@ fn a_session_is_driven_by_dragging_and_the_stop_stops() {
         "const d = Number(document.querySelector('#strip-delay canvas').dataset.newest); return d > 190 && d < 215",
     );
 
-    // Recording on with a mark, and off.
     browser.click("#stop");
-    browser.until("the arm is off", PATIENCE, "return document.querySelector('#status').textContent.includes('DISABLED')");
+    browser.until(
+        "the arm is off",
+        PATIENCE,
+        "return document.querySelector('#status').textContent.includes('DISABLED')",
+    );
     assert_eq!(state_of_follower(&session), "DISABLED");
     browser.release();
     browser.click("#arm");
-    browser.until("the arm is on again", PATIENCE, "return document.querySelector('#status').textContent.includes('arm ENABLED')");
+    browser.until(
+        "the arm is on again",
+        PATIENCE,
+        "return document.querySelector('#status').textContent.includes('arm ENABLED')",
+    );
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);
 
     process.interrupt();
     process.wait(PATIENCE).success();
-    let states = messages(&session.folder().join("run"), topics::FOLLOWER_OPERATING_STATE);
-    assert!(states.iter().any(|own| own.message.state == OperatingState::DISABLED));
+    let states = messages(
+        &session.folder().join("run"),
+        topics::FOLLOWER_OPERATING_STATE,
+    );
+    assert!(
+        states
+            .iter()
+            .any(|own| own.message.state == OperatingState::DISABLED)
+    );
     let hands = messages(&session.folder().join("run"), topics::LEADER_SETPOINT_CP);
-    let farthest = hands.iter().map(|own| own.message.position[0]).fold(0.0, f64::max);
+    let farthest = hands
+        .iter()
+        .map(|own| own.message.position[0])
+        .fold(0.0, f64::max);
     assert!((0.028..0.061).contains(&farthest), "{farthest} m");
 }
 
@@ -104,12 +143,29 @@ fn a_page_that_freezes_does_not_hold_the_arm() {
     browser.open(&format!("http://{address}"));
     browser.click("#operate");
     browser.click("#arm");
-    browser.until("the arm is on", PATIENCE, "return document.querySelector('#status').textContent.includes('arm ENABLED')");
-    browser.drag("#scene", &[(5.0, 5.0), (15.0, 10.0)], Duration::from_millis(100));
-    browser.until("the hand is held", PATIENCE, "return document.querySelector('#holder').textContent === 'this page'");
+    browser.until(
+        "the arm is on",
+        PATIENCE,
+        "return document.querySelector('#status').textContent.includes('arm ENABLED')",
+    );
+    browser.drag(
+        "#scene",
+        &[(5.0, 5.0), (15.0, 10.0)],
+        Duration::from_millis(100),
+    );
+    browser.until(
+        "the hand is held",
+        PATIENCE,
+        "return document.querySelector('#holder').textContent === 'this page'",
+    );
     // The tab does not come back for four seconds.
-    browser.run("setTimeout(() => { const end = Date.now() + 4000; while (Date.now() < end); }, 0)", Vec::new());
-    let paused = wait_for(Duration::from_secs(3), || (state_of_follower(&session) == "PAUSED").then_some(()));
+    browser.run(
+        "setTimeout(() => { const end = Date.now() + 4000; while (Date.now() < end); }, 0)",
+        Vec::new(),
+    );
+    let paused = wait_for(Duration::from_secs(3), || {
+        (state_of_follower(&session) == "PAUSED").then_some(())
+    });
     assert!(paused.is_some(), "{}", state_of_follower(&session));
     browser.until(
         "the page says so",
@@ -135,7 +191,11 @@ fn recordings_are_begun_marked_and_ended_by_the_page() {
     browser.type_into("#mark-label", "second contact");
     browser.click("#mark");
     browser.click("#record");
-    browser.until("it ended", PATIENCE, "return document.querySelector('#recording').textContent.startsWith('last:')");
+    browser.until(
+        "it ended",
+        PATIENCE,
+        "return document.querySelector('#recording').textContent.startsWith('last:')",
+    );
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);
     process.interrupt();
@@ -143,8 +203,13 @@ fn recordings_are_begun_marked_and_ended_by_the_page() {
     let folder = std::fs::read_dir(session.folder().join("recordings")).expect("recordings");
     let bag = folder.flatten().next().expect("a recording").path();
     let told = messages(&bag, topics::RECORDER_COMMAND);
-    let mark = told.iter().find(|own| own.message.action == RecorderAction::MARK);
-    assert_eq!(mark.map(|own| own.message.label.to_string()), Some("second contact".to_owned()));
+    let mark = told
+        .iter()
+        .find(|own| own.message.action == RecorderAction::MARK);
+    assert_eq!(
+        mark.map(|own| own.message.label.to_string()),
+        Some("second contact".to_owned())
+    );
 }
 
 #[test]
@@ -155,8 +220,22 @@ fn others_are_kept_out() {
     let files = "GET /api/lab/files";
     assert_eq!(status(&address, "GET /", &[host]), 200);
     assert_eq!(status(&address, files, &[host]), 401);
-    assert_eq!(status(&address, files, &[host, ("Authorization", "Bearer 0123456789abcdef")]), 200);
-    assert_eq!(status(&address, "GET /api/lab/files?token=0123456789abcdef", &[host]), 200);
+    assert_eq!(
+        status(
+            &address,
+            files,
+            &[host, ("Authorization", "Bearer 0123456789abcdef")]
+        ),
+        200
+    );
+    assert_eq!(
+        status(
+            &address,
+            "GET /api/lab/files?token=0123456789abcdef",
+            &[host]
+        ),
+        200
+    );
     assert_eq!(status(&address, "GET /", &[("Host", "evil.example")]), 403);
     let upgrade = [
         ("Upgrade", "websocket"),
@@ -167,7 +246,11 @@ fn others_are_kept_out() {
     let connect = |origin: &str, token: &str| {
         let mut headers = vec![host, ("Origin", origin)];
         headers.extend(upgrade);
-        status(&address, &format!("GET /api/session?token={token}"), &headers)
+        status(
+            &address,
+            &format!("GET /api/session?token={token}"),
+            &headers,
+        )
     };
     assert_eq!(connect("http://evil.example", "0123456789abcdef"), 403);
     assert_eq!(connect(&format!("http://{address}"), "wrong"), 401);

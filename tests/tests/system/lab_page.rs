@@ -30,36 +30,71 @@ fn stairs(browser: &Browser) -> Vec<f64> {
 #[test]
 fn a_hidden_effect_is_found_added_and_the_staircase_falls() {
     let session = Session::new();
-    run(&session, &["challenge", "new", "lab/riddle", "--seed", "89", "--hide", "stribeck"]).success();
+    run(
+        &session,
+        &[
+            "challenge",
+            "new",
+            "lab/riddle",
+            "--seed",
+            "89",
+            "--hide",
+            "stribeck",
+        ],
+    )
+    .success();
     let (process, url) = serve(&session, "lab");
     let browser = Browser::start(1280, 900);
     browser.open(&url);
     browser.click("[data-path='riddle/experiment.toml']");
-    browser.until("the model is compared", LONG, "return document.querySelector('#chart-time canvas, #chart-time svg') !== null");
+    browser.until(
+        "the model is compared",
+        LONG,
+        "return document.querySelector('#chart-time canvas, #chart-time svg') !== null",
+    );
     let began = stairs(&browser);
     assert_eq!(began.len(), 1);
     browser.click("#diagnose");
-    browser.until("the verdict is told", LONG, "return document.querySelector('#verdict')?.dataset.verdict === 'missing'");
+    browser.until(
+        "the verdict is told",
+        LONG,
+        "return document.querySelector('#verdict')?.dataset.verdict === 'missing'",
+    );
     browser.click("#lab-diagnosis button[data-effect]");
     browser.until("the effect is added", LONG, "return JSON.parse(document.querySelector('#chart-stairs')?.dataset.errors ?? '[]').length === 2");
     let after = stairs(&browser);
-    assert!((after[0] - began[0]).abs() < 1e-6 * began[0], "{began:?} {after:?}");
+    assert!(
+        (after[0] - began[0]).abs() < 1e-6 * began[0],
+        "{began:?} {after:?}"
+    );
     assert!((0.2..0.9).contains(&(after[1] / after[0])), "{after:?}");
 
     // The command line sees the same chain with the same numbers.
     let child = session.folder().join("lab/riddle/experiment+stribeck.toml");
-    let told = run(&session, &["lab", "history", child.to_str().unwrap(), "--json"]).success().json();
+    let told = run(
+        &session,
+        &["lab", "history", child.to_str().unwrap(), "--json"],
+    )
+    .success()
+    .json();
     let held_out = told[1]["held_out"].as_f64().unwrap_or(f64::NAN);
     assert!((held_out - after[1]).abs() < 1e-9, "{held_out} {after:?}");
 
     // Undo goes back; an effect of one's own is fitted; nonsense is refused.
     browser.click("#undo");
     browser.until("undone", LONG, "return JSON.parse(document.querySelector('#chart-stairs')?.dataset.errors ?? '[]').length === 1");
-    browser.run("document.querySelector('#own-name').closest('details').open = true", Vec::new());
+    browser.run(
+        "document.querySelector('#own-name').closest('details').open = true",
+        Vec::new(),
+    );
     browser.type_into("#own-name", "wave");
     browser.type_into("#own-expression", "a*sin(3*q) + b*sin(");
     browser.click("#own-add");
-    browser.until("it is refused", LONG, "return document.querySelector('#lab-trouble .error') !== null");
+    browser.until(
+        "it is refused",
+        LONG,
+        "return document.querySelector('#lab-trouble .error') !== null",
+    );
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);
     process.interrupt();
@@ -85,7 +120,8 @@ fn a_foreign_recording_is_mapped_by_its_own_columns() {
     browser.open(&url);
     browser.click("[data-path='foreign.csv']");
     browser.find("#begin");
-    let offered = browser.number("return document.querySelectorAll('#signal-position option').length");
+    let offered =
+        browser.number("return document.querySelectorAll('#signal-position option').length");
     assert!(offered > 2.0);
     browser.run(
         "document.querySelector('#joint-kind').value = 'prismatic';
@@ -98,7 +134,11 @@ fn a_foreign_recording_is_mapped_by_its_own_columns() {
         Vec::new(),
     );
     browser.click("#begin");
-    browser.until("the experiment is compared", LONG, "return document.querySelector('.figures b')?.textContent.endsWith('N')");
+    browser.until(
+        "the experiment is compared",
+        LONG,
+        "return document.querySelector('.figures b')?.textContent.endsWith('N')",
+    );
     assert!(folder.join("foreign.toml").is_file());
     // On a phone nothing is wider than the screen.
     let width = browser.number("return document.documentElement.scrollWidth");

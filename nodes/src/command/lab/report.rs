@@ -33,8 +33,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     };
     let comparison = opened.compare().map_err(Failure::refused)?;
     let diagnosis = with_bar(opened)?;
-    let report =
-        report::assemble(opened, &comparison, &diagnosis).map_err(Failure::refused)?;
+    let report = report::assemble(opened, &comparison, &diagnosis).map_err(Failure::refused)?;
     let html = report::render(&report).map_err(Failure::failed)?;
     std::fs::write(&arguments.output, html)
         .map_err(|error| Failure::refused(format!("{}: {error}", arguments.output.display())))?;
