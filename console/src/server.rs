@@ -145,8 +145,7 @@ impl Server {
                     let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
                         return;
                     };
-                    let serving =
-                        std::future::IntoFuture::into_future(axum::serve(listener, router));
+                    let serving = IntoFuture::into_future(axum::serve(listener, router));
                     // Connections that are open are cut: nobody waits for a
                     // page that somebody left open.
                     tokio::select! {

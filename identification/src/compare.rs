@@ -87,6 +87,8 @@ pub struct Series {
     pub load: Vec<f64>,
     /// Temperature \[degC\]; empty where there is none.
     pub temperature: Vec<f64>,
+    /// Whether rows there count: near rest they do not.
+    pub used: Vec<bool>,
     /// Measured τ_m, filtered \[Nm\].
     pub measured: Vec<f64>,
     /// Modelled τ_m \[Nm\].
@@ -241,6 +243,19 @@ fn series(
             false => Vec::new(),
         },
         modelled: measured.iter().zip(&residual).map(|(m, r)| m - r).collect(),
+        used: rows.iter().map(|at| is_used(signals, *at)).collect(),
         measured,
     }
+}
+
+/// Whether the row of the regression next to working sample `at` counts.
+fn is_used(signals: &Signals, at: usize) -> bool {
+    let after = signals.all_rows.partition_point(|row| *row < at);
+    let near = [after.checked_sub(1), Some(after)];
+    let near = near
+        .into_iter()
+        .flatten()
+        .filter_map(|n| signals.all_rows.get(n));
+    near.min_by_key(|row| row.abs_diff(at))
+        .is_some_and(|row| signals.rows.binary_search(row).is_ok())
 }

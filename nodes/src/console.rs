@@ -31,16 +31,22 @@ use crate::{
 const PERIOD_NANOS: i64 = 4_000_000;
 /// How far the hand goes from the middle \[m\].
 const REACH: f64 = 0.06;
-/// How far the pointer draws the hand's spring out \[m\]. With the firm grip of
-/// 1000 N/m it pulls with 6 N at most.
-const LEASH: f64 = 0.006;
+/// How far the pointer draws the hand's spring out \[m\]: it pulls with 4 N at
+/// most, which with the usual scale is 80 N at the tip.
+const LEASH: f64 = 0.004;
+/// A firm grip, with more damping than a person's: a mouse gives none.
+const IMPEDANCE: ImpedanceParameters = ImpedanceParameters {
+    mass: 0.5,
+    damping: 80.0,
+    stiffness: 1000.0,
+};
 
 /// A hand with the impedance of a person's.
 struct Grip(HandImpedance);
 
 impl GripModel for Grip {
     fn rest_at(&mut self, position: [f64; 2]) {
-        self.0 = HandImpedance::new(ImpedanceParameters::default(), position);
+        self.0 = HandImpedance::new(IMPEDANCE, position);
     }
 
     fn step(&mut self, dt: f64, target: [f64; 2], force: [f64; 2]) -> [f64; 2] {
@@ -59,7 +65,7 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     let clock = around.clock;
     let about = about(&around.context.session, &around.context.loaded);
     let desk = Arc::new(Desk::new(about, Box::new(move || clock.now())));
-    let grip = Grip(HandImpedance::new(ImpedanceParameters::default(), [0.0; 2]));
+    let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 2]));
     let hand = PageHand::new(Box::new(grip), REACH, LEASH);
     let mut ports = SessionPorts::connect(&around.bus, desk.clone(), hand)?;
     let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;

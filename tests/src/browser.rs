@@ -216,20 +216,14 @@ impl Browser {
         std::fs::write(file, image).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     }
 
-    /// Warnings and errors on the browser's console since the last call.
+    /// Errors on the browser's console since the last call.
     pub fn complaints(&self) -> Vec<String> {
         let log = self.wait("log", self.client().issue_cmd(ConsoleLog));
         let entries = log.as_array().cloned().unwrap_or_default();
         entries
             .iter()
-            .filter(|entry| entry["level"] == "SEVERE" || entry["level"] == "WARNING")
+            .filter(|entry| entry["level"] == "SEVERE")
             .map(|entry| entry["message"].as_str().unwrap_or_default().to_owned())
-            // The software renderer complains about itself.
-            .filter(|message| {
-                !message.contains("GPU stall")
-                    && !message.contains("swiftshader")
-                    && !message.contains("GroupMarkerNotSet")
-            })
             .collect()
     }
 }

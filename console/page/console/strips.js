@@ -37,10 +37,10 @@ const CHARTS = [
     ],
   },
   {
-    id: "energy", title: "Energy", unit: "J", least: 0.1,
+    id: "energy", title: "Energy in − out", unit: "J", least: 0.1,
     curves: [
-      { name: "operator in − out", colour: "hand", value: (s) => s.link && s.link.energy_in - s.link.energy_out },
-      { name: "arm in − out", colour: "force", value: (s) => s.follower_link && s.follower_link.energy_in - s.follower_link.energy_out },
+      { name: "operator's port", colour: "hand", value: (s) => s.link && s.link.energy_in - s.link.energy_out },
+      { name: "arm's port", colour: "force", value: (s) => s.follower_link && s.follower_link.energy_in - s.follower_link.energy_out },
     ],
   },
 ];

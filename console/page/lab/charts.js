@@ -17,7 +17,7 @@ function plotly() {
   return loading;
 }
 
-const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+const CONFIG = { responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
 
 /** An axis with its title and unit. */
 export function axis(title, unit, more = {}) {
@@ -31,19 +31,19 @@ function layout(more) {
   return {
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { color: colours.text, size: 12, family: 'system-ui, "DejaVu Sans", sans-serif' },
     margin: { l: 56, r: 12, t: 8, b: 40 }, hovermode: "closest", hoverlabel: { font: { size: 12 } },
-    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, font: { size: 12 } }, dragmode: "zoom", uirevision: "keep", ...more,
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, font: { size: 12 } }, dragmode: "zoom", modebar: { bgcolor: "rgba(0,0,0,0)", color: colours.quiet, activecolor: colours.accent }, uirevision: "keep", ...more,
   };
 }
 
 /**
- * Draws in `element`. `make` gives { data, layout } with the colours of the
- * theme, and is asked again when that changes.
+ * Draws in `element`. `make` gives { data, layout, small (without buttons) } with
+ * the colours of the theme, and is asked again when that changes.
  */
 export async function draw(element, make) {
   const library = await plotly();
   drawn.set(element, make);
   const chart = make();
-  await library.react(element, chart.data, layout(chart.layout), CONFIG);
+  await library.react(element, chart.data, layout(chart.layout), chart.small ? { ...CONFIG, displayModeBar: false } : CONFIG);
 }
 
 /** Forgets charts that are no longer on the page. */

@@ -89,6 +89,7 @@ async function staircase(element, { view, joint, results }, actions) {
       marker: { color: errors.map((_, n) => (n === errors.length - 1 ? colours.measured : colours.residual)) }, width: 0.62,
       customdata: steps.map((step) => step.path), hovertemplate: `%{y:.4g} ${unit}<extra></extra>`,
     }],
+    small: true,
     layout: {
       xaxis: axis("", "", { tickvals: names.map((_, n) => n), ticktext: names, range: [-0.6, Math.max(2.6, names.length - 0.4)], showgrid: false }),
       yaxis: axis("error", unit, { rangemode: "tozero" }), showlegend: false, dragmode: false,
@@ -165,6 +166,7 @@ async function residuals(section, { results: { comparison }, view, joint }) {
         { x: at.concat([...at].reverse()), y: band, fill: "toself", mode: "lines", line: { width: 0 }, fillcolor: `${colours.measured}2e`, hoverinfo: "skip" },
         { x: at, y: map.bins.map((bin) => bin.mean), mode: "lines+markers", line: { color: colours.measured, width: 2 }, marker: { size: 4 }, customdata: map.bins.map((bin) => bin.count), hovertemplate: `%{y:.4g} ${unit} at %{x:.4g} ${map.unit}<br>%{customdata} rows<extra></extra>` },
       ],
+      small: true,
       layout: { showlegend: false, xaxis: axis(words(map.signal), map.unit, { zeroline: false }), yaxis: axis("residual", unit), margin: { l: 50, r: 8, t: 6, b: 38 } },
     }));
   }));
@@ -177,6 +179,7 @@ function binned(drawings, nameX, nameY) {
   const [x, y, residual] = [[], [], []];
   for (const drawing of drawings) {
     for (let n = 0; n < drawing.time.length; n++) {
+      if (!drawing.used[n]) continue;
       x.push(drawing[nameX][n]);
       y.push(drawing[nameY][n]);
       residual.push(drawing.measured[n] - drawing.modelled[n]);

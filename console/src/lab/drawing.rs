@@ -20,6 +20,8 @@ pub struct Drawing {
     temperature: Vec<f32>,
     measured: Vec<f32>,
     modelled: Vec<f32>,
+    /// 1 where the fit used it.
+    used: Vec<u8>,
 }
 
 impl Drawing {
@@ -41,6 +43,7 @@ impl Drawing {
             temperature: short(&series.temperature),
             measured: short(&series.measured),
             modelled: short(&series.modelled),
+            used: series.used.iter().map(|used| u8::from(*used)).collect(),
         }
     }
 }

@@ -70,12 +70,8 @@ impl Opened {
     ///
     /// [`WorkError::Prepare`]: what data or model lack.
     pub fn compare_drawing(&self, most: usize) -> Result<Comparison, WorkError> {
-        ferntast_identification::compare::compare_drawing(
-            &self.dataset,
-            &self.experiment.model,
-            most,
-        )
-        .map_err(|error| self.refuse(error))
+        compare::compare_drawing(&self.dataset, &self.experiment.model, most)
+            .map_err(|error| self.refuse(error))
     }
 
     /// Which effect is missing. `progress` is called with the share done, 0 … 1.

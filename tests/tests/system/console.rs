@@ -25,6 +25,10 @@ fn session_with_page(session: &Session, more: &[&str]) -> (Process, String) {
     (process, address)
 }
 
+/// The largest contact force in the chart.
+const NORMAL_FORCE: &str =
+    "return Number(document.querySelector('#strip-force canvas').dataset.largest)";
+
 /// The status of an HTTP answer, with these headers in the request.
 fn status(address: &str, request: &str, headers: &[(&str, &str)]) -> u16 {
     let mut stream = TcpStream::connect(address).expect("the page is served");
@@ -41,9 +45,6 @@ fn status(address: &str, request: &str, headers: &[(&str, &str)]) -> u16 {
     let code = answer.split(' ').nth(1).and_then(|code| code.parse().ok());
     code.unwrap_or_else(|| panic!("no status in {answer:?}"))
 }
-
-const NORMAL_FORCE: &str =
-    "return Number(document.querySelector('#strip-force canvas').dataset.largest)";
 
 #[test]
 fn a_session_is_driven_by_dragging_and_the_stop_stops() {
@@ -65,11 +66,6 @@ fn a_session_is_driven_by_dragging_and_the_stop_stops() {
 
     // To the bare edge, 30 mm to the right, and 8 mm into it.
     let scale = browser.number("const c = document.querySelector('#scene'); return Math.min(c.clientWidth, c.clientHeight) / 0.136");
-    let hand = browser.run(
-        "return [document.querySelector('#scene').clientWidth, 0]",
-        Vec::new(),
-    );
-    assert!(hand[0].as_f64().is_some_and(|width| width > 400.0));
     let path: Vec<(f64, f64)> = (1..=20)
         .map(|step| (f64::from(step) * 0.0019 * scale, 0.0))
         .collect();
@@ -103,7 +99,6 @@ fn a_session_is_driven_by_dragging_and_the_stop_stops() {
         "const d = Number(document.querySelector('#strip-delay canvas').dataset.newest); return d > 190 && d < 215",
     );
 
-    // Recording on with a mark, and off.
     browser.click("#stop");
     browser.until(
         "the arm is off",
