@@ -32,7 +32,7 @@ fn free(gravity: [f64; 2]) -> ArmConfig {
     let mut config: ArmConfig = toml::from_str(ARM).expect("config/arms");
     config.arm.gravity = gravity;
     // Two integrators are compared, so that each has to be near the true motion.
-    config.truth.substep = 2e-5;
+    config.truth.substep = 1e-5;
     config.contour.edge.clear();
     config.contour.spring.clear();
     for joint in &mut config.truth.joint {

@@ -1,8 +1,8 @@
 //! Experiments on the arm, and the paper's table and figures out of their recordings.
 
-use std::{collections::BTreeMap, fs};
+use std::{collections::BTreeMap, fs, time::Duration};
 
-use ferntast_tests::Session;
+use ferntast_tests::{Process, Session};
 use serde_json::Value;
 
 use crate::support::{number, refused, run};
@@ -20,6 +20,9 @@ const TABLE_1: [(&str, [f64; 5]); 3] = [
     ),
 ];
 
+/// Time that `ferntast paper` may take at worst.
+const ALL_EXPERIMENTS: Duration = Duration::from_secs(600);
+
 fn number_of(item: &Value, key: &str) -> f64 {
     item[key].as_f64().unwrap_or(f64::NAN)
 }
@@ -27,9 +30,9 @@ fn number_of(item: &Value, key: &str) -> f64 {
 #[test]
 fn the_paper_holds_item_by_item_from_recordings() {
     let session = Session::new();
-    let told = run(&session, &["paper", "-o", "paper", "--json"])
-        .success()
-        .json();
+    let paper = session.ferntast(&["paper", "-o", "paper", "--json"]);
+    // All experiments of two years: some 25 s of one core, far longer on a busy machine.
+    let told = Process::spawn(paper).wait(ALL_EXPERIMENTS).success().json();
     let list = told.as_array().expect("a list");
     let items: BTreeMap<&str, &Value> = list
         .iter()
@@ -72,7 +75,11 @@ fn the_paper_holds_item_by_item_from_recordings() {
 #[test]
 fn an_experiment_is_the_same_for_the_same_seed_and_the_lab_reads_it() {
     let session = Session::new();
+    // The recording knows its own name, so it has to be the same.
     let spring = |folder: &str, seed: &str| {
+        fs::create_dir(session.folder().join(folder)).expect("a new folder");
+        let folder = format!("{folder}/spring");
+        let folder = folder.as_str();
         let arguments = [
             "experiment",
             "spring",
@@ -103,7 +110,7 @@ fn an_experiment_is_the_same_for_the_same_seed_and_the_lab_reads_it() {
     let first = spring("first", "3");
     assert_eq!(first, spring("second", "3"));
     assert_ne!(first, spring("third", "4"));
-    let folder = session.folder().join("first");
+    let folder = session.folder().join("first/spring");
     let folder = folder.to_str().expect("a path in UTF-8");
     let told = run(&session, &["lab", "compare", folder, "--json"])
         .success()
