@@ -73,6 +73,12 @@ impl Browser {
                 format!("--window-size={width},{height}"),
             ]},
         });
+        let mut capabilities = capabilities;
+        if width < 500 {
+            // No window is that narrow: a phone's screen is.
+            capabilities["goog:chromeOptions"]["mobileEmulation"] =
+                json!({"deviceMetrics": {"width": width, "height": height, "pixelRatio": 1.0}});
+        }
         let Value::Object(capabilities) = capabilities else {
             unreachable!("an object was written");
         };

@@ -62,7 +62,7 @@ export function build() {
   const { about } = session;
   parts.meter = make("i", { id: "force-bar" });
   parts.nodes = make("table", { className: "nodes" });
-  parts.mark = make("input", { id: "mark-label", type: "text", placeholder: "what to note", maxLength: 90, "aria-label": "Label of the mark" });
+  parts.label = make("input", { id: "mark-label", type: "text", placeholder: "what to note", maxLength: 90, "aria-label": "Label of the mark" });
   parts.law = make("select", { id: "law", "aria-label": "Delay law", disabled: about.laws.length < 2 },
     about.laws.map((law) => make("option", { textContent: law.replaceAll("_", "–"), value: law, selected: law === about.law })));
   fill(byId("panel"),
@@ -89,16 +89,16 @@ export function build() {
       make("p", { id: "measured", className: "quiet small number", style: "margin-top:8px" })),
     section("Recording",
       make("div", { className: "row" }, button("record", "Record", () => send(session.now?.recorder.on ? { type: "end_record" } : { type: "record", folder: "" }))),
-      make("div", { className: "row" }, make("div", { className: "grow" }, parts.mark), button("mark", "Mark", mark, { style: "flex:none" })),
+      make("div", { className: "row" }, make("div", { className: "grow" }, parts.label), button("mark", "Mark", mark, { style: "flex:none" })),
       make("p", { id: "recording", className: "quiet small", style: "margin-top:8px;overflow-wrap:anywhere" })),
     make("section", { className: "panel" }, make("details", {}, make("summary", { textContent: "Nodes" }), parts.nodes)));
-  parts.mark.addEventListener("keydown", (event) => { if (event.key === "Enter") mark(); });
+  parts.label.addEventListener("keydown", (event) => { if (event.key === "Enter") mark(); });
 }
 
 function mark() {
-  send({ type: "mark", label: parts.mark.value || "mark" });
+  send({ type: "mark", label: parts.label.value || "mark" });
   toast(session.now?.recorder.on ? "Marked." : "Marked, but nothing is being recorded.", 3);
-  parts.mark.value = "";
+  parts.label.value = "";
 }
 
 function toggle(id, change) {

@@ -138,15 +138,14 @@ fn a_session_is_driven_by_dragging_and_the_stop_stops() {
 #[test]
 fn a_page_that_freezes_does_not_hold_the_arm() {
     let session = Session::new();
-    let (process, address) = session_with_page(&session, &["--no-enable"]);
+    let (process, address) = session_with_page(&session, &[]);
     let browser = Browser::start(900, 700);
     browser.open(&format!("http://{address}"));
     browser.click("#operate");
-    browser.click("#arm");
     browser.until(
-        "the arm is on",
+        "this page operates",
         PATIENCE,
-        "return document.querySelector('#status').textContent.includes('arm ENABLED')",
+        "return document.querySelector('#operate').textContent.startsWith('Give up')",
     );
     browser.drag(
         "#scene",
