@@ -161,6 +161,11 @@ pub enum TwinError {
         "{0} reads an extra signal, which the twin does not get; leave it out of the twin's model"
     )]
     Extra(String),
+    /// The experiment states a filter of its own, over whole recordings.
+    #[error(
+        "the experiment states a [filter], which works on whole recordings only; leave it out of the twin's experiment"
+    )]
+    StatedFilter,
     /// The estimator cannot start.
     #[error(transparent)]
     Prior(#[from] PriorError),
@@ -196,6 +201,9 @@ impl Twin {
     ///
     /// See [`TwinError`].
     pub fn new(dataset: &Dataset, spec: &ModelSpec, memory: f64) -> Result<Self, TwinError> {
+        if dataset.filter.is_some() {
+            return Err(TwinError::StatedFilter);
+        }
         let setup = Setup::new(dataset, spec)?;
         for term in &setup.terms {
             let id = || term.effect.description().id.clone();
@@ -372,6 +380,7 @@ impl Twin {
                 .collect(),
             held_out: Vec::new(),
             joint: self.joint,
+            filter: None,
         };
         diagnose(&dataset, &self.spec, &mut |_| {})
     }
