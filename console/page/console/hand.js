@@ -21,6 +21,12 @@ function move(point) {
   target = point.map((value) => Math.min(REACH, Math.max(-REACH, value)));
 }
 
+/** Takes the hand where it is, if nobody else's is on the master: an arm that nobody moves pauses again at once. */
+export function takeHere() {
+  const { holder } = session.now.authority;
+  if (!target && (holder === "nobody" || holder === "page")) move(session.now.hand || [0, 0]);
+}
+
 /** Lets the hand go. */
 export function letGo() {
   if (!target) return;

@@ -4,7 +4,7 @@ import { byId, fill, make, toast, write } from "../common/dom.js";
 import { fixed, percent } from "../common/numbers.js";
 import { operates, send, session } from "./connection.js";
 import * as feel from "./feel.js";
-import { letGo } from "./hand.js";
+import { letGo, takeHere } from "./hand.js";
 
 const parts = {};
 let rumble = false;
@@ -44,6 +44,12 @@ function sendLink() {
   }, 120);
 }
 
+function rearm() {
+  takeHere();
+  // The hand has to be on its way before the arm listens to it again.
+  setTimeout(() => send({ type: "state", word: "rearm" }), 150);
+}
+
 /** Stops: drives off. Anybody may. */
 export function stop() {
   letGo();
@@ -71,7 +77,7 @@ export function build() {
       make("div", { className: "row" },
         button("arm", "Arm", () => send({ type: "state", word: "arm" })),
         button("hold", "Hold", () => { letGo(); send({ type: "state", word: "hold" }); }),
-        button("rearm", "Re-arm", () => send({ type: "state", word: "rearm" }))),
+        button("rearm", "Re-arm", rearm)),
       make("p", { id: "why", className: "quiet small", style: "margin:8px 0 6px" }),
       pairs(["holder", "authority"], ["pages", "pages open"])),
     section("Force on the hand",
