@@ -7,7 +7,7 @@ use crate::{
     sample::{
         AuthoritySample, ContactStateSample, HealthSample, JointSample, LawCommandSample,
         LinkStatusSample, OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample,
-        WrenchSample,
+        TwinParametersSample, WrenchSample,
     },
 };
 
@@ -121,6 +121,13 @@ topics! {
     LINK_FOLLOWER_STATUS: LinkStatusSample = "/link/follower_status", Stream;
     /// Command to the link: another delay law.
     LINK_LAW_COMMAND: LawCommandSample = "/link/law_command", Event;
+    /// The motor torque that the twin's model predicts, at the stamp of the samples that it is about;
+    /// of the joint that it follows, the other is zero \[Nm\].
+    TWIN_MOTOR_JS: JointSample = "/twin/motor_js", Stream;
+    /// Measured less predicted motor torque, where the joint slides \[Nm\].
+    TWIN_RESIDUAL_JS: JointSample = "/twin/residual_js", Stream;
+    /// The twin's parameters as they are now, and whether its model holds.
+    TWIN_PARAMETERS: TwinParametersSample = "/twin/parameters", State;
     /// Rate, age and faults of every node.
     DIAGNOSTICS: HealthSample = "/diagnostics", Event;
 }

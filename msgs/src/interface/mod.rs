@@ -50,6 +50,7 @@ texts! {
     "ferntast_msgs/msg/Authority": "msg/Authority.msg";
     "ferntast_msgs/msg/ContactState": "msg/ContactState.msg";
     "ferntast_msgs/msg/LinkStatus": "msg/LinkStatus.msg";
+    "ferntast_msgs/msg/TwinParameters": "msg/TwinParameters.msg";
 }
 
 /// Full names (`package/msg/Type`) of the interfaces that are built in.

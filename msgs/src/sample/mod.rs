@@ -13,6 +13,7 @@ mod operating_state;
 mod pose;
 mod state_command;
 mod temperature;
+mod twin_parameters;
 mod wrench;
 
 pub use authority::AuthoritySample;
@@ -27,4 +28,5 @@ pub use operating_state::{OperatingState, OperatingStateSample};
 pub use pose::PoseSample;
 pub use state_command::{StateCommand, StateCommandSample};
 pub use temperature::TemperatureSample;
+pub use twin_parameters::{MOST_PARAMETERS, TwinParametersSample, TwinVerdict};
 pub use wrench::WrenchSample;

@@ -78,6 +78,7 @@ fn every_struct_has_the_fields_of_its_definition() {
         own::Authority,
         own::ContactState,
         own::LinkStatus,
+        own::TwinParameters,
     );
     assert_eq!(seen, interface::names().collect::<Vec<_>>());
 }

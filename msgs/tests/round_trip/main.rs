@@ -96,6 +96,7 @@ properties! {
     pose: PoseSample;
     state_command: StateCommandSample;
     temperature: TemperatureSample;
+    twin_parameters: TwinParametersSample;
     wrench: WrenchSample;
 }
 
