@@ -2,7 +2,11 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
+use super::{
+    Failure,
+    output::print_json,
+    scenario_options::{ScenarioOptions, check_twin},
+};
 use crate::{
     session::{self, SessionContext, SessionOptions},
     stop,
@@ -14,7 +18,8 @@ use crate::{
     ferntast session --duration 20 --record recordings/first\n  \
     ferntast session --hand crtk               # your own CRTK master on ROS 2 drives it\n  \
     ferntast session --hand hand.csv --link relay_600ms\n  \
-    ferntast session --scenario relay --law tdpa
+    ferntast session --scenario relay --law tdpa\n  \
+    ferntast session --twin joint.toml         # and see where the lab's model fails while it moves\n  \
     ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n\n\
     While it runs: `ros2 topic list`, `ferntast state follower resume` (re-arm after a hold),\n`ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
 pub struct Arguments {
@@ -28,6 +33,10 @@ pub struct Arguments {
     /// Record into this folder (a rosbag2 directory; must not exist yet).
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
+
+    /// Hold the model of this experiment of the lab against a joint while it moves; topics /twin/*.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
 
     /// Name of the session; two at once on one host need two names.
     #[arg(long, default_value = "default", value_name = "NAME")]
@@ -50,6 +59,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.bag = arguments.record;
+    check_twin(arguments.twin.as_deref())?;
+    context.twin = arguments.twin;
     let stop = stop::on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {
         duration: arguments.duration,

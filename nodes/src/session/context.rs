@@ -24,6 +24,8 @@ pub struct SessionContext {
     pub bag: Option<PathBuf>,
     /// How to play a recording.
     pub play: PlayOptions,
+    /// Experiment whose model is held against the arm.
+    pub twin: Option<PathBuf>,
 }
 
 /// How to play a recording.
@@ -89,6 +91,7 @@ impl SessionContext {
             loaded,
             bag: None,
             play: PlayOptions::default(),
+            twin: None,
         })
     }
 

@@ -123,6 +123,9 @@ fn nodes(context: &SessionContext) -> Vec<NodeName> {
         NodeName::Arm,
         NodeName::Gateway,
     ];
+    if context.twin.is_some() {
+        nodes.push(NodeName::Twin);
+    }
     if context.bag.is_some() {
         nodes.push(NodeName::Recorder);
     }
@@ -195,6 +198,7 @@ pub fn run(
         link: monitor.link(),
         contact: monitor.contact(),
         leader: monitor.leader(),
+        twin: monitor.twin(),
         recording: session
             .context
             .bag
