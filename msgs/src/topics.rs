@@ -8,7 +8,7 @@ use crate::{
         AuthoritySample, ContactStateSample, HealthSample, JointSample, LawCommandSample,
         LinkCommandSample, LinkStatusSample, OperatingStateSample, PoseSample,
         RecorderCommandSample, RecorderStatusSample, StateCommandSample, TemperatureSample,
-        WrenchSample,
+        TwinParametersSample, WrenchSample,
     },
 };
 
@@ -128,6 +128,13 @@ topics! {
     RECORDER_COMMAND: RecorderCommandSample = "/recorder/command", Event;
     /// What the recorder does.
     RECORDER_STATUS: RecorderStatusSample = "/recorder/status", State;
+    /// The motor torque that the twin's model predicts, at the stamp of the samples that it is about;
+    /// of the joint that it follows, the other is zero \[Nm\].
+    TWIN_MOTOR_JS: JointSample = "/twin/motor_js", Stream;
+    /// Measured less predicted motor torque, where the joint slides \[Nm\].
+    TWIN_RESIDUAL_JS: JointSample = "/twin/residual_js", Stream;
+    /// The twin's parameters as they are now, and whether its model holds.
+    TWIN_PARAMETERS: TwinParametersSample = "/twin/parameters", State;
     /// Rate, age and faults of every node.
     DIAGNOSTICS: HealthSample = "/diagnostics", Event;
 }

@@ -212,6 +212,38 @@ fn laws_have_names_of_at_most_24_bytes() {
 }
 
 #[test]
+fn a_twin_s_lists_are_of_one_length_and_fit() {
+    let known_sample = TwinParametersSample {
+        count: 2,
+        ..TwinParametersSample::nothing(STAMP, 1)
+    };
+    let good = known_sample.to_ros();
+    assert_eq!(TwinParametersSample::from_ros(&good), Ok(known_sample));
+    let mut short = good.clone();
+    short.std_errors.pop();
+    let mut long = good;
+    for list in [
+        &mut long.values,
+        &mut long.off_line,
+        &mut long.std_errors,
+        &mut long.excitation,
+    ] {
+        list.resize(MOST_PARAMETERS + 1, 0.0);
+    }
+    long.names.resize(MOST_PARAMETERS + 1, String::new());
+    for (bad, field) in [(short, "std_errors"), (long, "names")] {
+        match TwinParametersSample::from_ros(&bad) {
+            Err(InvalidMessage::WrongLength { field: found, .. }) => assert_eq!(found, field),
+            other => panic!("{other:?}"),
+        }
+    }
+    let mut many = known_sample;
+    many.count = MOST_PARAMETERS as u32 + 1;
+    assert!(many.check().is_err());
+    refused(TwinParametersSample::nothing(STAMP, 9), "joint");
+}
+
+#[test]
 fn identities_are_hexadecimal() {
     let mut sample = AuthoritySample::nobody(STAMP);
     sample.holder = 0xab;

@@ -29,3 +29,4 @@ pub mod servo;
 pub mod session;
 mod stop;
 pub mod sweep;
+pub mod twin;

@@ -30,6 +30,7 @@ use crate::{
     process::PERIOD_NANOS,
     servo::{ServoNode, ServoPorts},
     session::Monitor,
+    twin::{Assessing, TwinModel, TwinNode, TwinPorts},
 };
 
 /// The session's name in lockstep.
@@ -214,6 +215,18 @@ impl LockstepSession {
             recording,
             monitor,
         })
+    }
+
+    /// Holds the model of a joint against it. What the lab says of it comes at
+    /// known times: virtual time waits for it.
+    ///
+    /// # Errors
+    ///
+    /// A topic that cannot be opened.
+    pub fn add_twin(&mut self, model: TwinModel) -> Result<(), RunError> {
+        let node = TwinNode::new(model, Assessing::Inline);
+        let ports = TwinPorts::connect(&self.bus)?;
+        add(&mut self.executor, &self.bus, NodeName::Twin, node, ports)
     }
 
     /// Asks the link for the law of that name, `seconds` \[s\] after now.

@@ -15,6 +15,8 @@ pub enum NodeName {
     Servo,
     /// The contact-force estimator (equations 5 and 6).
     Estimator,
+    /// The model of a joint held against it while it moves.
+    Twin,
     /// The haptic master bridge.
     Master,
     /// The operator's end of the link.
@@ -38,6 +40,7 @@ impl NodeName {
             NodeName::Arm => "arm",
             NodeName::Servo => "servo",
             NodeName::Estimator => "estimator",
+            NodeName::Twin => "twin",
             NodeName::Master => "master",
             NodeName::LinkLeader => "link_leader",
             NodeName::LinkFollower => "link_follower",

@@ -30,6 +30,7 @@ use crate::{
     pace, player, recorder,
     servo::{ServoNode, ServoPorts},
     session::SessionContext,
+    twin::{self, Assessing, TwinNode, TwinOpenError, TwinPorts},
 };
 
 /// Period of the servo loops \[ns\].
@@ -59,6 +60,12 @@ pub enum ProcessError {
     /// A recording is needed and none is named.
     #[error("no recording is named: give --bag DIR")]
     NoBag,
+    /// An experiment is needed and none is named.
+    #[error("no experiment is named: give --twin EXPERIMENT.toml")]
+    NoTwin,
+    /// The experiment cannot be followed.
+    #[error(transparent)]
+    Twin(#[from] Box<TwinOpenError>),
     /// A recording cannot be opened or created.
     #[error("{path}: {reason}")]
     Bag {
@@ -176,9 +183,11 @@ pub fn run(
     let scenario = &loaded.scenario;
     let session = session_number(&context.session);
     let standing = match name {
-        NodeName::Gateway | NodeName::Recorder | NodeName::Player | NodeName::Console => {
-            Faults::default()
-        }
+        NodeName::Gateway
+        | NodeName::Recorder
+        | NodeName::Player
+        | NodeName::Console
+        | NodeName::Twin => Faults::default(),
         _ => around.request_realtime(),
     };
     match name {
@@ -197,6 +206,15 @@ pub fn run(
             EstimatorNode::new(&loaded.arm.model(), &loaded.arm.estimator)?,
             EstimatorPorts::connect(bus)?,
         ),
+        NodeName::Twin => {
+            let path = context.twin.as_deref().ok_or(ProcessError::NoTwin)?;
+            let model = twin::open(path).map_err(Box::new)?;
+            around.run(
+                standing,
+                TwinNode::new(model, Assessing::OnThread),
+                TwinPorts::connect(bus)?,
+            )
+        }
         NodeName::Master => around.run(
             standing,
             MasterNode::new(&scenario.master, loaded.hand()?)?,

@@ -1,4 +1,4 @@
-//! Feeds a recording again through servo and estimator.
+//! Feeds a recording again through servo, estimator and, if asked, a twin.
 
 use std::path::Path;
 
@@ -23,6 +23,7 @@ use crate::{
     node_name::NodeName,
     process::PERIOD_NANOS,
     servo::{ServoNode, ServoPorts},
+    twin::{Assessing, TwinModel, TwinNode, TwinPorts, TwinSummary},
 };
 
 /// Why a recording cannot be fed again.
@@ -55,6 +56,8 @@ pub struct Comparison {
     pub different: u64,
     /// The first difference.
     pub first_difference: Option<String>,
+    /// The twin's last word; `null` without one.
+    pub twin: Option<TwinSummary>,
 }
 
 /// Inputs of servo and estimator.
@@ -63,6 +66,13 @@ const INPUTS: [&str; 4] = [
     "/follower/servo_cp",
     "/follower/servo_jp",
     "/follower/state_command",
+];
+
+/// Inputs of a twin beside those.
+const OF_THE_TWIN: [&str; 3] = [
+    "/follower/motor_js",
+    "/follower/joint_1/temperature",
+    "/follower/joint_2/temperature",
 ];
 
 trait Check {
@@ -121,13 +131,18 @@ fn same_bytes<R: ferntast_msgs::RosMessage>(first: &R, second: &R) -> bool {
         && first_bytes == second_bytes
 }
 
-/// Feeds the recording at `path` again through servo and estimator and
-/// compares what they publish with what is recorded.
+/// Feeds the recording at `path` again through servo, estimator and `twin` and
+/// compares what they publish with what is recorded: of the twin only where one
+/// was recorded.
 ///
 /// # Errors
 ///
 /// A recording that cannot be opened, or that lockstep did not make.
-pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, ReplayError> {
+pub fn run(
+    path: &Path,
+    twin: Option<TwinModel>,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Comparison, ReplayError> {
     let open = |error: &dyn std::fmt::Display| ReplayError::Open(error.to_string());
     let info = mcap::info(path).map_err(|error| open(&error))?;
     let (Some(start), Some(end)) = (info.start, info.end) else {
@@ -158,10 +173,15 @@ pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, Rep
         .topics()
         .map(|topic| topic.name.to_string())
         .collect();
+    let recorded = |name: &str| {
+        let counted = info.topics.iter().find(|own| own.name == name);
+        counted.is_some_and(|own| own.messages > 0)
+    };
     let there = |name: &str| topics_there.iter().any(|own| own == name);
     let mut carrier = Carrier::default();
     carrier.add_topics(&recording, &bus, Stamp::Received, |topic, _: Delivery| {
-        if INPUTS.contains(&topic) && there(topic) {
+        let wanted = INPUTS.contains(&topic) || (twin.is_some() && OF_THE_TWIN.contains(&topic));
+        if wanted && there(topic) {
             Carry::Every { queue: 64 }
         } else {
             Carry::Not
@@ -186,6 +206,12 @@ pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, Rep
         topics::FOLLOWER_CONTACT_STATE,
     )?;
 
+    if twin.is_some() && recorded(topics::TWIN_PARAMETERS.name) {
+        add_check(&mut checks, &recording, &bus, topics::TWIN_MOTOR_JS)?;
+        add_check(&mut checks, &recording, &bus, topics::TWIN_RESIDUAL_JS)?;
+        add_check(&mut checks, &recording, &bus, topics::TWIN_PARAMETERS)?;
+    }
+
     let meter =
         |name: NodeName| HealthMeter::new(name.as_str(), 0, PERIOD_NANOS, Faults::default());
     let servo = ServoNode::new(&arm.model(), &scenario.servo)?;
@@ -199,11 +225,22 @@ pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, Rep
     let ports = EstimatorPorts::connect(&bus)?;
     let mut estimator = Runner::new(&bus, estimator, ports, meter(NodeName::Estimator))?;
 
+    let mut said = bus.subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?;
+    let mut twin = match twin {
+        None => None,
+        Some(model) => {
+            let node = TwinNode::new(model, Assessing::Inline);
+            let ports = TwinPorts::connect(&bus)?;
+            Some(Runner::new(&bus, node, ports, meter(NodeName::Twin))?)
+        }
+    };
+
     let mut result = Comparison {
         equal: true,
         compared: 0,
         different: 0,
         first_difference: None,
+        twin: None,
     };
     let duration = end.seconds_since(start).max(1e-9);
     let mut now = start;
@@ -211,6 +248,12 @@ pub fn run(path: &Path, progress: &mut dyn FnMut(f64)) -> Result<Comparison, Rep
         carrier.carry(now);
         servo.tick(now, 0, 0);
         estimator.tick(now, 0, 0);
+        if let Some(twin) = &mut twin {
+            twin.tick(now, 0, 0);
+        }
+        if let Some(own) = said.newest(now) {
+            result.twin = Some(TwinSummary::of(&own.message));
+        }
         for check in &mut checks {
             check.check(now, &mut result);
         }

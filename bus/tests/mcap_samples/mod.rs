@@ -12,7 +12,7 @@ use ferntast_msgs::{
         JointSample, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
         OperatingState, OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
         RecorderStatusSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
-        WrenchSample,
+        TwinParametersSample, TwinVerdict, WrenchSample,
     },
     topics::{self, Topic, Visitor},
 };
@@ -33,6 +33,7 @@ pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
         .or_else(|| pick(law_command(k, stamp)))
         .or_else(|| pick(authority(k, stamp)))
         .or_else(|| pick(link_status(k, stamp)))
+        .or_else(|| pick(twin_parameters(k, stamp)))
         .or_else(|| pick(health(k, stamp)))
         .or_else(|| pick(link_command(x, stamp)))
         .or_else(|| pick(recorder_command(stamp)))
@@ -166,6 +167,34 @@ fn link_status(k: u32, stamp: Time) -> LinkStatusSample {
         connected: 1,
         reserved: [0; 4],
     }
+}
+
+fn twin_parameters(k: u32, stamp: Time) -> TwinParametersSample {
+    let mut sample = TwinParametersSample {
+        residual_rms: 1.5 + f64::from(k),
+        band: 1.25,
+        change_before: 13.0,
+        change_after: 25.0,
+        change_time: 61.5,
+        assessed_at: 60.0,
+        changed: Text::new("b1"),
+        change_kind: Text::new("step"),
+        candidate: Text::new("stribeck"),
+        goes_with: Text::new("velocity"),
+        count: 2,
+        out_of_band: 1,
+        verdict: TwinVerdict::MISSING,
+        ..TwinParametersSample::nothing(stamp, 1)
+    };
+    for (i, name) in ["b0", "b1"].into_iter().enumerate() {
+        let x = i as f64;
+        sample.names[i] = Text::new(name);
+        sample.values[i] = 11.5 + x;
+        sample.off_line[i] = 11.25 + x;
+        sample.std_errors[i] = 0.125 + x;
+        sample.excitation[i] = 0.5 + x;
+    }
+    sample
 }
 
 fn health(k: u32, stamp: Time) -> HealthSample {

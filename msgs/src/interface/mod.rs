@@ -53,6 +53,7 @@ texts! {
     "ferntast_msgs/msg/LinkStatus": "msg/LinkStatus.msg";
     "ferntast_msgs/msg/RecorderCommand": "msg/RecorderCommand.msg";
     "ferntast_msgs/msg/RecorderStatus": "msg/RecorderStatus.msg";
+    "ferntast_msgs/msg/TwinParameters": "msg/TwinParameters.msg";
 }
 
 /// Full names (`package/msg/Type`) of the interfaces that are built in.

@@ -48,11 +48,15 @@ pub enum Fault {
     ContactAmbiguous,
     /// A torque sensor gives the same number while its joint turns.
     TorqueStuck,
+    /// The motor torque that the twin's model leaves unexplained has left its band.
+    ResidualOutOfBand,
+    /// The lab finds an effect missing in the twin's model.
+    ModelIncomplete,
 }
 
 impl Fault {
     /// Every fault.
-    pub const ALL: [Fault; 22] = [
+    pub const ALL: [Fault; 24] = [
         Fault::CommandSilent,
         Fault::MeasurementSilent,
         Fault::CommandInvalid,
@@ -75,6 +79,8 @@ impl Fault {
         Fault::JointOverspeed,
         Fault::ContactAmbiguous,
         Fault::TorqueStuck,
+        Fault::ResidualOutOfBand,
+        Fault::ModelIncomplete,
     ];
 
     /// Every name, for error texts.
@@ -84,7 +90,8 @@ impl Fault {
         velocity limited, force limited, singular configuration, link down, \
         deadline missed, no realtime priority, recording lost, \
         recording failed, state command refused, joint limit, joint overspeed, \
-        contact ambiguous, torque sensor stuck";
+        contact ambiguous, torque sensor stuck, residual out of its band, \
+        model incomplete";
 
     /// The fault in words, as on the wire.
     pub const fn name(self) -> &'static str {
@@ -111,6 +118,8 @@ impl Fault {
             Fault::JointOverspeed => "joint overspeed",
             Fault::ContactAmbiguous => "contact ambiguous",
             Fault::TorqueStuck => "torque sensor stuck",
+            Fault::ResidualOutOfBand => "residual out of its band",
+            Fault::ModelIncomplete => "model incomplete",
         }
     }
 

@@ -16,6 +16,7 @@ mod recorder_command;
 mod recorder_status;
 mod state_command;
 mod temperature;
+mod twin_parameters;
 mod wrench;
 
 pub use authority::AuthoritySample;
@@ -33,4 +34,5 @@ pub use recorder_command::{RecorderAction, RecorderCommandSample};
 pub use recorder_status::RecorderStatusSample;
 pub use state_command::{StateCommand, StateCommandSample};
 pub use temperature::TemperatureSample;
+pub use twin_parameters::{MOST_PARAMETERS, TwinParametersSample, TwinVerdict};
 pub use wrench::WrenchSample;

@@ -81,6 +81,7 @@ fn every_struct_has_the_fields_of_its_definition() {
         own::LinkStatus,
         own::RecorderCommand,
         own::RecorderStatus,
+        own::TwinParameters,
     );
     assert_eq!(seen, interface::names().collect::<Vec<_>>());
 }

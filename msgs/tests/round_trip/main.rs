@@ -99,6 +99,7 @@ properties! {
     recorder_status: RecorderStatusSample;
     state_command: StateCommandSample;
     temperature: TemperatureSample;
+    twin_parameters: TwinParametersSample;
     wrench: WrenchSample;
 }
 

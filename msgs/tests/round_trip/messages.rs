@@ -7,12 +7,13 @@ use ferntast_msgs::{
         diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue},
         ferntast_msgs::{
             Authority, ContactState, LinkCommand, LinkStatus, RecorderCommand, RecorderStatus,
+            TwinParameters,
         },
         geometry_msgs::{Pose, PoseStamped, Wrench, WrenchStamped},
         sensor_msgs::{JointState, Temperature},
         std_msgs::Header,
     },
-    sample::{Edge, Fault, LinkEnd, OperatingState, StateCommand},
+    sample::{Edge, Fault, LinkEnd, OperatingState, StateCommand, TwinVerdict},
 };
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
@@ -112,6 +113,12 @@ pub fn state_command() -> impl Strategy<Value = crtk_msgs::StringStamped> {
         .prop_map(|(header, string)| crtk_msgs::StringStamped { header, string })
 }
 
+/// Law commands.
+pub fn law_command() -> impl Strategy<Value = crtk_msgs::StringStamped> {
+    (header(), word(vec!["wave", "tdpa", ""]))
+        .prop_map(|(header, string)| crtk_msgs::StringStamped { header, string })
+}
+
 /// Contact states.
 pub fn contact_state() -> impl Strategy<Value = ContactState> {
     let edges = Edge::ALL.into_iter().flat_map(Edge::name);
@@ -179,6 +186,47 @@ pub fn link_status() -> impl Strategy<Value = LinkStatus> {
                 ..LinkStatus::default()
             },
         )
+}
+
+/// Twins with lists of any lengths, mostly the same.
+pub fn twin_parameters() -> impl Strategy<Value = TwinParameters> {
+    let lists = (0..20_usize).prop_flat_map(|length| {
+        let numbers = || vec(number(), length);
+        (
+            vec(any::<String>(), length),
+            numbers(),
+            numbers(),
+            numbers(),
+            vec(number(), 0..20),
+        )
+    });
+    let verdicts = TwinVerdict::ALL.into_iter().flat_map(TwinVerdict::name);
+    let words = (
+        word(vec!["joint_1", "joint_2"]),
+        word(verdicts.collect()),
+        any::<String>(),
+    );
+    (header(), words, lists, number(), any::<bool>(), 0..3).prop_map(
+        |(header, (joint, verdict, text), lists, number, out_of_band, uneven)| {
+            let (names, values, off_line, std_errors, other) = lists;
+            TwinParameters {
+                header,
+                joint,
+                verdict,
+                candidate: text.clone(),
+                goes_with: text.clone(),
+                changed: text,
+                names,
+                values,
+                excitation: if uneven == 0 { other } else { off_line.clone() },
+                off_line,
+                std_errors,
+                residual_rms: number,
+                out_of_band,
+                ..TwinParameters::default()
+            }
+        },
+    )
 }
 
 /// Diagnostics, of ours and of others.

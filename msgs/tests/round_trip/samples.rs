@@ -210,6 +210,49 @@ pub fn link_status() -> impl Strategy<Value = LinkStatusSample> {
     )
 }
 
+/// Twins with any number of parameters.
+pub fn twin_parameters() -> impl Strategy<Value = TwinParametersSample> {
+    let verdict = prop::sample::select(TwinVerdict::ALL.as_slice());
+    let lists = prop::collection::vec(
+        (text(), [finite(), finite(), finite(), finite()]),
+        0..=MOST_PARAMETERS,
+    );
+    let numbers = [finite(), finite(), finite(), finite(), finite(), finite()];
+    let texts = (text(), text(), text(), text());
+    (time(), 0..2u8, 0..2u8, verdict, lists, numbers, texts).prop_map(
+        |(stamp, joint, out_of_band, verdict, lists, numbers, texts)| {
+            let [residual_rms, band, before, after, change_time, assessed_at] = numbers;
+            let (changed, change_kind, candidate, goes_with) = texts;
+            let mut sample = TwinParametersSample {
+                residual_rms,
+                band,
+                change_before: before,
+                change_after: after,
+                change_time,
+                assessed_at,
+                changed,
+                change_kind,
+                candidate,
+                goes_with,
+                out_of_band,
+                verdict,
+                count: lists.len() as u32,
+                ..TwinParametersSample::nothing(stamp, joint)
+            };
+            for (i, (name, [value, off_line, std_error, excitation])) in
+                lists.into_iter().enumerate()
+            {
+                sample.names[i] = name;
+                sample.values[i] = value;
+                sample.off_line[i] = off_line;
+                sample.std_errors[i] = std_error;
+                sample.excitation[i] = excitation;
+            }
+            sample
+        },
+    )
+}
+
 /// How nodes are doing, with any set of faults.
 pub fn health() -> impl Strategy<Value = HealthSample> {
     let faults = prop::sample::subsequence(Fault::ALL.as_slice(), 0..=Fault::ALL.len());

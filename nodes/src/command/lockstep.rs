@@ -11,6 +11,7 @@ use crate::{
     config::UnknownLaw,
     lockstep::LockstepSession,
     session::{ContactSummary, LeaderSummary, LinkSummary, StateSummary},
+    twin::{self, TwinSummary},
 };
 
 /// Run a scenario in one process and virtual time.
@@ -36,6 +37,10 @@ pub struct Arguments {
     #[arg(long = "switch", value_name = "SECONDS=LAW")]
     switches: Vec<String>,
 
+    /// Hold the model of this experiment of the lab against a joint while it moves; topics /twin/*.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
+
     /// Record into this folder (a rosbag2 directory; must not exist yet).
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -51,6 +56,7 @@ struct Result {
     link: LinkSummary,
     contact: ContactSummary,
     leader: LeaderSummary,
+    twin: Option<TwinSummary>,
     states: std::collections::BTreeMap<String, StateSummary>,
     recording: Option<String>,
 }
@@ -67,8 +73,15 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
             "--duration {duration}: give a positive number of seconds"
         )));
     }
+    let model = match &arguments.twin {
+        None => None,
+        Some(path) => Some(twin::open(path).map_err(Failure::refused)?),
+    };
     let mut session =
         LockstepSession::new(&loaded, arguments.record.as_deref()).map_err(Failure::refused)?;
+    if let Some(model) = model {
+        session.add_twin(model).map_err(Failure::refused)?;
+    }
     for text in &arguments.switches {
         let (seconds, law) = parse_switch(text)?;
         session
@@ -101,6 +114,7 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
         link: monitor.link(),
         contact: monitor.contact(),
         leader: monitor.leader(),
+        twin: monitor.twin(),
         states: monitor.states(),
         recording: arguments
             .record
@@ -122,6 +136,9 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
             result.leader.peak_force,
             result.link.rtt_ms.unwrap_or(f64::NAN)
         );
+        if let Some(twin) = &result.twin {
+            println!("{twin}");
+        }
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -35,6 +35,10 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     bag: Option<PathBuf>,
 
+    /// Experiment whose model the twin holds against a joint.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
+
     /// Everything at once, as the supervisor wrote it.
     #[arg(long, hide = true)]
     session_file: Option<PathBuf>,
@@ -54,6 +58,7 @@ pub fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
             let mut context =
                 SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
             context.bag = arguments.bag;
+            context.twin = arguments.twin;
             context.play = PlayOptions::default();
             context
         }

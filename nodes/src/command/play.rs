@@ -2,7 +2,11 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
+use super::{
+    Failure,
+    output::print_json,
+    scenario_options::{ScenarioOptions, check_twin},
+};
 use crate::{
     session::{self, PlayOptions, SessionContext},
     stop,
@@ -31,6 +35,10 @@ pub struct Arguments {
     #[arg(long)]
     estimate: bool,
 
+    /// Hold the model of this experiment of the lab against a joint that is played; topics /twin/*.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
+
     /// Name of the session.
     #[arg(long, default_value = "play", value_name = "NAME")]
     session: String,
@@ -56,6 +64,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         repeat: arguments.repeat,
         except: Vec::new(),
     };
+    check_twin(arguments.twin.as_deref())?;
+    context.twin = arguments.twin;
     let stop = stop::on_signals().map_err(Failure::failed)?;
     let played = session::play(context, arguments.estimate, info.duration_s, &stop)
         .map_err(Failure::of_session)?;
@@ -63,6 +73,9 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         print_json(&played)?;
     } else {
         println!("played {:.1} s", played.played_s);
+        if let Some(twin) = &played.twin {
+            println!("{twin}");
+        }
     }
     Ok(ExitCode::SUCCESS)
 }

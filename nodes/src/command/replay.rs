@@ -5,13 +5,18 @@ use std::{path::PathBuf, process::ExitCode};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{Failure, output::print_json};
-use crate::replay;
+use crate::{replay, twin};
 
-/// Feed a lockstep recording again through servo and estimator.
+/// Feed a lockstep recording again through servo and estimator, and a twin if asked.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// A rosbag2 directory that `ferntast lockstep --record` made.
     recording: PathBuf,
+
+    /// Hold the model of this experiment of the lab against a joint; compared where the
+    /// recording has a twin.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
 }
 
 /// Runs it; exit code 1 when the outputs differ.
@@ -20,7 +25,11 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %") {
         bar.set_style(style);
     }
-    let result = replay::run(&arguments.recording, &mut |share| {
+    let model = match &arguments.twin {
+        None => None,
+        Some(path) => Some(twin::open(path).map_err(Failure::refused)?),
+    };
+    let result = replay::run(&arguments.recording, model, &mut |share| {
         bar.set_position((share * 100.0) as u64);
     })
     .map_err(|error| Failure::refused(format!("{}: {error}", arguments.recording.display())))?;
@@ -36,6 +45,9 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             result.compared,
             result.first_difference.as_deref().unwrap_or("-")
         );
+    }
+    if let (false, Some(twin)) = (json, &result.twin) {
+        println!("{twin}");
     }
     Ok(if result.equal {
         ExitCode::SUCCESS

@@ -1,11 +1,14 @@
 //! The options by which a scenario is chosen and changed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::Failure;
-use crate::config::{self, HandSource, Loaded, Middleware};
+use crate::{
+    config::{self, HandSource, Loaded, Middleware},
+    twin,
+};
 
 /// Which scenario, and what is to be different from it.
 #[derive(Debug, Args)]
@@ -103,6 +106,18 @@ impl ScenarioOptions {
         }
         loaded.complete().map_err(Failure::refused)?;
         Ok(loaded)
+    }
+}
+
+/// Refuses an experiment that a twin cannot follow, before any node is started.
+///
+/// # Errors
+///
+/// What is wrong with it, where, and how to mend it.
+pub fn check_twin(experiment: Option<&Path>) -> Result<(), Failure> {
+    match experiment {
+        None => Ok(()),
+        Some(path) => twin::open(path).map(drop).map_err(Failure::refused),
     }
 }
 

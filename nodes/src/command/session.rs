@@ -3,7 +3,10 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use super::{
-    Failure, output::print_json, page_options::PageOptions, scenario_options::ScenarioOptions,
+    Failure,
+    output::print_json,
+    page_options::PageOptions,
+    scenario_options::{ScenarioOptions, check_twin},
 };
 use crate::{
     session::{self, SessionContext, SessionOptions},
@@ -16,7 +19,8 @@ use crate::{
     ferntast session --duration 20 --record recordings/first\n  \
     ferntast session --hand crtk               # your own CRTK master on ROS 2 drives it\n  \
     ferntast session --hand hand.csv --link relay_600ms\n  \
-    ferntast session --scenario relay --law tdpa
+    ferntast session --scenario relay --law tdpa\n  \
+    ferntast session --twin joint.toml         # and see where the lab's model fails while it moves\n  \
     ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n\n\
     While it runs: the page that it names, `ros2 topic list`, `ferntast state follower resume`
 (re-arm after a hold), `ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
@@ -31,6 +35,10 @@ pub struct Arguments {
     /// Record into this folder (a rosbag2 directory; must not exist yet).
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
+
+    /// Hold the model of this experiment of the lab against a joint while it moves; topics /twin/*.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
 
     /// Name of the session; two at once on one host need two names.
     #[arg(long, default_value = "default", value_name = "NAME")]
@@ -62,6 +70,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     context.bag = arguments.record;
     let page = arguments.page.console()?;
     context.console = (!arguments.no_console).then_some(page);
+    check_twin(arguments.twin.as_deref())?;
+    context.twin = arguments.twin;
     let stop = stop::on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {
         duration: arguments.duration,

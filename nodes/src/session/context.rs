@@ -24,6 +24,8 @@ pub struct SessionContext {
     pub bag: Option<PathBuf>,
     /// How to play a recording.
     pub play: PlayOptions,
+    /// Experiment whose model is held against the arm.
+    pub twin: Option<PathBuf>,
     /// The page; `None` without one.
     pub console: Option<ConsoleOptions>,
 }
@@ -102,6 +104,7 @@ impl SessionContext {
             bag: None,
             play: PlayOptions::default(),
             console: None,
+            twin: None,
         })
     }
 

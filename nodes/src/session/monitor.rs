@@ -7,12 +7,12 @@ use ferntast_msgs::{
     Message, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Faults, HealthSample, LinkStatusSample,
-        OperatingState, OperatingStateSample, WrenchSample,
+        OperatingState, OperatingStateSample, TwinParametersSample, WrenchSample,
     },
     topics::{self, Topic},
 };
 
-use crate::node_name::NodeName;
+use crate::{node_name::NodeName, twin::TwinSummary};
 
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
@@ -63,6 +63,7 @@ pub struct Monitor {
     leader_force: Subscriber<WrenchSample>,
     states: [(&'static str, Subscriber<OperatingStateSample>); 2],
     authority: Subscriber<AuthoritySample>,
+    twin_parameters: Subscriber<TwinParametersSample>,
     /// The nodes that were heard of.
     pub nodes: BTreeMap<String, NodeView>,
     /// The link's last word.
@@ -80,6 +81,7 @@ pub struct Monitor {
     edges: Vec<String>,
     peak_hand_force: f64,
     refused_masters: u64,
+    twin: Option<TwinParametersSample>,
     servo_rates: (f64, u64),
 }
 
@@ -122,6 +124,7 @@ impl Monitor {
                 ("leader", watch(bus, topics::LEADER_OPERATING_STATE)?),
             ],
             authority: watch(bus, topics::LEADER_AUTHORITY)?,
+            twin_parameters: bus.subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?,
             nodes: BTreeMap::new(),
             link_status: None,
             contact_state: None,
@@ -134,6 +137,7 @@ impl Monitor {
             edges: Vec::new(),
             peak_hand_force: 0.0,
             refused_masters: 0,
+            twin: None,
             servo_rates: (0.0, 0),
         })
     }
@@ -185,6 +189,9 @@ impl Monitor {
         }
         while let Some(received) = self.authority.next(now) {
             self.refused_masters = received.message.refused_count;
+        }
+        if let Some(received) = self.twin_parameters.newest(now) {
+            self.twin = Some(received.message);
         }
     }
 
@@ -267,6 +274,11 @@ impl Monitor {
             peak_force: self.peak_hand_force,
             refused_masters: self.refused_masters,
         }
+    }
+
+    /// The twin, if there is one.
+    pub fn twin(&self) -> Option<TwinSummary> {
+        self.twin.as_ref().map(TwinSummary::of)
     }
 
     /// The operating states.

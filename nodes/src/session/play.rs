@@ -1,11 +1,12 @@
-//! Playback: player, gateway and, if asked, a live estimator.
+//! Playback: player, gateway and, if asked, a live estimator and a twin.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use ferntast_bus::{Bus, SharedMemoryBus, SharedMemoryConfig};
 use serde::Serialize;
 
-use super::{SessionContext, Supervisor, place::Place, run::SessionError};
-use crate::node_name::NodeName;
+use super::{Monitor, SessionContext, Supervisor, place::Place, run::SessionError};
+use crate::{node_name::NodeName, twin::TwinSummary};
 
 /// Topics that a live estimator publishes in place of the recording.
 const OF_THE_ESTIMATOR: [&str; 4] = [
@@ -14,6 +15,12 @@ const OF_THE_ESTIMATOR: [&str; 4] = [
     "/follower/contact_cf",
     "/follower/contact_state",
 ];
+
+/// Topics that a live twin publishes in place of the recording.
+const OF_THE_TWIN: [&str; 3] = ["/twin/motor_js", "/twin/residual_js", "/twin/parameters"];
+
+/// How long a twin may take to fit its model \[s\].
+const TWIN_PATIENCE: f64 = 60.0;
 
 /// What was played.
 #[derive(Debug, Serialize)]
@@ -24,6 +31,8 @@ pub struct Played {
     pub played_s: f64,
     /// Whether a live estimator took part.
     pub estimated: bool,
+    /// The live twin's last word; `null` without one.
+    pub twin: Option<TwinSummary>,
 }
 
 /// Plays the context's recording until its end or until `stop` is set.
@@ -41,7 +50,13 @@ pub fn play(
     let mut nodes = vec![NodeName::Gateway];
     if estimate {
         nodes.push(NodeName::Estimator);
-        context.play.except = OF_THE_ESTIMATOR.map(str::to_owned).to_vec();
+        let own = OF_THE_ESTIMATOR.map(str::to_owned);
+        context.play.except.extend(own);
+    }
+    let follows = context.twin.is_some();
+    if follows {
+        nodes.push(NodeName::Twin);
+        context.play.except.extend(OF_THE_TWIN.map(str::to_owned));
     }
     let place = Place::take(&context)?;
     let session_file = place.session_file.clone();
@@ -49,10 +64,22 @@ pub fn play(
     let mut listeners = Supervisor::new(executable.clone(), session_file.clone(), &nodes);
     listeners.start()?;
     let clock = context.clock();
+    let bus = Bus::SharedMemory(SharedMemoryBus::open(&SharedMemoryConfig {
+        session: context.session.clone(),
+    })?);
+    let mut monitor = Monitor::new(&bus)?;
     let ready = clock.now().plus_seconds(1.0);
-    while clock.now() < ready && !stop.load(Ordering::Relaxed) {
+    let patience = clock.now().plus_seconds(TWIN_PATIENCE);
+    loop {
+        let now = clock.now();
+        monitor.update(now);
+        // A twin is ready once its model is fitted.
+        let fitted = !follows || monitor.is_alive(NodeName::Twin, now) || now > patience;
+        if (now >= ready && fitted) || stop.load(Ordering::Relaxed) {
+            break;
+        }
         listeners.watch()?;
-        clock.sleep_until(clock.now().plus_nanos(20_000_000));
+        clock.sleep_until(now.plus_nanos(20_000_000));
     }
     let mut player = Supervisor::new(executable, session_file, &[NodeName::Player]);
     player.start()?;
@@ -64,10 +91,14 @@ pub fn play(
             break;
         }
         bar.set_position(clock.now().seconds_since(begun) as u64);
+        monitor.update(clock.now());
         clock.sleep_until(clock.now().plus_nanos(20_000_000));
     }
     bar.finish_and_clear();
     let played = clock.now().seconds_since(begun);
+    monitor.update(clock.now());
+    let twin = monitor.twin().filter(|_| follows);
+    drop((monitor, bus));
     player.stop();
     listeners.stop();
     place.leave()?;
@@ -78,5 +109,6 @@ pub fn play(
             .unwrap_or_default(),
         played_s: played,
         estimated: estimate,
+        twin,
     })
 }

@@ -127,6 +127,9 @@ fn nodes(context: &SessionContext) -> Vec<NodeName> {
         NodeName::Arm,
         NodeName::Gateway,
     ]);
+    if context.twin.is_some() {
+        nodes.push(NodeName::Twin);
+    }
     // The page can have it record at any time.
     if context.bag.is_some() || context.console.is_some() {
         nodes.push(NodeName::Recorder);
@@ -200,6 +203,7 @@ pub fn run(
         link: monitor.link(),
         contact: monitor.contact(),
         leader: monitor.leader(),
+        twin: monitor.twin(),
         recording: session
             .context
             .bag

@@ -4,6 +4,8 @@ use std::{collections::BTreeMap, fmt};
 
 use serde::Serialize;
 
+use crate::twin::TwinSummary;
+
 /// The result of a session. Quantities that were never measured are `null`.
 #[derive(Debug, Serialize)]
 pub struct Summary {
@@ -21,6 +23,8 @@ pub struct Summary {
     pub contact: ContactSummary,
     /// The operator's side.
     pub leader: LeaderSummary,
+    /// The twin's last word; `null` without one.
+    pub twin: Option<TwinSummary>,
     /// The recording's folder; `null` without one.
     pub recording: Option<String>,
     /// What went into the recording; `null` without one.
@@ -158,6 +162,9 @@ impl fmt::Display for Summary {
             }
         )?;
         writeln!(f, "hand      peak force {:.1} N", self.leader.peak_force)?;
+        if let Some(twin) = &self.twin {
+            writeln!(f, "{twin}")?;
+        }
         for (device, state) in &self.states {
             writeln!(
                 f,

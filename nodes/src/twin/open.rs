@@ -1,0 +1,188 @@
+//! From an experiment file to a twin.
+
+use std::path::{Path, PathBuf};
+
+use ferntast_identification::twin::{Twin, TwinError};
+use ferntast_lab::{
+    experiment::{self, Experiment, ExperimentError, Signals},
+    recording::{self, LoadError},
+};
+use ferntast_msgs::{sample::MOST_PARAMETERS, topics};
+
+/// How long the estimator of the parameters remembers \[s\].
+const MEMORY: f64 = 20.0;
+
+/// A twin, and what it has to be fed.
+pub struct TwinModel {
+    /// The twin, fitted to the experiment's recordings.
+    pub twin: Twin,
+    /// The joint that it follows, from 0.
+    pub joint: usize,
+    /// Whether its recordings have a joint torque.
+    pub joint_torque: bool,
+    /// Whether its recordings have a temperature.
+    pub temperature: bool,
+}
+
+/// Why an experiment cannot be followed on line.
+#[derive(Debug, thiserror::Error)]
+pub enum TwinOpenError {
+    /// The experiment file cannot be used.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
+    /// Its recordings cannot be used.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// A signal is not one that a session has.
+    #[error(
+        "{path}: signals.{signal} is {found:?}; a twin follows one joint of a session, so it has to be {expected}"
+    )]
+    Signal {
+        /// The experiment file.
+        path: PathBuf,
+        /// The signal.
+        signal: &'static str,
+        /// What the file says.
+        found: String,
+        /// What it may say.
+        expected: String,
+    },
+    /// The model cannot be followed, or the recordings are of no use for it.
+    #[error("{path}: {source}")]
+    Twin {
+        /// The experiment file.
+        path: PathBuf,
+        /// What is wrong.
+        source: TwinError,
+    },
+    /// The message has no room for so many parameters.
+    #[error(
+        "{path}: the model has {found} parameters, a twin at most {MOST_PARAMETERS}; leave some effects out"
+    )]
+    TooMany {
+        /// The experiment file.
+        path: PathBuf,
+        /// How many there are.
+        found: usize,
+    },
+}
+
+/// Reads the experiment at `path` with its recordings, fits its model, and
+/// makes a twin of it. Takes as long as `ferntast lab fit`.
+///
+/// # Errors
+///
+/// See [`TwinOpenError`].
+pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
+    let experiment = Experiment::read(path, &experiment::data_folder())?;
+    let joint = joint_of(&experiment.signals, path)?;
+    let loaded = recording::load(&experiment)?;
+    let twin = Twin::new(&loaded.dataset, &experiment.model, MEMORY).map_err(|source| {
+        TwinOpenError::Twin {
+            path: path.to_owned(),
+            source,
+        }
+    })?;
+    let found = twin.parameters().len();
+    if found > MOST_PARAMETERS {
+        let path = path.to_owned();
+        return Err(TwinOpenError::TooMany { path, found });
+    }
+    Ok(TwinModel {
+        twin,
+        joint,
+        joint_torque: experiment.signals.joint_torque.is_some(),
+        temperature: experiment.signals.temperature.is_some(),
+    })
+}
+
+/// The joint (from 0) whose topics the signals are.
+fn joint_of(signals: &Signals, path: &Path) -> Result<usize, TwinOpenError> {
+    let temperatures = [
+        topics::FOLLOWER_JOINT_1_TEMPERATURE.name,
+        topics::FOLLOWER_JOINT_2_TEMPERATURE.name,
+    ];
+    let measured = topics::FOLLOWER_MEASURED_JS.name;
+    let motor = topics::FOLLOWER_MOTOR_JS.name;
+    let refuse = |signal, found: &str, expected: String| TwinOpenError::Signal {
+        path: path.to_owned(),
+        signal,
+        found: found.to_owned(),
+        expected,
+    };
+    let position = |joint: usize| format!("{measured}.position[{joint}]");
+    let joint = (0..temperatures.len())
+        .find(|joint| signals.position == position(*joint))
+        .ok_or_else(|| {
+            let expected = format!("{} or {}", position(0), position(1));
+            refuse("position", &signals.position, expected)
+        })?;
+    let temperature = temperatures.get(joint).copied().unwrap_or_default();
+    let asked = [
+        (
+            "motor_torque",
+            Some(&signals.motor_torque),
+            format!("{motor}.effort[{joint}]"),
+        ),
+        (
+            "joint_torque",
+            signals.joint_torque.as_ref(),
+            format!("{measured}.effort[{joint}]"),
+        ),
+        (
+            "temperature",
+            signals.temperature.as_ref(),
+            format!("{temperature}.temperature"),
+        ),
+    ];
+    for (signal, found, expected) in asked {
+        if let Some(found) = found.filter(|found| **found != expected) {
+            return Err(refuse(signal, found, expected));
+        }
+    }
+    Ok(joint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn signals(joint: usize, temperature: usize) -> Signals {
+        Signals {
+            position: format!("/follower/measured_js.position[{joint}]"),
+            motor_torque: format!("/follower/motor_js.effort[{joint}]"),
+            joint_torque: Some(format!("/follower/measured_js.effort[{joint}]")),
+            temperature: Some(format!(
+                "/follower/joint_{temperature}/temperature.temperature"
+            )),
+            ..Signals::default()
+        }
+    }
+
+    #[test]
+    fn the_joint_is_that_of_the_signals() {
+        let path = Path::new("e.toml");
+        assert_eq!(joint_of(&signals(0, 1), path).ok(), Some(0));
+        assert_eq!(joint_of(&signals(1, 2), path).ok(), Some(1));
+    }
+
+    #[test]
+    fn signals_that_are_not_of_one_joint_are_refused() {
+        let path = Path::new("e.toml");
+        let mut other = signals(0, 1);
+        other.motor_torque = "/follower/motor_js.effort[1]".to_owned();
+        let mut column = signals(0, 1);
+        column.position = "q_rad".to_owned();
+        for (bad, words) in [
+            (
+                other,
+                "signals.motor_torque is \"/follower/motor_js.effort[1]\"",
+            ),
+            (column, "/follower/measured_js.position[0] or"),
+            (signals(1, 1), "/follower/joint_2/temperature.temperature"),
+        ] {
+            let error = joint_of(&bad, path).unwrap_err().to_string();
+            assert!(error.contains(words) && error.contains("e.toml"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The node's step, on a joint whose torque is written down here.
+
+use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
+use ferntast_msgs::sample::Faults;
+
+use super::*;
+use crate::node::{Batch, Newest, Output};
+
+const PERIOD: f64 = 0.01;
+
+/// Position, and motor torque with that much viscous friction, at `t` \[s\].
+fn joint(t: f64, viscous: f64, noise: f64) -> (f64, f64) {
+    let (mut q, mut qd, mut qdd) = (0.0, 0.0, 0.0);
+    for (amplitude, rate) in [(0.25, 0.5), (0.08, 1.7), (0.02, 5.3)] {
+        let (sine, cosine) = (rate * t).sin_cos();
+        q += amplitude * sine;
+        qd += amplitude * rate * cosine;
+        qdd -= amplitude * rate * rate * sine;
+    }
+    let friction = 6.0 * qd.signum() + viscous * qd;
+    (q + 1e-6 * noise, 1.2 * qdd + friction + 0.1 * noise)
+}
+
+/// Near ±1, without a pattern.
+fn noise(k: u64) -> f64 {
+    let mut x = k.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(7);
+    x ^= x >> 31;
+    x = x.wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x ^= x >> 29;
+    2.0 * (x >> 11) as f64 / (1_u64 << 53) as f64 - 1.0
+}
+
+fn model() -> TwinModel {
+    let sessions = (0..3).map(|k| {
+        let rows = (0..6000).map(|i| {
+            let t = f64::from(i) * PERIOD + 500.0 * f64::from(k);
+            joint(t, 13.0, noise(u64::from(i as u32) + 100_000 * k as u64))
+        });
+        let (position, motor_torque): (Vec<f64>, Vec<f64>) = rows.unzip();
+        Session {
+            name: format!("session {k}"),
+            start: 500.0 * f64::from(k),
+            period: PERIOD,
+            joint_torque: Some(vec![0.0; position.len()]),
+            position,
+            motor_torque,
+            ..Session::default()
+        }
+    });
+    let dataset = Dataset {
+        sessions: sessions.collect(),
+        ..Dataset::default()
+    };
+    let spec = ModelSpec {
+        inertia: Inertia::Given(1.2),
+        gear_ratio: None,
+        effects: ["coulomb", "viscous"]
+            .map(|id| Term::Catalogue(id.to_owned()))
+            .to_vec(),
+    };
+    TwinModel {
+        twin: Twin::new(&dataset, &spec, 20.0).unwrap(),
+        joint: 1,
+        joint_torque: true,
+        temperature: false,
+    }
+}
+
+const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
+
+/// Everything that the node published.
+#[derive(Default)]
+struct Published {
+    predicted: Vec<JointSample>,
+    residual: Vec<JointSample>,
+    parameters: Vec<TwinParametersSample>,
+    faults: Faults,
+    words: Vec<Text<96>>,
+}
+
+/// Steps at 1 kHz; every tenth has samples. `viscous` is that of the joint.
+fn run(node: &mut TwinNode, seconds: f64, viscous: impl Fn(f64) -> f64) -> Published {
+    let mut published = Published::default();
+    let mut output = TwinNodeOutput::default();
+    let sample = |stamp, value: f64, effort: f64| JointSample {
+        position: [9.0, value],
+        effort: [9.0, effort],
+        ..JointSample::zero(stamp)
+    };
+    for step in 0..(seconds * 1000.0) as i64 {
+        let now = START.plus_nanos(step * 1_000_000);
+        let mut input = TwinInput {
+            measured_js: Batch::default(),
+            motor_js: Batch::default(),
+            temperature_1: Newest::default(),
+            temperature_2: Newest::default(),
+        };
+        if step % 10 == 0 {
+            let t = step as f64 * 1e-3;
+            let (q, torque) = joint(t, viscous(t), noise(step as u64 + 17));
+            // A torque sensor that is free of load still makes noise.
+            let load = 1e-6 * noise(step as u64);
+            input.measured_js.push(sample(now, q, load));
+            input.motor_js.push(sample(now, q, torque));
+        }
+        output.clear();
+        node.step(now, &input, &mut output);
+        published.predicted.extend(output.predicted);
+        published.residual.extend(output.residual);
+        published.parameters.extend(output.parameters);
+        published.faults.0 |= output.health.faults.0;
+        if !output.health.message.is_empty()
+            && published.words.last() != Some(&output.health.message)
+        {
+            published.words.push(output.health.message);
+        }
+    }
+    published
+}
+
+#[test]
+fn a_right_model_is_silent() {
+    let mut node = TwinNode::new(model(), Assessing::Inline);
+    let published = run(&mut node, 80.0, |_| 13.0);
+    let last = published.parameters.last().unwrap();
+    assert_eq!(last.verdict, TwinVerdict::COMPLETE, "{last:?}");
+    assert!(published.faults.is_empty(), "{:?}", published.words);
+    // One message in a tenth of a second; lists with the model's two parameters.
+    assert!((750..=800).contains(&published.parameters.len()));
+    let names: Vec<&str> = last
+        .names
+        .iter()
+        .take(last.len())
+        .map(Text::as_str)
+        .collect();
+    assert_eq!(names, ["b0", "b1"]);
+    assert!((last.values[0] - 6.0).abs() < 0.1 && (last.values[1] - 13.0).abs() < 0.3);
+    // Stamps are those of the samples, in order; the other joint is zero.
+    let predicted = &published.predicted;
+    assert!(predicted.windows(2).all(|two| two[0].stamp < two[1].stamp));
+    let delay = START
+        .plus_nanos(80_000_000_000)
+        .seconds_since(predicted.last().unwrap().stamp);
+    assert!(delay > 0.0 && delay < 0.5, "{delay}");
+    assert!(
+        predicted
+            .iter()
+            .all(|own| own.effort[0] == 0.0 && own.position[0] == 0.0)
+    );
+    // The residual is there where the joint slides, and is what noise leaves.
+    let squares = published.residual.iter().map(|own| own.effort[1].powi(2));
+    let rms = (squares.sum::<f64>() / published.residual.len() as f64).sqrt();
+    assert!(published.residual.len() < predicted.len());
+    assert!(rms < 0.1 && rms > 1e-4, "{rms}");
+}
+
+#[test]
+fn a_step_raises_the_alarm_and_is_told_in_words() {
+    let mut node = TwinNode::new(model(), Assessing::Inline);
+    let published = run(&mut node, 130.0, |t| if t > 50.0 { 25.0 } else { 13.0 });
+    assert!(published.faults.has(Fault::ResidualOutOfBand));
+    let last = published.parameters.last().unwrap();
+    assert_eq!(last.out_of_band, 1);
+    assert_eq!(
+        (last.changed.as_str(), last.change_kind.as_str()),
+        ("b1", "step")
+    );
+    assert!((last.change_before - 13.0).abs() < 0.3 && (last.change_after - 25.0).abs() < 1.5);
+    assert!(
+        (45.0..75.0).contains(&last.change_time),
+        "{}",
+        last.change_time
+    );
+    let said = published.words.last().unwrap().as_str();
+    assert!(said.contains("b1 stepped from 13"), "{said}");
+    assert!(said.contains("velocity") || said.contains("time"), "{said}");
+}
+
+#[test]
+fn the_same_samples_give_the_same_messages() {
+    let mut runs = [0, 1].map(|_| {
+        run(&mut TwinNode::new(model(), Assessing::Inline), 30.0, |_| {
+            14.0
+        })
+    });
+    let [first, second] = &mut runs;
+    assert_eq!(first.predicted, second.predicted);
+    assert_eq!(first.residual, second.residual);
+    assert_eq!(first.parameters, second.parameters);
+}
+
+#[test]
+fn on_a_thread_the_lab_s_answer_comes_too() {
+    let mut node = TwinNode::new(model(), Assessing::OnThread);
+    run(&mut node, 65.0, |_| 13.0);
+    let end = std::time::Instant::now() + std::time::Duration::from_secs(60);
+    while node.assessor.newest().verdict.is_none() && std::time::Instant::now() < end {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        let twin = node.twin.clone();
+        node.assessor.step(&twin, 65.0);
+    }
+    assert_eq!(node.assessor.newest().code(), TwinVerdict::COMPLETE);
+}
+
+#[test]
+fn nothing_heard_is_a_fault() {
+    let mut node = TwinNode::new(model(), Assessing::Inline);
+    let mut output = TwinNodeOutput::default();
+    let input = TwinInput::default();
+    node.step(START, &input, &mut output);
+    assert!(output.health.faults.has(Fault::MeasurementSilent));
+    assert!(output.parameters.is_none());
+}
