@@ -9,6 +9,7 @@
 //!
 //! Pure and deterministic: the same samples give the same bytes.
 
+mod band;
 mod change;
 mod history;
 mod sensors;
@@ -38,12 +39,12 @@ use stream::Stream;
 const GAP: f64 = 0.5;
 /// No more samples than this are kept for an assessment.
 const MOST_KEPT: usize = 600_000;
-/// Samples kept go into sessions of this length \[s\].
+/// Samples are kept, and dropped when there are too many, by pieces of this length \[s\].
 const SESSION: f64 = 60.0;
-/// The alarm rises when the squared residual, averaged over this many rows,
+/// Sessions of fewer samples are left out of an assessment.
+const SHORTEST: usize = 200;
+/// The squared residual is averaged over this many rows.
 const BAND_ROWS: f64 = 200.0;
-/// is above the band's square times this \[1\].
-const BAND_EXCESS: f64 = 4.0;
 
 /// What the joint is doing at one time; joint side of the gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,6 +183,8 @@ pub struct Twin {
     names: Vec<(String, String)>,
     off_line: Vec<f64>,
     band: f64,
+    /// Mean square above which the residual has left its band \[Nm²\].
+    limit: f64,
     /// Time that the estimator remembers \[s\].
     response: f64,
     changes: ChangeLog,
@@ -248,7 +251,7 @@ impl Twin {
             .flat_map(|term| term.effect.description().coefficients.clone())
             .map(|quantity| (quantity.name.clone(), quantity.unit.of(joint).to_owned()))
             .collect();
-        Ok(Self {
+        let mut twin = Self {
             spec: spec.clone(),
             joint,
             period,
@@ -257,6 +260,7 @@ impl Twin {
             names,
             off_line,
             band,
+            limit: f64::INFINITY,
             response: memory,
             changes: ChangeLog::default(),
             kept: Vec::new(),
@@ -266,7 +270,9 @@ impl Twin {
             mean_square: 0.0,
             rows: Vec::new(),
             settled_rows: 0.0,
-        })
+        };
+        twin.limit = twin.limit_of(dataset);
+        Ok(twin)
     }
 
     /// Takes a sample; appends what it completes to `outputs`. Returns what is
@@ -322,11 +328,11 @@ impl Twin {
         self.mean_square.sqrt()
     }
 
-    /// Whether the residual has left its band: twice the standard deviation off
-    /// line, over the last 200 rows or so.
+    /// Whether the residual has left its band: over the last 200 rows or so it is
+    /// larger than over any as many in the model's own recordings, by a margin.
     #[must_use]
     pub fn out_of_band(&self) -> bool {
-        self.settled_rows >= BAND_ROWS && self.mean_square > BAND_EXCESS * self.band * self.band
+        self.settled_rows >= BAND_ROWS && self.mean_square > self.limit
     }
 
     /// The parameters as they are now.
@@ -372,12 +378,7 @@ impl Twin {
     /// Too few samples, nothing excited: see [`PrepareError`].
     pub fn assess(&self) -> Result<Diagnosis, PrepareError> {
         let dataset = Dataset {
-            sessions: self
-                .kept
-                .iter()
-                .filter(|session| session.len() > 200)
-                .cloned()
-                .collect(),
+            sessions: joined(&self.kept),
             held_out: Vec::new(),
             joint: self.joint,
             filter: None,
@@ -437,13 +438,17 @@ impl Twin {
             .last()
             .is_some_and(|session| sample.time - session.start > SESSION && session.period > 0.0);
         if full {
-            self.kept.push(self.session(sample));
+            // On the grid of the piece before, so that both can be joined.
+            let next = self.kept.last().map(end).unwrap_or(sample.time);
+            let mut piece = self.session(sample);
+            piece.start = next;
+            self.kept.push(piece);
         }
         let Some(session) = self.kept.last_mut() else {
             return;
         };
-        let due = ((sample.time - session.start) / session.period + 0.5).floor() as usize + 1;
-        while session.len() < due {
+        let due = ((sample.time - session.start) / session.period + 0.5).floor() + 1.0;
+        while (session.len() as f64) < due {
             session.position.push(sample.position);
             session.motor_torque.push(sample.motor_torque);
             if let Some(torques) = &mut session.joint_torque {
@@ -458,4 +463,34 @@ impl Twin {
             self.kept_samples -= self.kept.remove(0).len();
         }
     }
+}
+
+/// When the sample after the last is due \[s\].
+fn end(session: &Session) -> f64 {
+    session.start + session.len() as f64 * session.period
+}
+
+/// Pieces that follow each other without a gap as one session each: what is
+/// one session must not count as several where sessions are compared.
+fn joined(pieces: &[Session]) -> Vec<Session> {
+    let mut sessions: Vec<Session> = Vec::new();
+    for piece in pieces {
+        match sessions.last_mut() {
+            Some(last) if (piece.start - end(last)).abs() < 0.5 * piece.period => {
+                last.position.extend(&piece.position);
+                last.motor_torque.extend(&piece.motor_torque);
+                for (all, more) in [
+                    (&mut last.joint_torque, &piece.joint_torque),
+                    (&mut last.temperature, &piece.temperature),
+                ] {
+                    if let (Some(all), Some(more)) = (all, more) {
+                        all.extend(more);
+                    }
+                }
+            }
+            _ => sessions.push(piece.clone()),
+        }
+    }
+    sessions.retain(|session| session.len() > SHORTEST);
+    sessions
 }

@@ -18,6 +18,7 @@ mod ros;
 mod session;
 mod support;
 mod sweep;
+mod twin;
 mod two_hosts;
 mod watchdog;
 mod zenoh;

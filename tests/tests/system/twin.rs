@@ -1,0 +1,153 @@
+//! A twin of a joint: the same live as played back, and refusals in words.
+
+use std::fs;
+
+use ferntast_msgs::topics;
+use ferntast_tests::Session;
+
+use crate::support::{
+    PATIENCE, attempts, await_enabled, messages, number, recording, refused, run, start,
+};
+
+/// The second joint of a session, by the model that its servo believes in.
+const JOINT_2: &str = r#"
+recording = "first"
+
+[signals]
+position = "/follower/measured_js.position[1]"
+joint_torque = "/follower/measured_js.effort[1]"
+motor_torque = "/follower/motor_js.effort[1]"
+temperature = "/follower/joint_2/temperature.temperature"
+
+[model]
+inertia = 0.5
+gear_ratio = 160
+effects = ["coulomb", "load_coulomb", "viscous", "quadratic_viscous", "cubic_viscous"]
+"#;
+
+/// Records a session in virtual time and writes `joint.toml`, an experiment on it.
+fn experiment(session: &Session) {
+    let arguments = ["lockstep", "--duration", "40", "--seed", "3"];
+    run(session, &[&arguments[..], &["--record", "first"]].concat()).success();
+    fs::write(session.folder().join("joint.toml"), JOINT_2).expect("scratch folder");
+}
+
+#[test]
+fn played_back_it_is_what_it_was_live_byte_for_byte() {
+    let session = Session::new();
+    experiment(&session);
+    let arguments = [
+        "lockstep",
+        "--twin",
+        "joint.toml",
+        "--duration",
+        "150",
+        "--seed",
+        "5",
+        "--record",
+        "second",
+        "--json",
+    ];
+    let live = run(&session, &arguments).success().json();
+    let replay = ["replay", "second", "--twin", "joint.toml", "--json"];
+    let replay = run(&session, &replay).success().json();
+    assert_eq!(replay["equal"], true, "{replay:#}");
+    let twin = &live["twin"];
+    assert_eq!(twin, &replay["twin"]);
+    assert_eq!(twin["joint"], "joint_2", "{twin:#}");
+    assert_ne!(twin["verdict"], "pending", "{twin:#}");
+    assert_eq!(twin["parameters"].as_array().map(Vec::len), Some(5));
+
+    // What is compared is there: predictions, residuals and parameters.
+    let second = session.folder().join("second");
+    let predicted = messages(&second, topics::TWIN_MOTOR_JS);
+    let residual = messages(&second, topics::TWIN_RESIDUAL_JS);
+    let parameters = messages(&second, topics::TWIN_PARAMETERS);
+    assert!(predicted.len() > 10_000 && parameters.len() > 800);
+    assert!(residual.len() > 4000 && residual.len() < predicted.len());
+    // The same arm, the same model: what is left is a small part of the torque.
+    let rms = |all: &[ferntast_bus::Received<ferntast_msgs::sample::JointSample>]| {
+        let squares = all.iter().map(|own| own.message.effort[1].powi(2));
+        (squares.sum::<f64>() / all.len() as f64).sqrt()
+    };
+    let (left, whole) = (rms(&residual), rms(&predicted));
+    assert!(
+        left < 0.3 * whole && left > 1e-3 * whole,
+        "{left} of {whole} Nm"
+    );
+}
+
+#[test]
+fn in_a_session_it_is_a_node_like_the_others() {
+    attempts(|| {
+        let session = Session::new();
+        experiment(&session);
+        let mut process = start(&session, &["--twin", "joint.toml", "--duration", "8"]);
+        await_enabled(&session, &mut process);
+        let summary = process.wait(PATIENCE).success().json();
+        assert_eq!(summary["nodes"]["twin"]["alive"], true, "{summary:#}");
+        assert!(number(&summary, "twin.residual_rms_Nm") > 0.0);
+        assert_eq!(summary["twin"]["verdict"], "pending");
+        let predicted = messages(&recording(&session), topics::TWIN_MOTOR_JS);
+        let measured = messages(&recording(&session), topics::FOLLOWER_MEASURED_JS);
+        // About a tenth of a second behind the samples that it is about.
+        let last = predicted.last().expect("predictions").message.stamp;
+        let behind = measured
+            .last()
+            .expect("samples")
+            .message
+            .stamp
+            .seconds_since(last);
+        assert!(behind > 0.0 && behind < 1.0, "{behind} s");
+    });
+}
+
+#[test]
+fn played_into_a_live_twin_it_answers_too() {
+    let session = Session::new();
+    experiment(&session);
+    let arguments = [
+        "play",
+        "first",
+        "--twin",
+        "joint.toml",
+        "--rate",
+        "4",
+        "--json",
+    ];
+    let arguments = [&arguments[..], &["--session", session.name()]].concat();
+    let played = run(&session, &arguments).success().json();
+    assert_eq!(played["twin"]["joint"], "joint_2", "{played:#}");
+    assert!(number(&played, "twin.residual_rms_Nm") > 0.0);
+}
+
+#[test]
+fn an_experiment_that_is_not_of_a_session_is_refused() {
+    let session = Session::new();
+    let elsewhere = ferntast_tests::data().join("xl330/xl330_kp100_sin_sin.csv");
+    let column = format!(
+        "recording = {elsewhere:?}\n[signals]\nposition = \"q_rad\"\nmotor_torque = \"applied_V\"\n\
+         [model]\ninertia = {{ fit = true }}\neffects = [\"coulomb\"]\n"
+    );
+    let mixed = JOINT_2.replace("motor_js.effort[1]", "motor_js.effort[0]");
+    for (text, words) in [
+        (
+            &column,
+            ["signals.position", "/follower/measured_js.position[0]"],
+        ),
+        (
+            &mixed,
+            ["signals.motor_torque", "/follower/motor_js.effort[1]"],
+        ),
+    ] {
+        fs::write(session.folder().join("other.toml"), text).expect("scratch folder");
+        for command in ["session", "lockstep"] {
+            refused(&session, &[command, "--twin", "other.toml"], &words);
+        }
+    }
+    refused(
+        &session,
+        &["lockstep", "--twin", "none.toml"],
+        &["none.toml"],
+    );
+}
