@@ -81,7 +81,11 @@ fn cases() -> Vec<Case> {
         let path = folder.join(format!("{name}.toml"));
         let experiment = Experiment::read(&path, &folder).unwrap();
         let dataset = load(&experiment).unwrap().dataset;
-        let accepted: Vec<String> = serde_json::from_value(answer["accepted"].clone()).unwrap();
+        let mut accepted: Vec<String> = serde_json::from_value(answer["accepted"].clone()).unwrap();
+        if !accepted.is_empty() {
+            // What a part of it may be called, and what it is.
+            accepted.extend(answer["effect"].as_str().map(str::to_owned));
+        }
         let nothing = answer["effect"] == "none";
         let mut cases = vec![Case {
             name: name.clone(),

@@ -262,6 +262,10 @@ pub fn run(
         }
         now = now.plus_nanos(PERIOD_NANOS);
     }
+    // What was published at the end is visible after it.
+    if let Some(own) = said.newest(now) {
+        result.twin = Some(TwinSummary::of(&own.message));
+    }
     Ok(result)
 }
 

@@ -43,7 +43,7 @@ impl Alignment {
         }
     }
 
-    /// Positions that never met a motor torque.
+    /// Positions that met no motor torque though there were some.
     pub(super) fn dropped(&self) -> u64 {
         self.dropped
     }
@@ -86,7 +86,8 @@ impl Alignment {
                     joint_torque,
                     motor_torque,
                 }),
-                _ => self.dropped += 1,
+                // Before the first motor torque there was nothing to meet.
+                _ => self.dropped += u64::from(before.is_some()),
             }
             self.waiting.pop_front();
         }
@@ -132,7 +133,7 @@ mod tests {
         // Before the first torque; then time begins anew.
         let (out, dropped) = run(&[('p', 0), ('m', 4), ('p', 9000), ('p', 10), ('m', 10)]);
         assert_eq!(out, [(10, 10.0)]);
-        assert_eq!(dropped, 2);
+        assert_eq!(dropped, 1);
         let many: Vec<(char, i64)> = (0..100).map(|k| ('p', k)).collect();
         assert_eq!(run(&many), (vec![], 36));
     }

@@ -9,6 +9,7 @@
 
 mod align;
 mod assess;
+mod goes_with;
 mod open;
 mod report;
 #[cfg(test)]
@@ -33,6 +34,7 @@ use crate::node::{Node, ports};
 
 use align::{Aligned, Alignment};
 use assess::Assessor;
+use goes_with::GoesWith;
 
 /// No measurement for this long \[s\] is a fault.
 const MEASUREMENT_WATCHDOG: f64 = 0.1;
@@ -73,6 +75,7 @@ pub struct TwinNode {
     ready: VecDeque<TwinOutput>,
     lost: u64,
     assessor: Assessor,
+    goes_with: GoesWith,
     parameters_due: f64,
     said: Option<TwinParametersSample>,
     words: Text<96>,
@@ -93,6 +96,7 @@ impl TwinNode {
             ready: VecDeque::new(),
             lost: 0,
             assessor: Assessor::new(assessing),
+            goes_with: GoesWith::default(),
             parameters_due: f64::NEG_INFINITY,
             said: None,
             words: Text::EMPTY,
@@ -112,6 +116,9 @@ impl TwinNode {
         let flag = self.twin.push(&sample, &mut self.rows);
         for row in self.rows.drain(..) {
             self.assessor.note(row.time, row.slides);
+            if row.slides {
+                self.goes_with.note(&row);
+            }
             self.ready.push_back(row);
             if self.ready.len() > MOST_READY {
                 self.ready.pop_front();
@@ -148,7 +155,13 @@ impl TwinNode {
         let early = self.parameters_due - row.time;
         if early <= 0.0 || early > 2.0 * PARAMETERS_EVERY {
             self.parameters_due = row.time + PARAMETERS_EVERY;
-            let (sample, words) = report::of(&self.twin, self.joint, stamp, self.assessor.newest());
+            let (sample, words) = report::of(
+                &self.twin,
+                self.joint,
+                stamp,
+                self.assessor.newest(),
+                self.goes_with.name(),
+            );
             output.parameters = Some(sample);
             self.said = Some(sample);
             self.words = words;

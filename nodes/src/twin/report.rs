@@ -12,12 +12,14 @@ use serde::Serialize;
 use super::assess::Assessment;
 
 /// The message on `/twin/parameters`, and the words on `/diagnostics`: empty
-/// while all is well.
+/// while all is well. `goes_with` is the signal that the residual goes with now,
+/// for where the lab has not told it.
 pub(super) fn of(
     twin: &Twin,
     joint: usize,
     stamp: Time,
     assessment: &Assessment,
+    goes_with: Option<&str>,
 ) -> (TwinParametersSample, Text<96>) {
     let mut sample = TwinParametersSample {
         residual_rms: twin.residual_rms(),
@@ -26,7 +28,10 @@ pub(super) fn of(
         verdict: assessment.code(),
         assessed_at: assessment.at,
         candidate: assessment.candidate,
-        goes_with: assessment.goes_with,
+        goes_with: match assessment.goes_with.is_empty() && twin.out_of_band() {
+            true => Text::new(goes_with.unwrap_or_default()),
+            false => assessment.goes_with,
+        },
         ..TwinParametersSample::nothing(stamp, u8::try_from(joint).unwrap_or(u8::MAX))
     };
     let parameters = twin.parameters();
