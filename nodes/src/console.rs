@@ -10,6 +10,7 @@ use ferntast_console::{
     server::Content,
     session::{Desk, GripModel, PageHand, SessionPorts},
 };
+use ferntast_control::delay::Law;
 use ferntast_msgs::{
     sample::{Fault, Faults, Level},
     topics,
@@ -139,7 +140,7 @@ fn about(session: &str, loaded: &Loaded) -> Value {
         "workspace_offset": or(&law["workspace_offset"], arm["contour"]["nominal_tip"].clone()),
         "position_scale": or(&law["position_scale"], json!(1.0)),
         "law": scenario.law.name(),
-        "laws": [scenario.law.name()],
+        "laws": Law::NAMES,
         "link": {
             "round_trip": loaded.link.nominal_round_trip(bytes),
             "jitter": deviation(up).max(deviation(down)),

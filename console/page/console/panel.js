@@ -30,6 +30,7 @@ function slider(id, text, { max, step, value, unit, decimals }) {
 }
 
 let linkTimer = 0;
+let lawAsked = 0;
 
 function sendLink() {
   clearTimeout(linkTimer);
@@ -69,8 +70,9 @@ export function build() {
   parts.meter = make("i", { id: "force-bar" });
   parts.nodes = make("table", { className: "nodes" });
   parts.label = make("input", { id: "mark-label", type: "text", placeholder: "what to note", maxLength: 90, "aria-label": "Label of the mark" });
-  parts.law = make("select", { id: "law", "aria-label": "Delay law", disabled: about.laws.length < 2 },
+  parts.law = make("select", { id: "law", "aria-label": "Delay law" },
     about.laws.map((law) => make("option", { textContent: law.replaceAll("_", "–"), value: law, selected: law === about.law })));
+  parts.law.addEventListener("change", () => { lawAsked = Date.now(); send({ type: "law", law: parts.law.value }); });
   fill(byId("panel"),
     section("Control",
       make("div", { className: "row" }, button("operate", "Take the controls", () => send({ type: operates() ? "watch" : "operate" }), { className: "primary" })),
@@ -149,7 +151,7 @@ export function slow(snapshot) {
   write(parts.operate, mine ? "Give up the controls" : other ? `Page ${snapshot.seat.operator} has the controls` : "Take the controls");
   parts.operate.classList.toggle("primary", !mine && !other);
   parts.operate.disabled = Boolean(other);
-  for (const id of ["arm", "hold", "rearm", "record", "mark", "link-delay", "link-jitter", "link-loss"]) parts[id].disabled = !mine;
+  for (const id of ["arm", "hold", "rearm", "record", "mark", "link-delay", "link-jitter", "link-loss", "law"]) parts[id].disabled = !mine;
   const [state] = snapshot.states.follower || ["?"];
   const [leader] = snapshot.states.leader || ["?"];
   parts.rearm.disabled ||= state !== "PAUSED" && leader !== "PAUSED";
@@ -162,6 +164,8 @@ export function slow(snapshot) {
   write(byId("measured"), link
     ? `measured: ${fixed(link.round_trip && link.round_trip * 1e3, 1)} ms, ±${fixed(link.jitter * 1e3, 1)} ms, ${percent(link.loss)} lost`
     : "measured: –");
+  // A change takes a round trip; until then the choice stands.
+  if (link?.law && link.law !== parts.law.value && Date.now() - lawAsked > 5000) parts.law.value = link.law;
   const { recorder } = snapshot;
   write(parts.record, recorder.on ? "End the recording" : "Record");
   parts.record.setAttribute("aria-pressed", String(recorder.on));

@@ -39,6 +39,11 @@ pub enum Request {
         /// Share of frames \[0 … 1\].
         loss: f64,
     },
+    /// Another delay law, at both ends.
+    Law {
+        /// Its name, as in configurations.
+        law: String,
+    },
     /// Record from now on.
     Record {
         /// Folder, relative to the session's working folder; empty for one

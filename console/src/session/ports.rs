@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use ferntast_bus::{Bus, CreateError, Depth, Publisher, Subscriber, SubscriberCounts};
 use ferntast_msgs::{
-    Message, Time,
+    Message, Text, Time,
     sample::{
-        AuthoritySample, ContactStateSample, Frame, HealthSample, JointSample, LinkCommandSample,
-        LinkStatusSample, OperatingState, OperatingStateSample, PoseSample, RecorderAction,
-        RecorderCommandSample, RecorderStatusSample, StateCommand, StateCommandSample,
-        TemperatureSample, WrenchSample,
+        AuthoritySample, ContactStateSample, Frame, HealthSample, JointSample, LawCommandSample,
+        LinkCommandSample, LinkStatusSample, OperatingState, OperatingStateSample, PoseSample,
+        RecorderAction, RecorderCommandSample, RecorderStatusSample, StateCommand,
+        StateCommandSample, TemperatureSample, WrenchSample,
     },
     topics,
 };
@@ -75,6 +75,7 @@ pub struct SessionPorts {
     measured_cp: Publisher<PoseSample>,
     state_commands: [Publisher<StateCommandSample>; 2],
     link_command: Publisher<LinkCommandSample>,
+    law_command: Publisher<LawCommandSample>,
     recorder_command: Publisher<RecorderCommandSample>,
     began: Option<Time>,
     last: Option<Time>,
@@ -125,6 +126,7 @@ impl SessionPorts {
                 bus.publisher(topics::LEADER_STATE_COMMAND)?,
             ],
             link_command: bus.publisher(topics::LINK_COMMAND)?,
+            law_command: bus.publisher(topics::LINK_LAW_COMMAND)?,
             recorder_command: bus.publisher(topics::RECORDER_COMMAND)?,
             began: None,
             last: None,
@@ -173,6 +175,13 @@ impl SessionPorts {
                     loss,
                 };
                 self.link_command.publish(now, &command).is_ok()
+            }
+            Request::Law { law } => {
+                let command = LawCommandSample {
+                    stamp: now,
+                    law: Text::new(&law),
+                };
+                self.law_command.publish(now, &command).is_ok()
             }
             Request::Record { folder } => self.recorder(now, RecorderAction::START, &folder),
             Request::EndRecord => self.recorder(now, RecorderAction::STOP, ""),
