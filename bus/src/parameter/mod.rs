@@ -41,7 +41,7 @@ pub struct ParameterNode {
 
 #[derive(Debug)]
 enum Kind {
-    Dds(dds::DdsParameter),
+    Dds(Box<dds::DdsParameter>),
     Zenoh(zenoh::ZenohParameter),
 }
 
@@ -61,7 +61,7 @@ impl ParameterNode {
             wish,
         };
         let kind = match bus {
-            Bus::Dds(bus) => Kind::Dds(dds::open(bus, &choice, judge)?),
+            Bus::Dds(bus) => Kind::Dds(Box::new(dds::open(bus, &choice, judge)?)),
             Bus::Zenoh(bus) => Kind::Zenoh(zenoh::open(bus, &choice, judge)?),
             Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) => return Ok(None),
         };
