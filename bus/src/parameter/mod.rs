@@ -42,7 +42,7 @@ pub struct ParameterNode {
 #[derive(Debug)]
 enum Kind {
     Dds(Box<dds::DdsParameter>),
-    Zenoh(zenoh::ZenohParameter),
+    Zenoh(Box<zenoh::ZenohParameter>),
 }
 
 impl ParameterNode {
@@ -62,7 +62,7 @@ impl ParameterNode {
         };
         let kind = match bus {
             Bus::Dds(bus) => Kind::Dds(Box::new(dds::open(bus, &choice, judge)?)),
-            Bus::Zenoh(bus) => Kind::Zenoh(zenoh::open(bus, &choice, judge)?),
+            Bus::Zenoh(bus) => Kind::Zenoh(Box::new(zenoh::open(bus, &choice, judge)?)),
             Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) => return Ok(None),
         };
         Ok(Some(ParameterNode { kind, wishes }))
