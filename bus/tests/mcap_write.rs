@@ -15,7 +15,9 @@ use ferntast_msgs::{
     sample::{JointSample, PoseSample},
     topics::{self, Delivery, FOLLOWER_MEASURED_JS, LEADER_MEASURED_CP, Topic, Visitor},
 };
-use mcap_samples::{START, joint, log_time, options, record, sample, write_sample_bag};
+use mcap_samples::{
+    START, joint, log_time, options, record, sample, topic_count, write_sample_bag,
+};
 
 struct Compare<'a> {
     reader: &'a BagReader,
@@ -124,7 +126,7 @@ fn every_compression_can_be_read() {
         sizes.push(writer.finish().unwrap().bytes);
         let reader = BagReader::open(&path).unwrap();
         assert!(reader.raw().all(|message| message.is_ok()));
-        assert_eq!(reader.raw().count(), 2400);
+        assert_eq!(reader.raw().count(), 100 * topic_count());
     }
     assert!(sizes[0] > sizes[1] && sizes[1] > sizes[2], "{sizes:?}");
 }
@@ -211,7 +213,10 @@ fn a_dropped_writer_closes_its_recording() {
     let mut writer = BagWriter::create(&path, options()).unwrap();
     record(&mut writer, 0..5).unwrap();
     drop(writer);
-    assert_eq!(BagReader::open(&path).unwrap().raw().count(), 120);
+    assert_eq!(
+        BagReader::open(&path).unwrap().raw().count(),
+        5 * topic_count()
+    );
     assert!(path.join("metadata.yaml").exists());
 }
 
@@ -229,7 +234,7 @@ fn a_killed_recording_has_lost_half_a_second_at_most() {
 
     let report = ferntast_bus::mcap::repair(&path, None).unwrap();
     assert!(
-        (950 * 24..1000 * 24).contains(&report.messages),
+        (950 * topic_count() as u64..1000 * topic_count() as u64).contains(&report.messages),
         "{}",
         report.messages
     );

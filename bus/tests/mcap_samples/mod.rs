@@ -20,6 +20,19 @@ use ferntast_msgs::{
 /// When the sample recordings begin: 2025-01-01 00:00:00 UTC.
 pub const START: Time = Time::from_nanos(1_735_689_600_000_000_000);
 
+/// Number of topics, and so of messages in one round.
+pub fn topic_count() -> usize {
+    struct Count(usize);
+    impl Visitor for Count {
+        fn topic<M: Message>(&mut self, _: Topic<M>) {
+            self.0 += 1;
+        }
+    }
+    let mut count = Count(0);
+    topics::visit(&mut count);
+    count.0
+}
+
 /// The `k`-th message of any type of the table, all fields distinct.
 pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
     let x = f64::from(k);

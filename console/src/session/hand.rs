@@ -114,9 +114,28 @@ mod tests {
             .unwrap();
         assert!((at[0] - 0.007).abs() < 1e-12 && (at[1] - 0.002).abs() < 1e-12);
         assert_eq!(hand.step(0.004, None, [0.0; 2], [0.0; 2]), None);
-        // Taken anew it begins anew, wherever it was before.
+    }
+
+    /// Stays where it was put.
+    struct Still([f64; 2]);
+
+    impl GripModel for Still {
+        fn rest_at(&mut self, position: [f64; 2]) {
+            self.0 = position;
+        }
+        fn step(&mut self, _: f64, _: [f64; 2], _: [f64; 2]) -> [f64; 2] {
+            self.0
+        }
+    }
+
+    #[test]
+    fn taken_anew_it_begins_anew_wherever_it_was_before() {
+        let mut hand = PageHand::new(Box::new(Still([0.0; 2])), 0.06, 0.1);
+        let at = hand.step(0.004, Some([0.01, 0.0]), [0.01, 0.0], [0.0; 2]);
+        assert_eq!(at, Some([0.01, 0.0]));
+        assert_eq!(hand.step(0.004, None, [0.0; 2], [0.0; 2]), None);
         let at = hand
-            .step(0.0, Some([0.05, 0.0]), [-0.03, 0.0], [0.0; 2])
+            .step(0.004, Some([0.05, 0.0]), [-0.03, 0.0], [0.0; 2])
             .unwrap();
         assert_eq!(at, [-0.03, 0.0]);
     }

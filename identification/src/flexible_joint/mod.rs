@@ -17,8 +17,6 @@
 
 mod off_line;
 mod on_line;
-#[cfg(test)]
-mod tests;
 
 pub use off_line::{Estimate, off_line};
 pub use on_line::{OnLine, Track, on_line};

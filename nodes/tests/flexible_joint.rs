@@ -1,9 +1,12 @@
+//! The flexible joint of the second paper: what its bench does, the regressions find.
+
+use ferntast_identification::flexible_joint::{
+    FlexibleJointSignals, Inertias, PARAMETERS, Row, off_line, on_line, rows,
+};
 use ferntast_model::recursive_least_squares::Forgetting;
 use ferntast_sim::flexible_joint_bench::{
     FlexibleJointParameters, FlexibleJointRecording, FlexibleJointRun, LOG_PERIOD, record,
 };
-
-use super::*;
 
 const SCALES: [[f64; 2]; 3] = [[1e5, 1e9], [1e3, 1e2], [1e3, 1e2]];
 const NOISE: [f64; 3] = [1.0, 0.3, 1.0];
