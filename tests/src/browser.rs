@@ -61,6 +61,8 @@ impl Browser {
             .unwrap_or_else(|error| panic!("no runtime: {error}"));
         let profile = TempDir::new().unwrap_or_else(|error| panic!("no scratch folder: {error}"));
         let capabilities = json!({
+            // Charts are drawn in software here, beside other tests.
+            "timeouts": {"script": 180_000, "pageLoad": 300_000},
             "goog:loggingPrefs": {"browser": "ALL"},
             "goog:chromeOptions": {"args": [
                 "--headless=new",
