@@ -7,10 +7,41 @@
 //! frequencies, the spring at high ones (a complementary filter), F = z + k (x_c − x)
 //! with ż = (F_est − k (x_c − x) − z)/τ. Out of contact it is zero.
 
+use super::FollowerInput;
+use super::mapping::Mapping;
 use nalgebra::Vector3;
 
 /// Time constant τ of the filter [s]: longer than the servo's lag.
 const TIME: f64 = 0.05;
+
+/// What a follower whose tip gives way sees, in hand units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// Force of the contact on the tip, zero where it is not known [N].
+    pub contact: Vector3<f64>,
+    /// The tip [m].
+    pub tip: Option<Vector3<f64>>,
+    /// The command, before the first one the tip [m].
+    pub here: Option<Vector3<f64>>,
+    /// Lead of the command over the tip [m].
+    pub lead: Vector3<f64>,
+}
+
+impl Touch {
+    /// Of `input`, with the last command \[m\], hand units.
+    pub fn new(mapping: &Mapping, input: &FollowerInput, command: Option<Vector3<f64>>) -> Self {
+        let tip = input.tip.map(|tip| mapping.tip_at_hand(tip.position));
+        let here = command.or(tip);
+        Touch {
+            contact: mapping.contact_at_hand(input.contact_force.unwrap_or([0.0; 3])),
+            tip,
+            here,
+            lead: here
+                .zip(tip)
+                .map_or(Vector3::zeros(), |(here, tip)| here - tip),
+        }
+    }
+}
 
 /// The complementary filter, in hand units.
 #[derive(Clone, Copy, Debug)]

@@ -23,7 +23,7 @@
 //! **On loss.** No command, the force fades out. Afterwards the command begins at
 //! the tip and approaches by K and B.
 
-use super::contact::CommandForce;
+use super::contact::{CommandForce, Touch};
 use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
@@ -175,14 +175,13 @@ impl Follower for FourChannelFollower {
         let live = self.mapping.live(input.connected, input.received);
         let newest = live.map(|received| (vector(received.packet.position), received.fresh));
         self.hand.step(dt, newest);
-        let contact = input.contact_force.unwrap_or([0.0; 3]);
-        let contact_at_hand = self.mapping.contact_at_hand(contact);
-        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
-        let here = self.command.or(tip);
-        let lead = here
-            .zip(tip)
-            .map_or(Vector3::zeros(), |(here, tip)| here - tip);
-        let pushed = self.force.step(dt, contact_at_hand, lead);
+        let Touch {
+            contact,
+            here,
+            lead,
+            ..
+        } = Touch::new(&self.mapping, input, self.command);
+        let pushed = self.force.step(dt, contact, lead);
         // Implicit in both springs.
         let give = own.damping + (own.stiffness + self.force.stiffness()) * dt;
         let command = live.zip(here).map(|(received, here)| {

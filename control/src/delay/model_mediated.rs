@@ -29,7 +29,7 @@ mod estimate;
 
 pub use estimate::SurfaceModel;
 
-use super::contact::CommandForce;
+use super::contact::{CommandForce, Touch};
 use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
@@ -217,16 +217,15 @@ impl Follower for ModelMediatedFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
         let live = self.mapping.live(input.connected, input.received);
-        let contact = input.contact_force.unwrap_or([0.0; 3]);
-        let contact = self.mapping.contact_at_hand(contact);
-        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
+        let Touch {
+            contact,
+            tip,
+            here,
+            lead,
+        } = Touch::new(&self.mapping, input, self.command);
         if let (Some(tip), Some(_)) = (tip, input.contact_force) {
             self.model = self.estimator.step(dt, tip, contact);
         }
-        let here = self.command.or(tip);
-        let lead = here
-            .zip(tip)
-            .map_or(Vector3::zeros(), |(here, tip)| here - tip);
         let pushed = self.force.step(dt, contact, lead);
         let give = own.yield_damping + self.force.stiffness() * dt;
         let command = live.zip(here).map(|(received, here)| {

@@ -34,7 +34,7 @@
 //! **On loss.** No command, the force fades out. Afterwards the command begins at the
 //! tip and approaches at `drift_speed`.
 
-use super::contact::CommandForce;
+use super::contact::{CommandForce, Touch};
 use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
 use super::store::Store;
 use super::{
@@ -206,17 +206,16 @@ impl Follower for TdpaFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
         let live = self.mapping.live(input.connected, input.received);
-        let contact = input.contact_force.unwrap_or([0.0; 3]);
-        let contact = self.mapping.contact_at_hand(contact);
-        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
-        let command = self.command.or(tip);
-        let lead = command
-            .zip(tip)
-            .map_or(Vector3::zeros(), |(command, tip)| command - tip);
+        let Touch {
+            contact,
+            here,
+            lead,
+            ..
+        } = Touch::new(&self.mapping, input, self.command);
         let force = self.force.step(dt, contact, lead);
         let mean = -0.5 * (force + self.last);
         self.last = force;
-        self.meter.step(mean.into(), command.map(Into::into));
+        self.meter.step(mean.into(), here.map(Into::into));
         self.store
             .port(self.meter.energy(), 1.0 - own.promised_share);
         if let Some(received) = live {
@@ -224,7 +223,7 @@ impl Follower for TdpaFollower {
         }
         self.store.limit(own.reserve);
         self.store.add(-self.force.take_wound());
-        let motion = live.zip(command).map(|(received, here)| {
+        let motion = live.zip(here).map(|(received, here)| {
             let hand_velocity = vector(received.packet.vector);
             let hand = vector(received.packet.position) + received.silence * hand_velocity;
             let drift = shortened((hand - here) / own.drift_time, own.drift_speed);

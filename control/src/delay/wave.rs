@@ -39,7 +39,7 @@
 //! equally fast (their offset changes the absorption only); the servo from command to
 //! tip is passive, up to the kinetic energy of the arm.
 
-use super::contact::CommandForce;
+use super::contact::{CommandForce, Touch};
 use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
 use super::store::Store;
 use super::{
@@ -271,13 +271,12 @@ impl Follower for WaveFollower {
         let root = (2.0 * b).sqrt();
         let live = self.mapping.live(input.connected, input.received);
         let forth = self.arrived.step(dt, live, own.buffer);
-        let contact = input.contact_force.unwrap_or([0.0; 3]);
-        let contact = self.mapping.contact_at_hand(contact);
-        let tip = input.tip.map(|tip| self.mapping.tip_at_hand(tip.position));
-        let here = self.command.or(tip);
-        let lead = here
-            .zip(tip)
-            .map_or(Vector3::zeros(), |(here, tip)| here - tip);
+        let Touch {
+            contact,
+            here,
+            lead,
+            ..
+        } = Touch::new(&self.mapping, input, self.command);
         let force = self.force.step(dt, contact, lead);
         let mean = -0.5 * (force + self.last);
         self.last = force;
