@@ -188,10 +188,11 @@ impl Signals {
             Some(filter) => filter.rows(points.len()),
             None => (reach..last).step_by(filters.stride.max(1)).collect(),
         };
-        let sliding = sliding(&points, filters);
+        let mut sliding = Sliding::default();
         let mut bad = vec![0_usize; points.len() + 1];
         for at in 0..points.len() {
-            bad[at + 1] = bad[at] + usize::from(!sliding[at]);
+            let slides = sliding.next(&points[at], filters);
+            bad[at + 1] = bad[at] + usize::from(!slides);
         }
         let rows = all_rows
             .iter()
@@ -222,23 +223,25 @@ impl Signals {
 }
 
 /// Which samples slide: faster than rest, and some way past the last reversal.
-fn sliding(points: &[Point], filters: &Filters) -> Vec<bool> {
-    let mut direction = 0.0;
-    let mut travelled = 0.0;
-    points
-        .iter()
-        .map(|point| {
-            // A fast change of speed passes rest between two samples.
-            let passing = 2.0 * point.acceleration.abs() * point.period;
-            if point.velocity.abs() < filters.rest_speed.max(passing) {
-                return false;
-            }
-            if point.velocity.signum() != direction {
-                direction = point.velocity.signum();
-                travelled = 0.0;
-            }
-            travelled += point.velocity.abs() * point.period;
-            travelled > filters.travel
-        })
-        .collect()
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sliding {
+    direction: f64,
+    travelled: f64,
+}
+
+impl Sliding {
+    /// Whether the next sample, in order of time, slides.
+    pub(crate) fn next(&mut self, point: &Point, filters: &Filters) -> bool {
+        // A fast change of speed passes rest between two samples.
+        let passing = 2.0 * point.acceleration.abs() * point.period;
+        if point.velocity.abs() < filters.rest_speed.max(passing) {
+            return false;
+        }
+        if point.velocity.signum() != self.direction {
+            self.direction = point.velocity.signum();
+            self.travelled = 0.0;
+        }
+        self.travelled += point.velocity.abs() * point.period;
+        self.travelled > filters.travel
+    }
 }

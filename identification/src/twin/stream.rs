@@ -7,7 +7,7 @@
 use crate::effects::{Exact, MOST_COLUMNS, Memory, Point};
 use crate::filter::Kernel;
 use crate::setup::{BoundTerm, Setup};
-use crate::signals::Filters;
+use crate::signals::{Filters, Sliding};
 
 use super::history::History;
 use super::{TwinRow, TwinSample};
@@ -54,8 +54,7 @@ struct State {
     velocity: History,
     /// 1 where the joint does not slide.
     stuck: History,
-    direction: f64,
-    travelled: f64,
+    sliding: Sliding,
     next_row: usize,
 }
 
@@ -214,22 +213,8 @@ impl Stream {
             }
         }
         self.state.velocity.push(point.velocity);
-        let stuck = !self.slides(&point);
+        let stuck = !self.state.sliding.next(&point, &self.filters);
         self.state.stuck.push(f64::from(u8::from(stuck)));
-    }
-
-    /// As for whole recordings: faster than rest, some way past a reversal.
-    fn slides(&mut self, point: &Point) -> bool {
-        let passing = 2.0 * point.acceleration.abs() * point.period;
-        if point.velocity.abs() < self.filters.rest_speed.max(passing) {
-            return false;
-        }
-        if point.velocity.signum() != self.state.direction {
-            self.state.direction = point.velocity.signum();
-            self.state.travelled = 0.0;
-        }
-        self.state.travelled += point.velocity.abs() * point.period;
-        self.state.travelled > self.filters.travel
     }
 
     fn row(&self, at: usize) -> TwinRow {
