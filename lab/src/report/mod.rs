@@ -39,20 +39,33 @@ pub fn render(report: &Report) -> Result<String, RenderError> {
 /// A page in the same style: `data` is JSON that the function named `show` of
 /// the script `sections` takes; charts are at its hand.
 pub fn page(title: &str, sections: &str, show: &str, data: &str) -> String {
-    // Nothing in it may end the script element or begin a comment.
-    let data = data.replace('<', "\\u003c");
+    let data = in_script(data);
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
-    let parts = [
-        ("@TITLE@", title.as_str()),
-        ("@STYLE@", STYLE),
-        ("@CHARTS@", CHARTS),
-        ("@SECTIONS@", sections),
-        ("@DATA@", &data),
-        ("@SHOW@", show),
-    ];
+    fill(
+        PAGE,
+        &[
+            ("@TITLE@", title.as_str()),
+            ("@STYLE@", STYLE),
+            ("@CHARTS@", CHARTS),
+            ("@SECTIONS@", sections),
+            ("@DATA@", &data),
+            ("@SHOW@", show),
+        ],
+    )
+}
+
+/// JSON as it may stand in a script element: nothing in it ends the element or
+/// begins a comment.
+pub fn in_script(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+/// `template` with its marks, in the order of `parts`, replaced by content.
+pub fn fill(template: &str, parts: &[(&str, &str)]) -> String {
+    let content: usize = parts.iter().map(|(_, content)| content.len()).sum();
     // Piece by piece, so that what is put in is never searched.
-    let mut page = String::with_capacity(PAGE.len() + data.len() + CHARTS.len());
-    let mut rest = PAGE;
+    let mut page = String::with_capacity(template.len() + content);
+    let mut rest = template;
     for (mark, content) in parts {
         if let Some((before, after)) = rest.split_once(mark) {
             page.push_str(before);

@@ -1,6 +1,7 @@
 //! One page with stability maps and curves. It is whole in itself: it asks
 //! nothing of a network, and nothing else of the disk.
 
+use ferntast_lab::report::{fill, in_script};
 use serde::Serialize;
 
 use super::{LargestStable, Row, SweepConfig, largest_stable};
@@ -33,24 +34,13 @@ pub fn render(config: &SweepConfig, rows: &[Row]) -> Result<String, RenderError>
         rows,
         largest_stable: largest_stable(rows),
     })?;
-    // Nothing in it may end the script element or begin a comment.
-    let data = data.replace('<', "\\u003c");
-    let parts = [
-        ("@STYLE@", STYLE),
-        ("@DRAW@", DRAW),
-        ("@SECTIONS@", SECTIONS),
-        ("@DATA@", &data),
-    ];
-    // Piece by piece, so that what is put in is never searched.
-    let mut page = String::with_capacity(PAGE.len() + data.len() + SECTIONS.len());
-    let mut rest = PAGE;
-    for (mark, content) in parts {
-        if let Some((before, after)) = rest.split_once(mark) {
-            page.push_str(before);
-            page.push_str(content);
-            rest = after;
-        }
-    }
-    page.push_str(rest);
-    Ok(page)
+    Ok(fill(
+        PAGE,
+        &[
+            ("@STYLE@", STYLE),
+            ("@DRAW@", DRAW),
+            ("@SECTIONS@", SECTIONS),
+            ("@DATA@", &in_script(&data)),
+        ],
+    ))
 }
