@@ -1,7 +1,7 @@
 //! The tip slides along an edge, a sinusoid, while the normal force is held
 //! (section "Contact dynamics experiments", Figs. 16 and 17).
 
-use super::{Program, Seen, Target};
+use super::{Program, Seen, Target, advance};
 use ferntast_model::{ParameterError, Vector2, check, contour::Feature};
 use std::f64::consts::TAU;
 
@@ -36,7 +36,8 @@ pub struct ContactMotion {
     amplitude: f64,
     /// Stiffness from the commanded depth to the force [N/m].
     stiffness: f64,
-    pieces: Vec<(Press, f64, f64)>,
+    /// Each with the time at which it begins [s].
+    pieces: Vec<(Press, f64)>,
     duration: f64,
     current: usize,
     depth: f64,
@@ -74,9 +75,8 @@ impl ContactMotion {
             check("force", press.force, 1.0, 100.0, "N")?;
             check("frequency", press.frequency, 0.01, 2.0, "Hz")?;
             let periods = (time_per_press * press.frequency).round().max(1.0);
-            let end = now + periods / press.frequency;
-            pieces.push((*press, now, end));
-            now = end;
+            pieces.push((*press, now));
+            now += periods / press.frequency;
         }
         Ok(ContactMotion {
             edge,
@@ -97,16 +97,9 @@ impl Program for ContactMotion {
     }
 
     fn target(&mut self, time: f64, dt: f64, seen: &Seen) -> Target {
-        while self.current + 1 < self.pieces.len()
-            && self
-                .pieces
-                .get(self.current)
-                .is_some_and(|piece| piece.2 <= time)
-        {
-            self.current += 1;
-        }
+        advance(&self.pieces, &mut self.current, time, |piece| piece.1);
         let mut along = self.along;
-        if let Some((press, start, _)) = self.pieces.get(self.current) {
+        if let Some((press, start)) = self.pieces.get(self.current) {
             if time >= *start {
                 // A sine that begins in the middle of the way.
                 along += self.amplitude * (TAU * press.frequency * (time - start)).sin();

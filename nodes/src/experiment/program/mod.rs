@@ -28,6 +28,16 @@ pub struct Seen {
     pub normal_force: f64,
 }
 
+/// Goes on from piece `current` to the one in which `time` \[s\] lies; the last
+/// one is never left. `starts` tells when a piece begins \[s\].
+fn advance<P>(pieces: &[P], current: &mut usize, time: f64, starts: impl Fn(&P) -> f64) {
+    while let Some(next) = pieces.get(*current + 1)
+        && starts(next) <= time
+    {
+        *current += 1;
+    }
+}
+
 /// A motion: targets over time.
 pub trait Program: Send {
     /// How long it takes \[s\].

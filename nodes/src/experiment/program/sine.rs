@@ -1,6 +1,6 @@
 //! A joint swings freely: the paper's trajectory "sinusoidal" (Fig. 9).
 
-use super::{Program, Seen, Target};
+use super::{Program, Seen, Target, advance};
 use ferntast_model::{JOINTS, ParameterError, check};
 use std::f64::consts::TAU;
 
@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 pub struct SineMotion {
     center: [f64; JOINTS],
     amplitude: [f64; JOINTS],
-    /// Frequency [Hz], start and end of each piece [s].
-    pieces: Vec<(f64, f64, f64)>,
+    /// Frequency [Hz] and begin of each piece [s].
+    pieces: Vec<(f64, f64)>,
     duration: f64,
     current: usize,
 }
@@ -39,11 +39,11 @@ impl SineMotion {
         for &value in &amplitude {
             check("amplitude", value, -1.0, 1.0, "rad")?;
         }
-        let (mut pieces, mut now): (Vec<(f64, f64, f64)>, f64) = (Vec::new(), 0.0);
+        let (mut pieces, mut now): (Vec<(f64, f64)>, f64) = (Vec::new(), 0.0);
         for &frequency in frequencies {
             check("frequency", frequency, 0.01, 5.0, "Hz")?;
             let periods = (time_per_frequency * frequency).round().max(1.0);
-            pieces.push((frequency, now, now + periods / frequency));
+            pieces.push((frequency, now));
             now += periods / frequency;
         }
         Ok(SineMotion {
@@ -62,18 +62,11 @@ impl Program for SineMotion {
     }
 
     fn target(&mut self, time: f64, _: f64, _: &Seen) -> Target {
-        while self.current + 1 < self.pieces.len()
-            && self
-                .pieces
-                .get(self.current)
-                .is_some_and(|piece| piece.2 <= time)
-        {
-            self.current += 1;
-        }
+        advance(&self.pieces, &mut self.current, time, |piece| piece.1);
         let sine = self
             .pieces
             .get(self.current)
-            .map_or(0.0, |(frequency, start, _)| {
+            .map_or(0.0, |(frequency, start)| {
                 (TAU * frequency * (time - start)).sin()
             });
         Target::Joints([0, 1].map(|joint: usize| self.center[joint] + sine * self.amplitude[joint]))

@@ -1,7 +1,7 @@
 //! A spring of the contour pulled at constant velocities: the paper's standard
 //! identification trajectory "spring" (Fig. 3).
 
-use super::{Program, Seen, Target};
+use super::{Program, Seen, Target, advance};
 use ferntast_model::{JOINTS, ParameterError, check};
 
 /// Slope of the velocity where a stroke begins and ends \[rad/s²\].
@@ -138,11 +138,7 @@ impl Program for SpringMotion {
     }
 
     fn target(&mut self, time: f64, _: f64, _: &Seen) -> Target {
-        while let Some(next) = self.ways.get(self.current + 1)
-            && next.start <= time
-        {
-            self.current += 1;
-        }
+        advance(&self.ways, &mut self.current, time, |way| way.start);
         let way = self.ways.get(self.current);
         let share = way.map_or(0.0, |way| way.at(time - way.start));
         let Stroke { free, loaded, .. } = self.stroke;
