@@ -5,6 +5,7 @@ use ferntast_msgs::{Message, Time, topics::Topic};
 use crate::{
     dds::{DdsBus, DdsPublisher, DdsSubscriber},
     error::{CreateError, PublishError},
+    foxglove::{FoxgloveBus, FoxglovePublisher},
     mcap::{McapBus, McapPublisher, McapSubscriber},
     memory::{MemoryBus, MemoryPublisher, MemorySubscriber},
     shared_memory::{SharedMemoryBus, SharedMemoryPublisher, SharedMemorySubscriber},
@@ -25,6 +26,8 @@ pub enum Bus {
     Zenoh(ZenohBus),
     /// A recording.
     Mcap(McapBus),
+    /// To Foxglove, one way.
+    Foxglove(FoxgloveBus),
 }
 
 impl Bus {
@@ -32,7 +35,7 @@ impl Bus {
     /// type; always empty on the ways that know no discovery.
     pub fn topics_seen(&self) -> Vec<(String, String)> {
         match self {
-            Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) => Vec::new(),
+            Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) | Bus::Foxglove(_) => Vec::new(),
             Bus::Dds(bus) => bus.topics_seen(),
             Bus::Zenoh(bus) => bus.topics_seen(),
         }
@@ -52,6 +55,7 @@ impl Bus {
             Bus::Dds(bus) => Publisher::Dds(Box::new(bus.publisher(topic)?)),
             Bus::Zenoh(bus) => Publisher::Zenoh(Box::new(bus.publisher(topic)?)),
             Bus::Mcap(bus) => Publisher::Mcap(bus.publisher(topic)?),
+            Bus::Foxglove(bus) => Publisher::Foxglove(bus.publisher(topic)?),
         })
     }
 
@@ -73,6 +77,11 @@ impl Bus {
             Bus::Dds(bus) => Subscriber::Dds(Box::new(bus.subscriber(topic, depth)?)),
             Bus::Zenoh(bus) => Subscriber::Zenoh(Box::new(bus.subscriber(topic, depth)?)),
             Bus::Mcap(bus) => Subscriber::Mcap(bus.subscriber(topic, depth)?),
+            Bus::Foxglove(_) => {
+                return Err(CreateError::OneWay {
+                    topic: topic.name.to_owned(),
+                });
+            }
         })
     }
 }
@@ -90,6 +99,8 @@ pub enum Publisher<M: Message> {
     Zenoh(Box<ZenohPublisher<M>>),
     /// Into a recording.
     Mcap(McapPublisher<M>),
+    /// To Foxglove.
+    Foxglove(FoxglovePublisher<M>),
 }
 
 impl<M: Message> Publisher<M> {
@@ -107,6 +118,7 @@ impl<M: Message> Publisher<M> {
             Publisher::Dds(publisher) => publisher.publish(now, message),
             Publisher::Zenoh(publisher) => publisher.publish(now, message),
             Publisher::Mcap(publisher) => publisher.publish(now, message),
+            Publisher::Foxglove(publisher) => publisher.publish(now, message),
         }
     }
 }

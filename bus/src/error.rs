@@ -35,6 +35,16 @@ pub enum OpenError {
         /// What is wrong with it.
         reason: String,
     },
+    /// An address that others could reach, where nothing asks who they are.
+    #[error(
+        "Foxglove is not served at {address}: its protocol knows no password; serve it at \
+         127.0.0.1:{} and reach it from afar through `ssh -L {}:127.0.0.1:{} HOST`",
+        address.port(), address.port(), address.port()
+    )]
+    NotLoopback {
+        /// The address asked for.
+        address: std::net::SocketAddr,
+    },
     /// The ROS domain is outside 0 to 232.
     #[error(
         "ROS domain {domain_id} is outside 0..=232, where DDS has ports; set ROS_DOMAIN_ID to one of those"
@@ -125,6 +135,12 @@ pub enum CreateError {
         topic: String,
         /// Why not.
         reason: String,
+    },
+    /// Only publishers are possible there.
+    #[error("{topic} cannot be read from Foxglove, which only watches: publish on ROS 2 instead")]
+    OneWay {
+        /// The topic.
+        topic: String,
     },
     /// No permission to use the topic's shared memory.
     #[error(

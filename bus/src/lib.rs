@@ -1,5 +1,5 @@
 //! How a message gets across: memory, shared memory, ROS 2 over DDS or
-//! Zenoh, MCAP, behind one interface ([`Bus`]).
+//! Zenoh, MCAP, to Foxglove, behind one interface ([`Bus`]).
 //!
 //! Every way takes and gives the same samples; the ROS 2 form exists only
 //! inside the ways that need it. [`frames`] carries the short raw records of
@@ -10,6 +10,7 @@ pub mod cdr;
 pub mod dds;
 mod endpoint;
 pub mod error;
+pub mod foxglove;
 pub mod frames;
 mod gaps;
 pub mod mcap;
@@ -25,6 +26,7 @@ pub use dds::{DdsBus, DdsConfig};
 pub use error::{
     CleanUpError, CreateError, DecodeError, EncodeError, OpenError, PublishError, SendError,
 };
+pub use foxglove::{FoxgloveBus, FoxgloveConfig};
 pub use memory::MemoryBus;
 pub use parameter::{Choice, ParameterNode};
 pub use shared_memory::{SharedMemoryBus, SharedMemoryConfig};

@@ -7,8 +7,8 @@ use crate::{
     sample::{
         AuthoritySample, ContactStateSample, HealthSample, JointSample, LawCommandSample,
         LinkCommandSample, LinkStatusSample, OperatingStateSample, PoseSample,
-        RecorderCommandSample, RecorderStatusSample, StateCommandSample, TemperatureSample,
-        TwinParametersSample, WrenchSample,
+        RecorderCommandSample, RecorderStatusSample, RobotDescriptionSample, StateCommandSample,
+        TemperatureSample, TransformsSample, TwinParametersSample, WrenchSample,
     },
 };
 
@@ -135,6 +135,10 @@ topics! {
     TWIN_RESIDUAL_JS: JointSample = "/twin/residual_js", Stream;
     /// The twin's parameters as they are now, and whether its model holds.
     TWIN_PARAMETERS: TwinParametersSample = "/twin/parameters", State;
+    /// Where the arm's frames are, from the link-side joint positions.
+    TF: TransformsSample = "/tf", Stream;
+    /// The arm as URDF.
+    ROBOT_DESCRIPTION: RobotDescriptionSample = "/robot_description", State;
     /// Rate, age and faults of every node.
     DIAGNOSTICS: HealthSample = "/diagnostics", Event;
 }

@@ -51,8 +51,8 @@ fn comes_in(topic: &str, crtk: bool) -> bool {
         || (crtk && topic == topics::LEADER_MEASURED_CP.name)
 }
 
-/// How a topic goes out.
-fn goes_out(topic: &str, delivery: Delivery, section: &GatewaySection) -> Carry {
+/// How a topic goes out to those who watch.
+pub fn goes_out(topic: &str, delivery: Delivery, section: &GatewaySection) -> Carry {
     match delivery {
         Delivery::State => Carry::Newest { period_nanos: 0 },
         Delivery::Event => Carry::Every { queue: 64 },

@@ -10,6 +10,7 @@ mod console;
 pub mod doctor;
 pub mod estimator;
 pub mod experiment;
+mod foxglove;
 mod gateway;
 mod law_parameter;
 pub mod link;

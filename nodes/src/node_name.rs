@@ -31,6 +31,8 @@ pub enum NodeName {
     Player,
     /// Serves the page.
     Console,
+    /// Shows every topic to Foxglove.
+    Foxglove,
 }
 
 impl NodeName {
@@ -48,6 +50,7 @@ impl NodeName {
             NodeName::Recorder => "recorder",
             NodeName::Player => "player",
             NodeName::Console => "console",
+            NodeName::Foxglove => "foxglove",
         }
     }
 }

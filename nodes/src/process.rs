@@ -19,7 +19,7 @@ use crate::{
     config::ConfigError,
     console,
     estimator::{EstimatorNode, EstimatorPorts},
-    gateway,
+    foxglove, gateway,
     link::{
         FollowerLinkNode, FollowerLinkPorts, LeaderLinkNode, LeaderLinkPorts, LinkPorts,
         LinkTransport, session_number,
@@ -60,6 +60,9 @@ pub enum ProcessError {
     /// A recording is needed and none is named.
     #[error("no recording is named: give --bag DIR")]
     NoBag,
+    /// An address is needed and none is given.
+    #[error("no address is given for Foxglove: give --foxglove")]
+    NoFoxglove,
     /// An experiment is needed and none is named.
     #[error("no experiment is named: give --twin EXPERIMENT.toml")]
     NoTwin,
@@ -187,6 +190,7 @@ pub fn run(
         | NodeName::Recorder
         | NodeName::Player
         | NodeName::Console
+        | NodeName::Foxglove
         | NodeName::Twin => Faults::default(),
         _ => around.request_realtime(),
     };
@@ -252,5 +256,6 @@ pub fn run(
         NodeName::Recorder => recorder::run(&around),
         NodeName::Player => player::run(&around),
         NodeName::Console => console::run(&around),
+        NodeName::Foxglove => foxglove::run(&around),
     }
 }

@@ -63,7 +63,9 @@ impl ParameterNode {
         let kind = match bus {
             Bus::Dds(bus) => Kind::Dds(Box::new(dds::open(bus, &choice, judge)?)),
             Bus::Zenoh(bus) => Kind::Zenoh(Box::new(zenoh::open(bus, &choice, judge)?)),
-            Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) => return Ok(None),
+            Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) | Bus::Foxglove(_) => {
+                return Ok(None);
+            }
         };
         Ok(Some(ParameterNode { kind, wishes }))
     }

@@ -33,6 +33,7 @@ macro_rules! texts {
 texts! {
     "builtin_interfaces/msg/Time": "standard/builtin_interfaces/msg/Time.msg";
     "std_msgs/msg/Header": "standard/std_msgs/msg/Header.msg";
+    "std_msgs/msg/String": "standard/std_msgs/msg/String.msg";
     "sensor_msgs/msg/JointState": "standard/sensor_msgs/msg/JointState.msg";
     "sensor_msgs/msg/Temperature": "standard/sensor_msgs/msg/Temperature.msg";
     "geometry_msgs/msg/Point": "standard/geometry_msgs/msg/Point.msg";
@@ -42,6 +43,9 @@ texts! {
     "geometry_msgs/msg/PoseStamped": "standard/geometry_msgs/msg/PoseStamped.msg";
     "geometry_msgs/msg/Wrench": "standard/geometry_msgs/msg/Wrench.msg";
     "geometry_msgs/msg/WrenchStamped": "standard/geometry_msgs/msg/WrenchStamped.msg";
+    "geometry_msgs/msg/Transform": "standard/geometry_msgs/msg/Transform.msg";
+    "geometry_msgs/msg/TransformStamped": "standard/geometry_msgs/msg/TransformStamped.msg";
+    "tf2_msgs/msg/TFMessage": "standard/tf2_msgs/msg/TFMessage.msg";
     "diagnostic_msgs/msg/KeyValue": "standard/diagnostic_msgs/msg/KeyValue.msg";
     "diagnostic_msgs/msg/DiagnosticStatus": "standard/diagnostic_msgs/msg/DiagnosticStatus.msg";
     "diagnostic_msgs/msg/DiagnosticArray": "standard/diagnostic_msgs/msg/DiagnosticArray.msg";

@@ -10,3 +10,4 @@ pub mod ferntast_msgs;
 pub mod geometry_msgs;
 pub mod sensor_msgs;
 pub mod std_msgs;
+pub mod tf2_msgs;

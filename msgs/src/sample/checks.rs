@@ -31,6 +31,22 @@ pub(super) fn finite_or_nan(field: &'static str, value: f64) -> Result<(), Inval
     }
 }
 
+/// How far the norm of an orientation may be from 1.
+const NORM_TOLERANCE: f64 = 1e-3;
+
+/// Refuses what is no unit quaternion.
+pub(super) fn unit_quaternion(
+    field: &'static str,
+    quaternion: &[f64; 4],
+) -> Result<(), InvalidMessage> {
+    finite(field, quaternion)?;
+    let norm = quaternion.iter().map(|q| q * q).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() > NORM_TOLERANCE {
+        return Err(InvalidMessage::NotUnit { norm });
+    }
+    Ok(())
+}
+
 /// Refuses flags other than 0 and 1, which ROS 2 could not carry.
 pub(super) fn flag(field: &'static str, flag: u8) -> Result<(), InvalidMessage> {
     if flag <= 1 {

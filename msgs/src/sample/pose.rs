@@ -7,9 +7,6 @@ use crate::{
 
 use super::{Frame, checks};
 
-/// How far the norm of an orientation may be from 1.
-const NORM_TOLERANCE: f64 = 1e-3;
-
 /// Pose of the tip or of the hand. `geometry_msgs/msg/PoseStamped` on the
 /// wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,11 +79,7 @@ unsafe impl Message for PoseSample {
     fn check(&self) -> Result<(), InvalidMessage> {
         checks::stamp(self.stamp)?;
         checks::finite("pose.position", &self.position)?;
-        checks::finite("pose.orientation", &self.orientation)?;
-        let norm = self.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
-        if (norm - 1.0).abs() > NORM_TOLERANCE {
-            return Err(InvalidMessage::NotUnit { norm });
-        }
+        checks::unit_quaternion("pose.orientation", &self.orientation)?;
         self.frame.check()
     }
 }

@@ -9,7 +9,7 @@ use ferntast_msgs::{
     interface::{self, Base, Count, Library, Primitive, Type},
     ros::{
         builtin_interfaces, crtk_msgs, diagnostic_msgs, ferntast_msgs as own, geometry_msgs,
-        sensor_msgs, std_msgs,
+        sensor_msgs, std_msgs, tf2_msgs,
     },
 };
 
@@ -61,6 +61,7 @@ fn every_struct_has_the_fields_of_its_definition() {
     compare!(
         builtin_interfaces::Time,
         std_msgs::Header,
+        std_msgs::String,
         sensor_msgs::JointState,
         sensor_msgs::Temperature,
         geometry_msgs::Point,
@@ -70,6 +71,9 @@ fn every_struct_has_the_fields_of_its_definition() {
         geometry_msgs::PoseStamped,
         geometry_msgs::Wrench,
         geometry_msgs::WrenchStamped,
+        geometry_msgs::Transform,
+        geometry_msgs::TransformStamped,
+        tf2_msgs::TFMessage,
         diagnostic_msgs::KeyValue,
         diagnostic_msgs::DiagnosticStatus,
         diagnostic_msgs::DiagnosticArray,

@@ -97,8 +97,10 @@ properties! {
     pose: PoseSample;
     recorder_command: RecorderCommandSample;
     recorder_status: RecorderStatusSample;
+    robot_description: RobotDescriptionSample;
     state_command: StateCommandSample;
     temperature: TemperatureSample;
+    transforms: TransformsSample;
     twin_parameters: TwinParametersSample;
     wrench: WrenchSample;
 }

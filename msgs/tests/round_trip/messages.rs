@@ -1,6 +1,7 @@
 //! ROS 2 messages as others may send them: anything, or nearly right.
 
 use ferntast_msgs::{
+    Message,
     ros::{
         builtin_interfaces::Time,
         crtk_msgs,
@@ -9,9 +10,10 @@ use ferntast_msgs::{
             Authority, ContactState, LinkCommand, LinkStatus, RecorderCommand, RecorderStatus,
             TwinParameters,
         },
-        geometry_msgs::{Pose, PoseStamped, Wrench, WrenchStamped},
+        geometry_msgs::{Pose, PoseStamped, Transform, TransformStamped, Wrench, WrenchStamped},
         sensor_msgs::{JointState, Temperature},
-        std_msgs::Header,
+        std_msgs::{self, Header},
+        tf2_msgs::TFMessage,
     },
     sample::{Edge, Fault, LinkEnd, OperatingState, StateCommand, TwinVerdict},
 };
@@ -104,6 +106,39 @@ pub fn operating_state() -> impl Strategy<Value = crtk_msgs::OperatingState> {
                 is_busy,
             },
         )
+}
+
+/// Texts, also longer than there is room for.
+pub fn robot_description() -> impl Strategy<Value = std_msgs::String> {
+    let long = (8000..9000_usize).prop_map(|length| "x".repeat(length));
+    prop_oneof![any::<String>(), long].prop_map(|data| std_msgs::String { data })
+}
+
+/// Frames too many, too few, others, in any order.
+pub fn transforms() -> impl Strategy<Value = TFMessage> {
+    let frames = vec!["follower_base", "link_1", "link_2", "follower_tip"];
+    let rotation = prop_oneof![
+        Just([0.0, 0.0, 0.0, 1.0]),
+        [number(), number(), number(), number()],
+    ];
+    let one = (header(), word(frames), uniform3(number()), rotation).prop_map(
+        |(header, child_frame_id, translation, rotation)| TransformStamped {
+            header,
+            child_frame_id,
+            transform: Transform {
+                translation: translation.into(),
+                rotation: rotation.into(),
+            },
+        },
+    );
+    let any = vec(one, 0..5).prop_map(|transforms| TFMessage { transforms });
+    let nearly =
+        (super::samples::transforms(), 0..3_usize, number()).prop_map(|(sample, which, number)| {
+            let mut message = sample.to_ros();
+            message.transforms[which].transform.rotation.x += number;
+            message
+        });
+    prop_oneof![any, nearly]
 }
 
 /// State commands.

@@ -44,18 +44,42 @@ pub fn joint() -> impl Strategy<Value = JointSample> {
     )
 }
 
-/// Poses with any orientation.
-pub fn pose() -> impl Strategy<Value = PoseSample> {
+/// Any orientation.
+fn orientation() -> impl Strategy<Value = [f64; 4]> {
     let part = || -1.0..1.0;
-    let orientation = [part(), part(), part(), part()]
+    [part(), part(), part(), part()]
         .prop_filter("no direction", |q: &[f64; 4]| {
             q.iter().any(|part| part.abs() > 0.01)
         })
         .prop_map(|q| {
             let norm = q.iter().map(|part| part * part).sum::<f64>().sqrt();
             q.map(|part| part / norm)
-        });
-    (time(), frame(), uniform3(finite()), orientation).prop_map(
+        })
+}
+
+/// Descriptions of any text.
+pub fn robot_description() -> impl Strategy<Value = RobotDescriptionSample> {
+    let urdf = text().prop_filter("no text", |urdf| !urdf.is_empty());
+    urdf.prop_map(|urdf| RobotDescriptionSample { urdf })
+}
+
+/// Frames anywhere.
+pub fn transforms() -> impl Strategy<Value = TransformsSample> {
+    (
+        time(),
+        uniform3(uniform3(finite())),
+        uniform3(orientation()),
+    )
+        .prop_map(|(stamp, translations, rotations)| TransformsSample {
+            stamp,
+            translations,
+            rotations,
+        })
+}
+
+/// Poses with any orientation.
+pub fn pose() -> impl Strategy<Value = PoseSample> {
+    (time(), frame(), uniform3(finite()), orientation()).prop_map(
         |(stamp, frame, position, orientation)| PoseSample {
             orientation,
             ..PoseSample::at(stamp, frame, position)

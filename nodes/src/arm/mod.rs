@@ -1,9 +1,11 @@
 //! The simulated arm as a node; hardware takes its place by speaking the same
 //! topics.
 
+mod description;
+
 use ferntast_msgs::{
     Time,
-    sample::{Fault, JointFields, JointSample, Level, TemperatureSample},
+    sample::{Fault, JointFields, JointSample, Level, RobotDescriptionSample, TemperatureSample},
 };
 use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
 
@@ -28,6 +30,7 @@ ports! {
         motor_js: JointSample = FOLLOWER_MOTOR_JS,
         temperature_1: TemperatureSample = FOLLOWER_JOINT_1_TEMPERATURE,
         temperature_2: TemperatureSample = FOLLOWER_JOINT_2_TEMPERATURE,
+        description: RobotDescriptionSample = ROBOT_DESCRIPTION,
     }
 }
 
@@ -36,6 +39,8 @@ pub struct ArmNode {
     arm: SimulatedArm,
     last: Option<Time>,
     temperature_due: Time,
+    /// What it looks like, until that is published.
+    description: Option<RobotDescriptionSample>,
 }
 
 impl ArmNode {
@@ -49,6 +54,7 @@ impl ArmNode {
             arm: SimulatedArm::new(config, seed)?,
             last: None,
             temperature_due: Time::INVALID,
+            description: Some(description::describe(&config.model())),
         })
     }
 }
@@ -88,6 +94,7 @@ impl Node for ArmNode {
             output.health.raise(Fault::TorqueSaturated, Level::WARN);
         }
         self.publish(now, &measured, output);
+        output.description = self.description.take();
     }
 }
 

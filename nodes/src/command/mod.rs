@@ -4,6 +4,7 @@ mod bag;
 mod challenge;
 mod doctor;
 mod experiment;
+mod foxglove_option;
 mod interfaces;
 mod lab;
 mod link;

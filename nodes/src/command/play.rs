@@ -4,6 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use super::{
     Failure,
+    foxglove_option::FoxgloveOption,
     output::print_json,
     scenario_options::{ScenarioOptions, check_twin},
 };
@@ -39,6 +40,9 @@ pub struct Arguments {
     #[arg(long, value_name = "EXPERIMENT.toml")]
     twin: Option<PathBuf>,
 
+    #[command(flatten)]
+    foxglove: FoxgloveOption,
+
     /// Name of the session.
     #[arg(long, default_value = "play", value_name = "NAME")]
     session: String,
@@ -64,6 +68,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         repeat: arguments.repeat,
         except: Vec::new(),
     };
+    context.foxglove = arguments.foxglove.address()?;
     check_twin(arguments.twin.as_deref())?;
     context.twin = arguments.twin;
     let stop = stop::on_signals().map_err(Failure::failed)?;

@@ -4,6 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use super::{
     Failure,
+    foxglove_option::FoxgloveOption,
     output::print_json,
     page_options::PageOptions,
     scenario_options::{ScenarioOptions, check_twin},
@@ -21,7 +22,8 @@ use crate::{
     ferntast session --hand hand.csv --link relay_600ms\n  \
     ferntast session --scenario relay --law tdpa\n  \
     ferntast session --twin joint.toml         # and see where the lab's model fails while it moves\n  \
-    ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n\n\
+    ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n  \
+    ferntast session --foxglove                # watch in Foxglove or Lichtblick, ws://127.0.0.1:8765\n\n\
     While it runs: the page that it names, `ros2 topic list`, `ferntast state follower resume`
 (re-arm after a hold), `ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
 pub struct Arguments {
@@ -51,6 +53,9 @@ pub struct Arguments {
     #[command(flatten)]
     page: PageOptions,
 
+    #[command(flatten)]
+    foxglove: FoxgloveOption,
+
     /// Do not arm at the start: wait for `ferntast state follower enable` or a CRTK client.
     #[arg(long)]
     no_enable: bool,
@@ -70,6 +75,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     context.bag = arguments.record;
     let page = arguments.page.console()?;
     context.console = (!arguments.no_console).then_some(page);
+    context.foxglove = arguments.foxglove.address()?;
     check_twin(arguments.twin.as_deref())?;
     context.twin = arguments.twin;
     let stop = stop::on_signals().map_err(Failure::failed)?;

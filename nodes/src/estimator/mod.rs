@@ -8,7 +8,7 @@ use ferntast_msgs::{
     Text, Time,
     sample::{
         ContactStateSample, Edge, Fault, Frame, JointFields, JointSample, Level, PoseSample,
-        WrenchSample,
+        TransformsSample, WrenchSample,
     },
 };
 
@@ -16,6 +16,8 @@ use crate::node::{Node, ports};
 
 /// No measurement for this long \[s\] is a fault.
 const MEASUREMENT_WATCHDOG: f64 = 0.010;
+/// From one set of transforms to the next \[ns\]: 50 Hz, for the eye.
+const TRANSFORMS_PERIOD_NANOS: i64 = 20_000_000;
 
 ports! {
     /// The estimator's topics.
@@ -28,6 +30,7 @@ ports! {
         measured_cf: WrenchSample = FOLLOWER_MEASURED_CF,
         contact_cf: WrenchSample = FOLLOWER_CONTACT_CF,
         contact_state: ContactStateSample = FOLLOWER_CONTACT_STATE,
+        transforms: TransformsSample = TF,
     }
 }
 
@@ -35,6 +38,8 @@ ports! {
 pub struct EstimatorNode {
     estimator: ContactEstimator,
     last: Option<Time>,
+    link_lengths: [f64; 2],
+    transforms_due: Time,
 }
 
 impl EstimatorNode {
@@ -50,6 +55,8 @@ impl EstimatorNode {
         Ok(EstimatorNode {
             estimator: ContactEstimator::new(model, parameters)?,
             last: None,
+            link_lengths: model.arm.link.map(|link| link.length),
+            transforms_due: Time::INVALID,
         })
     }
 }
@@ -103,6 +110,23 @@ impl Node for EstimatorNode {
             }
         }
         publish(stamp, &estimate, output);
+        // By the stamps too, that played back it is the same; a jump back begins anew.
+        let due = self.transforms_due;
+        if stamp >= due || due.seconds_since(stamp) > 1e-9 * TRANSFORMS_PERIOD_NANOS as f64 {
+            self.transforms_due = stamp.plus_nanos(TRANSFORMS_PERIOD_NANOS);
+            output.transforms = Some(transforms(stamp, estimate.position, self.link_lengths));
+        }
+    }
+}
+
+/// The arm's frames at the link-side joint positions \[rad\], for links of
+/// those lengths \[m\].
+fn transforms(stamp: Time, position: [f64; 2], lengths: [f64; 2]) -> TransformsSample {
+    let about_z = |angle: f64| [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()];
+    TransformsSample {
+        stamp,
+        translations: [[0.0; 3], [lengths[0], 0.0, 0.0], [lengths[1], 0.0, 0.0]],
+        rotations: [about_z(position[0]), about_z(position[1]), about_z(0.0)],
     }
 }
 

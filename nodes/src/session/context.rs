@@ -2,6 +2,7 @@
 
 use std::{
     fs,
+    net::SocketAddr,
     path::{Path, PathBuf},
 };
 
@@ -28,6 +29,8 @@ pub struct SessionContext {
     pub twin: Option<PathBuf>,
     /// The page; `None` without one.
     pub console: Option<ConsoleOptions>,
+    /// Where the topics are shown to Foxglove; `None` without that.
+    pub foxglove: Option<SocketAddr>,
 }
 
 /// Where the page is served.
@@ -35,7 +38,7 @@ pub struct SessionContext {
 #[serde(deny_unknown_fields)]
 pub struct ConsoleOptions {
     /// Address and port; `None` for the first free port of the loopback from 8080 on.
-    pub listen: Option<std::net::SocketAddr>,
+    pub listen: Option<SocketAddr>,
     /// What pages have to show.
     pub token: Option<String>,
 }
@@ -104,6 +107,7 @@ impl SessionContext {
             bag: None,
             play: PlayOptions::default(),
             console: None,
+            foxglove: None,
             twin: None,
         })
     }

@@ -9,11 +9,12 @@ use super::{Monitor, SessionContext, Supervisor, place::Place, run::SessionError
 use crate::{node_name::NodeName, twin::TwinSummary};
 
 /// Topics that a live estimator publishes in place of the recording.
-const OF_THE_ESTIMATOR: [&str; 4] = [
+const OF_THE_ESTIMATOR: [&str; 5] = [
     "/follower/measured_cp",
     "/follower/measured_cf",
     "/follower/contact_cf",
     "/follower/contact_state",
+    "/tf",
 ];
 
 /// Topics that a live twin publishes in place of the recording.
@@ -48,6 +49,9 @@ pub fn play(
 ) -> Result<Played, SessionError> {
     // First those that listen, then the player.
     let mut nodes = vec![NodeName::Gateway];
+    if context.foxglove.is_some() {
+        nodes.push(NodeName::Foxglove);
+    }
     if estimate {
         nodes.push(NodeName::Estimator);
         let own = OF_THE_ESTIMATOR.map(str::to_owned);

@@ -118,6 +118,9 @@ fn nodes(context: &SessionContext) -> Vec<NodeName> {
     if context.console.is_some() {
         nodes.push(NodeName::Console);
     }
+    if context.foxglove.is_some() {
+        nodes.push(NodeName::Foxglove);
+    }
     nodes.extend([
         NodeName::Master,
         NodeName::LinkLeader,
@@ -370,6 +373,9 @@ fn check_surroundings(context: &SessionContext) -> Result<(), SessionError> {
     )?;
     if let Some(listen) = context.console.as_ref().and_then(|console| console.listen) {
         check_endpoint("the page's address", &format!("tcp/{listen}"), "--listen")?;
+    }
+    if let Some(listen) = context.foxglove {
+        check_endpoint("Foxglove's address", &format!("tcp/{listen}"), "--foxglove")?;
     }
     if let Some(endpoint) = scenario.gateway.own_router() {
         check_endpoint("the Zenoh router's endpoint", endpoint, "--router-endpoint")?;

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 import pyzeros
 import pyzeros.pub
+import pyzeros.service_client
 import zenoh
 from ros2_pyterfaces.cyclone import all_msgs
 
@@ -31,6 +32,7 @@ class Attachment:
 
 
 pyzeros.pub.Attachment = Attachment
+pyzeros.service_client.Attachment = Attachment
 
 
 def message_class(ros_type: str) -> type:

@@ -3,10 +3,12 @@
 `list` prints JSON: `topics` = {name: {types, publishers, subscriptions}}, each
 endpoint with `node`, `type`, `type_hash`, `qos`; `nodes` = names. `count` and
 `operator` print what count_messages.py and ros_operator.py print, and the key.
-`command` sends one crtk_msgs/StringStamped.
+`command` sends one crtk_msgs/StringStamped. `set_parameter` prints `successful` and
+`reason` as the node answered, `before` and `after` as it tells the value.
 """
 
 import argparse
+import asyncio
 import os
 import threading
 import time
@@ -19,9 +21,13 @@ from message_json import as_json
 from operator_motion import Felt, operate
 from pyzeros.qos import QosProfile
 from pyzeros.sub import RawSub
-from ros2_pyterfaces.cyclone import all_msgs, idl
+from ros2_pyterfaces.cyclone import all_msgs, all_srvs, idl
 from stamps import Stamps
 from zenoh_node import message_class, zenoh_node
+
+
+# rcl_interfaces/msg/ParameterType
+PARAMETER_STRING = 4
 
 
 @dataclass
@@ -152,6 +158,41 @@ def command(node: pyzeros.Node, arguments: argparse.Namespace, _stop: threading.
     return {"heard": heard, "key": publisher.publisher_keyexpr, "word": arguments.word}
 
 
+def set_parameter(node: pyzeros.Node, arguments: argparse.Namespace, _stop: threading.Event) -> dict[str, object]:
+    """Sets a parameter as `ros2 param set` does, and reads it back."""
+
+    async def ask(kind: type, service: str, request: object) -> object:
+        name = f"{arguments.node}/{service}"
+        client = pyzeros.Client(kind, name, session=node, scope=None)
+        try:
+            await asyncio.wait_for(client.wait_for_service(), arguments.wait)
+            return await asyncio.wait_for(client.call_async(request), arguments.wait)
+        finally:
+            client.close()
+
+    async def value() -> str:
+        request = all_srvs.GetParameters.Request(names=[arguments.name])
+        told = await ask(all_srvs.GetParameters, "get_parameters", request)
+        return told.values[0].string_value
+
+    async def talk() -> dict[str, object]:
+        before = await value()
+        wish = all_msgs.ParameterValue(type=PARAMETER_STRING, string_value=arguments.value)
+        parameter = all_msgs.Parameter(name=arguments.name, value=wish)
+        request = all_srvs.SetParameters.Request(parameters=[parameter])
+        told = await ask(all_srvs.SetParameters, "set_parameters", request)
+        await asyncio.sleep(arguments.settle)
+        return {
+            "before": before,
+            "successful": bool(told.results[0].successful),
+            "reason": told.results[0].reason,
+            "after": await value(),
+        }
+
+    ready()
+    return asyncio.run(talk())
+
+
 def main() -> None:
     """Runs one of the jobs."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -179,6 +220,14 @@ def main() -> None:
     job.add_argument("word", help="enable, disable, pause or resume")
     job.add_argument("--wait", type=float, default=10.0)
     job.set_defaults(run=command)
+
+    job = jobs.add_parser("set_parameter", help="a string parameter of a node")
+    job.add_argument("node", help="full name, such as /link")
+    job.add_argument("name", help="the parameter")
+    job.add_argument("value", help="its new value")
+    job.add_argument("--wait", type=float, default=15.0)
+    job.add_argument("--settle", type=float, default=2.0, help="seconds before reading it back")
+    job.set_defaults(run=set_parameter)
 
     arguments = parser.parse_args()
     stop = stop_on_signal()

@@ -11,6 +11,7 @@ mod lab_page;
 mod laws;
 mod lockstep;
 mod masters;
+mod own_tools;
 mod paper;
 mod playback;
 mod refusals;

@@ -108,3 +108,27 @@ fn its_state_commands_are_obeyed() {
     process.interrupt();
     process.wait(PATIENCE).success();
 }
+
+#[test]
+fn it_sets_the_law_as_a_parameter() {
+    attempts(|| {
+        let session = Session::new();
+        let mut process = start(&session, &[&MIDDLEWARE[..], &["--law", "wave"]].concat());
+        await_enabled(&session, &mut process);
+        let set = |value| {
+            let told = peer(&session, &["set_parameter", "/link", "law", value]);
+            told.wait(PATIENCE).success().json()
+        };
+        let told = set("tdpa");
+        assert_eq!(told["before"], "wave", "{told:#}");
+        assert_eq!(told["successful"], true, "{told:#}");
+        assert_eq!(told["after"], "tdpa", "{told:#}");
+        let told = set("nonsense");
+        assert_eq!(told["successful"], false, "{told:#}");
+        let reason = told["reason"].as_str().expect("a reason");
+        assert!(reason.contains("tdpa"), "{told:#}");
+        assert_eq!(told["after"], "tdpa", "{told:#}");
+        process.interrupt();
+        process.wait(PATIENCE).success();
+    });
+}
