@@ -148,10 +148,10 @@ impl LockstepSession {
             MasterPorts::connect(&bus)?,
         )?;
         let ports = LinkPorts::new(LeaderLinkPorts::connect(&bus)?, at_leader);
-        let node = LeaderLinkNode::new(scenario.laws(), session, scenario.link.buffer);
+        let node = LeaderLinkNode::new(loaded.laws(), session, scenario.link.buffer);
         add(&mut executor, &bus, NodeName::LinkLeader, node, ports)?;
         let ports = LinkPorts::new(FollowerLinkPorts::connect(&bus)?, at_follower);
-        let node = FollowerLinkNode::new(scenario.laws(), session, scenario.link.buffer);
+        let node = FollowerLinkNode::new(loaded.laws(), session, scenario.link.buffer);
         add(&mut executor, &bus, NodeName::LinkFollower, node, ports)?;
         let servo = ServoNode::new(&loaded.arm.model(), &scenario.servo)?;
         add(

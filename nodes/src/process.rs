@@ -234,7 +234,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                LeaderLinkNode::new(scenario.laws(), session, scenario.link.buffer),
+                LeaderLinkNode::new(loaded.laws(), session, scenario.link.buffer),
                 LinkPorts::new(LeaderLinkPorts::connect(bus)?, transport),
             )
         }
@@ -248,7 +248,7 @@ pub fn run(
             )?;
             around.run(
                 standing,
-                FollowerLinkNode::new(scenario.laws(), session, scenario.link.buffer),
+                FollowerLinkNode::new(loaded.laws(), session, scenario.link.buffer),
                 LinkPorts::new(FollowerLinkPorts::connect(bus)?, transport),
             )
         }

@@ -40,7 +40,8 @@ law_parameters! {
         damping = 20.0 in 0.1 .. 1000.0 "N·s/m",
         /// Largest speed of the tip's command, at the hand's scale \[m/s\].
         largest_speed = 1.0 in 0.01 .. 10.0 "m/s",
-        /// Stiffness of the arm's servo at the tip \[N/m\].
+        /// Stiffness of the arm's servo at the tip; a session takes the arm's own
+        /// where that is larger \[N/m\].
         servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
     }
 }

@@ -61,7 +61,8 @@ law_parameters! {
         /// Damping with which the tip gives way to what is too hard, at the hand's scale
         /// \[N·s/m\].
         yield_damping = 50.0 in 1.0 .. 10000.0 "N·s/m",
-        /// Stiffness of the arm's servo at the tip \[N/m\].
+        /// Stiffness of the arm's servo at the tip; a session takes the arm's own
+        /// where that is larger \[N/m\].
         servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
     }
 }

@@ -72,7 +72,8 @@ law_parameters! {
         /// Largest speed at which the tip gives way to pay back, at the hand's
         /// scale \[m/s\].
         yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
-        /// Stiffness of the arm's servo at the tip \[N/m\].
+        /// Stiffness of the arm's servo at the tip; a session takes the arm's own
+        /// where that is larger \[N/m\].
         servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
     }
 }

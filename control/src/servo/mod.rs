@@ -16,6 +16,7 @@
 //! within 5 ms.
 
 mod command;
+mod compliance;
 mod config;
 mod law;
 mod setpoint;
@@ -24,6 +25,7 @@ mod stall;
 mod tests;
 
 pub use command::{Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target};
+pub use compliance::{stiffest, tip_compliance};
 pub use config::ServoConfig;
 pub use law::{LimitedTorque, PositionLaw};
 pub use setpoint::{Setpoint, SetpointGenerator, SetpointLimits};

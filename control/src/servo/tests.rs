@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 const MS: i64 = 1_000_000;
 const START: i64 = 1_700_000_000_000_000_000;
 
-fn arm() -> ArmParameters {
+pub(super) fn arm() -> ArmParameters {
     let link = LinkParameters {
         length: 0.25,
         mass: 1.5,
@@ -24,7 +24,7 @@ fn arm() -> ArmParameters {
 }
 
 /// "on_ground" of Table 1.
-fn joint() -> JointParameters {
+pub(super) fn joint() -> JointParameters {
     let effects = [
         ("coulomb", "b_0", 7.573),
         ("viscous", "b_1", 168.388),

@@ -1,9 +1,9 @@
 //! Which laws a session can run, and with which parameters.
 
-use ferntast_control::{delay::Law, switching::Laws};
+use ferntast_control::{delay::Law, servo, switching::Laws};
 use serde_json::Value;
 
-use super::Scenario;
+use super::{Loaded, Scenario};
 
 /// Keys that say how hand and tip correspond: a switch of the law must not
 /// change them, or the arm would be told to be elsewhere.
@@ -57,14 +57,48 @@ impl Scenario {
         }
         Ok(())
     }
+}
 
-    /// Every law that it can run.
+impl Loaded {
+    /// Every law that the session can run. What a law takes for the servo's
+    /// stiffness is at least that of this arm ([`servo::stiffest`]): with less, it
+    /// would hold the work of the servo's spring for too small, and claim a
+    /// passivity that it does not have.
     pub fn laws(&self) -> Laws {
+        let scenario = &self.scenario;
+        let least = servo::stiffest(&self.arm.model(), &scenario.servo);
+        let own = |law: &Law| match least {
+            Some(least) => stiff_enough(law, least),
+            None => law.clone(),
+        };
         Law::NAMES
             .iter()
-            .filter_map(|name| self.law_named(name).ok())
-            .fold(Laws::new(self.law.clone()), Laws::with)
+            .filter_map(|name| scenario.law_named(name).ok())
+            .fold(Laws::new(own(&scenario.law)), |laws, law| {
+                laws.with(own(&law))
+            })
     }
+}
+
+/// Key of the stiffness of the arm's servo at the tip \[N/m\].
+const SERVO_STIFFNESS: &str = "servo_stiffness";
+
+/// `law` with a servo no softer than `least` \[N/m\], if it asks for one.
+fn stiff_enough(law: &Law, least: f64) -> Law {
+    let Ok(Value::Object(mut own)) = serde_json::to_value(law) else {
+        return law.clone();
+    };
+    match own.get_mut(SERVO_STIFFNESS) {
+        Some(place) if place.as_f64().is_some_and(|given| given < least) => {
+            *place = Value::from(least);
+        }
+        _ => return law.clone(),
+    }
+    let stiff = serde_json::from_value::<Law>(Value::Object(own));
+    stiff
+        .ok()
+        .filter(|law| law.validate().is_ok())
+        .unwrap_or_else(|| law.clone())
 }
 
 /// `law` with what it shares with `other`.
@@ -85,6 +119,7 @@ fn with_shared(law: &Law, other: &Law) -> Law {
 #[cfg(test)]
 mod tests {
     use super::super::load_scenario;
+    use super::*;
 
     #[test]
     fn another_law_keeps_the_offset_and_the_first_law_stays_as_given() {
@@ -100,5 +135,21 @@ mod tests {
         assert_eq!(scenario.law.mapping().workspace_offset, offset);
         assert_eq!(scenario.law_named(first.name()).unwrap(), first);
         assert!(scenario.set_law("nonsense").is_err());
+    }
+
+    #[test]
+    fn no_law_takes_the_servo_for_softer_than_it_is() {
+        let loaded = load_scenario("rokviss").unwrap();
+        let least = servo::stiffest(&loaded.arm.model(), &loaded.scenario.servo).unwrap();
+        // k = 1/(1/8000 + 1/4900) Nm/rad over the short lever, at the nominal point.
+        assert!((120e3..135e3).contains(&least), "{least} N/m");
+        let stiffness = |law: &Law| serde_json::to_value(law).unwrap()[SERVO_STIFFNESS].as_f64();
+        for law in Law::all() {
+            let own = stiff_enough(&law, least);
+            assert_eq!(own.name(), law.name());
+            assert_eq!(stiffness(&own), stiffness(&law).map(|_| least));
+            // Stiffer is left as given.
+            assert_eq!(stiff_enough(&own, 1.0), own);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Which experiment: its motion laid out on the arm's contour.
 
-use ferntast_control::servo::ServoConfig;
+use ferntast_control::servo::{self, ServoConfig};
 use ferntast_model::{
     JOINTS, Vector2,
     arm::Arm,
@@ -329,16 +329,8 @@ impl Layout {
 
     /// Stiffness of servo and joints along the normal at the tip \[N/m\].
     fn servo_stiffness(&self, arm: &ArmConfig, q: &Vector2<f64>, edge: &Feature) -> f64 {
-        let servo = ServoConfig::default().stiffness;
-        let jacobian = self.kinematics.jacobian(q);
-        // nᵀ J K⁻¹ Jᵀ n is the compliance along the normal.
-        let lever = jacobian.tr_mul(&edge.normal);
-        let compliance: f64 = (0..JOINTS)
-            .map(|joint| {
-                let joint_compliance = 1.0 / servo[joint] + 1.0 / arm.joint[joint].stiffness;
-                lever[joint] * lever[joint] * joint_compliance
-            })
-            .sum();
-        1.0 / compliance.max(1e-9)
+        let compliance = servo::tip_compliance(&arm.model(), &ServoConfig::default(), q);
+        let along = edge.normal.dot(&(compliance * edge.normal));
+        1.0 / along.max(1e-9)
     }
 }
