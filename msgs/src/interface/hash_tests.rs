@@ -66,6 +66,22 @@ const STANDARD: &[(&str, &str)] = &[
         "diagnostic_msgs/msg/DiagnosticArray",
         "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
     ),
+    (
+        "std_msgs/msg/String",
+        "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
+    ),
+    (
+        "geometry_msgs/msg/Transform",
+        "RIHS01_beb83fbe698636351461f6f35d1abb20010c43d55374d81bd041f1ba2581fddc",
+    ),
+    (
+        "geometry_msgs/msg/TransformStamped",
+        "RIHS01_0a241f87d04668d94099cbb5ba11691d5ad32c2f29682e4eb5653424bd275206",
+    ),
+    (
+        "tf2_msgs/msg/TFMessage",
+        "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+    ),
 ];
 
 #[test]
