@@ -4,7 +4,8 @@
 //! packages of ROS 2 install beside their `.msg` files
 //! (`share/<package>/msg/<Type>.json`; packages std_msgs, sensor_msgs,
 //! geometry_msgs and diagnostic_msgs 5.5.1, builtin_interfaces, rcl_interfaces
-//! and type_description_interfaces of the same release), as pip installs them.
+//! and type_description_interfaces of the same release), as pip installs them;
+//! that of tf2_msgs as rosbags 0.11.9 computes it.
 
 use super::{InterfaceError, Library, describe, library, names, schema, type_hash};
 

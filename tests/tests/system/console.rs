@@ -99,6 +99,17 @@ fn a_session_is_driven_by_dragging_and_the_stop_stops() {
         "const d = Number(document.querySelector('#strip-delay canvas').dataset.newest); return d > 190 && d < 215",
     );
 
+    // So is another law.
+    browser.run(
+        "const s = document.querySelector('#law'); s.value = 'tdpa'; s.dispatchEvent(new Event('change'))",
+        Vec::new(),
+    );
+    let told = wait_for(PATIENCE, || {
+        let told = run(&session, &["link", "law", "--session", session.name()]);
+        (told.stdout.trim() == "tdpa").then_some(())
+    });
+    assert!(told.is_some(), "the link keeps its law");
+
     browser.click("#stop");
     browser.until(
         "the arm is off",
