@@ -12,7 +12,7 @@ use ferntast_msgs::{
 };
 use ferntast_tests::{Browser, Process, Session, free_tcp_port, wait_for};
 
-use crate::support::{PATIENCE, messages, node, signal, start, state_of_follower};
+use crate::support::{PATIENCE, messages, node, run, signal, start, state_of_follower};
 
 /// A session with its console, and where that is.
 fn session_with_page(session: &Session, more: &[&str]) -> (Process, String) {
