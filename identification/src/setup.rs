@@ -44,10 +44,7 @@ impl Setup {
     /// See [`PrepareError`].
     pub fn new(dataset: &Dataset, spec: &ModelSpec) -> Result<Self, PrepareError> {
         check(dataset, spec)?;
-        let filters = match dataset.filter {
-            Some(filter) => Filters::stated(filter, &dataset.sessions),
-            None => Filters::choose(&dataset.sessions),
-        };
+        let filters = Filters::of(dataset);
         let mut sessions: Vec<Signals> = dataset
             .sessions
             .iter()
@@ -79,11 +76,12 @@ impl Setup {
         if rows < 20 + 5 * parameters {
             return Err(PrepareError::NothingExcited { rows, parameters });
         }
-        if !setup.facts.joint_torque {
+        let is_load_modelled = !setup.facts.joint_torque && !dataset.joint.is_contact();
+        if is_load_modelled {
             setup.model_load();
         }
         setup.find_shapes();
-        if !setup.facts.joint_torque {
+        if is_load_modelled {
             setup.model_load();
         }
         setup.predict();
@@ -129,19 +127,32 @@ impl Setup {
     /// An unknown id, or an expression that cannot be used on these recordings.
     pub fn resolve(&self, term: &Term) -> Result<EffectHandle, PrepareError> {
         match term {
-            Term::Catalogue(id) => effects::find(id).ok_or_else(|| PrepareError::UnknownEffect {
-                id: id.clone(),
-                known: effects::all()
-                    .iter()
-                    .map(|e| e.description().id.clone())
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            }),
+            Term::Catalogue(id) => self.in_catalogue(id),
             Term::Custom(custom) => Ok(Arc::new(Compiled::new(
                 custom,
                 &self.facts,
                 &self.sessions,
             )?)),
+        }
+    }
+
+    fn in_catalogue(&self, id: &str) -> Result<EffectHandle, PrepareError> {
+        let subject = self.facts.joint.subject();
+        match effects::find(id) {
+            Some(effect) if effect.description().of == subject => Ok(effect),
+            Some(effect) => Err(PrepareError::OtherSubject {
+                id: id.to_owned(),
+                of: effect.description().of,
+                recorded: subject,
+            }),
+            None => Err(PrepareError::UnknownEffect {
+                id: id.to_owned(),
+                known: effects::of(subject)
+                    .iter()
+                    .map(|e| e.description().id.clone())
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            }),
         }
     }
 
@@ -379,7 +390,8 @@ fn gather(dataset: &Dataset, spec: &ModelSpec, sessions: &[Signals], filters: &F
         ],
         speed: [quantile(&mut speeds, 0.02), quantile(&mut speeds, 0.98)],
         motor_torque: quantile(&mut torques, 0.999),
-        loaded: dataset.sessions.iter().all(|s| s.joint_torque.is_some())
+        loaded: dataset.joint.is_contact()
+            || dataset.sessions.iter().all(|s| s.joint_torque.is_some())
             || spec.inertia != Inertia::Given(0.0)
             || spec
                 .effects
@@ -388,6 +400,9 @@ fn gather(dataset: &Dataset, spec: &ModelSpec, sessions: &[Signals], filters: &F
         period: sessions
             .first()
             .map_or(filters.thinning as f64, |s| s.period),
-        load_coulomb: spec.effects.iter().any(|t| t.name() == "load_coulomb"),
+        load_coulomb: spec
+            .effects
+            .iter()
+            .any(|t| effects::is_load_coulomb(t.name())),
     }
 }

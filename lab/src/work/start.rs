@@ -76,6 +76,7 @@ fn document(beginning: &Beginning) -> DocumentMut {
         value(match beginning.joint {
             JointType::Revolute => "revolute",
             JointType::Prismatic => "prismatic",
+            JointType::Contact => "contact",
         }),
     );
     document.insert("joint", Item::Table(joint));
