@@ -45,6 +45,7 @@ pub mod simulate;
 pub mod stated_filter;
 pub mod statistics;
 pub mod stiffness;
+pub mod turns;
 pub mod twin;
 pub mod validation;
 

@@ -17,6 +17,8 @@ const TRAVEL_AFTER_REVERSAL: f64 = 0.006;
 const NEAR_REST: f64 = 0.005;
 /// Share of the top of F_N below which a tip does not touch for certain.
 const LEAST_NORMAL_FORCE: f64 = 0.1;
+/// Travel of this many times the position's noise is seen for certain.
+pub const RESOLVED: f64 = 10.0;
 /// A tip that is near rest for longer than this \[s\] stays there; else it turns.
 const LONGEST_TURN: f64 = 0.15;
 
@@ -36,6 +38,8 @@ pub struct Filters {
     pub rest_speed: f64,
     /// Travel \[rad\] after a reversal that is dropped.
     pub travel: f64,
+    /// Standard deviation of the position's noise \[rad\].
+    pub position_noise: f64,
     /// Of a contact: F_N \[N\] below which the tip does not touch; `None` for a joint.
     pub touching: Option<f64>,
     /// What takes the place of all this, if the user states it.
@@ -59,6 +63,8 @@ pub struct Signals {
     pub rows: Vec<usize>,
     /// See [`Session::unloaded`].
     pub unloaded: bool,
+    /// The same with reversals: see [`Effect::shows_at_turns`](crate::effects::Effect::shows_at_turns).
+    pub turning_rows: Vec<usize>,
     /// The same rows without regard to rest and reversal, for the eye.
     pub all_rows: Vec<usize>,
 }
@@ -102,13 +108,19 @@ impl Filters {
     }
 
     /// The same of a contact, where no acceleration is needed: the velocity
-    /// decides.
+    /// decides. What winds up before a tip slides is told by travel, so that no
+    /// more of it is dropped than the position leaves open, and the filter on
+    /// columns reaches no further than it must.
     fn of_contact(sessions: &[Session]) -> Self {
         let normal = sessions.iter().filter_map(|s| s.normal_force.as_ref());
         let mut all: Vec<f64> = normal.flatten().map(|force| force.abs()).collect();
+        let chosen = Self::least_smoothing(sessions, 1);
         Self {
+            column: chosen.state,
+            stride: (2.0 * chosen.state).round() as usize,
+            travel: RESOLVED * chosen.position_noise,
             touching: Some(LEAST_NORMAL_FORCE * quantile(&mut all, 0.98)),
-            ..Self::least_smoothing(sessions, 1)
+            ..chosen
         }
     }
 
@@ -154,6 +166,7 @@ impl Filters {
             stride: (2.0 * column).round() as usize,
             rest_speed: f64::max(NEAR_REST * top, 4.0 * noise * slope.noise_gain().sqrt()),
             travel: TRAVEL_AFTER_REVERSAL * range,
+            position_noise: noise,
             touching: None,
             stated: None,
         }
@@ -222,23 +235,24 @@ impl Signals {
             Some(filter) => filter.rows(points.len()),
             None => (reach..last).step_by(filters.stride.max(1)).collect(),
         };
-        let slides = match filters.touching {
-            Some(least) => touching(&points, filters.rest_speed, least),
-            None => {
-                let mut sliding = Sliding::default();
-                let points = points.iter();
-                points.map(|point| sliding.next(point, filters)).collect()
-            }
-        };
-        let mut bad = vec![0_usize; points.len() + 1];
-        for at in 0..points.len() {
-            bad[at + 1] = bad[at] + usize::from(!slides[at]);
-        }
-        let rows = all_rows
+        let mut sliding = Sliding::default();
+        let slides: Vec<bool> = points
             .iter()
-            .copied()
-            .filter(|at| filters.stated.is_some() || bad[at + reach] == bad[at - reach])
+            .map(|point| sliding.next(point, filters))
             .collect();
+        let turning_too = match filters.touching {
+            Some(least) => touching(&points, filters.rest_speed, least),
+            None => vec![true; points.len()],
+        };
+        let both: Vec<bool> = slides
+            .iter()
+            .zip(&turning_too)
+            .map(|(slides, counts)| *slides && *counts)
+            .collect();
+        let rows = |good: &[bool]| match filters.stated {
+            Some(_) => all_rows.clone(),
+            None => clear_of_bad(&all_rows, good, reach),
+        };
         Self {
             name: session.name.clone(),
             period,
@@ -250,7 +264,8 @@ impl Signals {
                 .collect(),
             raw,
             unloaded: session.unloaded,
-            rows,
+            rows: rows(&both),
+            turning_rows: rows(&turning_too),
             all_rows,
         }
     }
@@ -284,6 +299,17 @@ impl Sliding {
         self.travelled += point.velocity.abs() * point.period;
         self.travelled > filters.travel
     }
+}
+
+/// Rows with no bad sample within `reach`.
+fn clear_of_bad(rows: &[usize], good: &[bool], reach: usize) -> Vec<usize> {
+    let mut bad = vec![0_usize; good.len() + 1];
+    for (at, good) in good.iter().enumerate() {
+        bad[at + 1] = bad[at] + usize::from(!good);
+    }
+    let rows = rows.iter().copied();
+    rows.filter(|at| bad[at + reach] == bad[at - reach])
+        .collect()
 }
 
 /// Which samples of a contact count: the tip touches and does not stay at rest,

@@ -61,10 +61,15 @@ impl Effect for ContactCompliance {
             .collect()
     }
 
-    // From winding up over a fifth of the way to what cannot be seen.
+    // From winding up over a fifth of the way to what the position does not tell.
     fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
-        let force_by_travel = facts.motor_torque / facts.travel().max(1e-9);
-        vec![[5.0 * force_by_travel, 2500.0 * force_by_travel]]
+        let soft = 5.0 * facts.motor_torque / facts.travel().max(1e-9);
+        let stiff = facts.motor_torque / facts.resolved.max(1e-9);
+        vec![[soft, stiff.max(2.0 * soft)]]
+    }
+
+    fn shows_at_turns(&self) -> bool {
+        true
     }
 
     fn needs_prediction(&self) -> bool {
@@ -73,7 +78,7 @@ impl Effect for ContactCompliance {
 
     // All of the friction goes through the spring, not a part of it.
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
-        coefficients.iter().all(|c| (0.5..1.6).contains(c))
+        coefficients.iter().all(|c| (0.75..1.33).contains(c))
     }
 }
 

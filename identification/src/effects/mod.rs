@@ -133,6 +133,8 @@ pub struct Facts {
     pub speed: [f64; 2],
     /// Top of |τ_m| \[Nm\].
     pub motor_torque: f64,
+    /// Travel \[rad\] that is seen for certain, for the position's noise.
+    pub resolved: f64,
     /// Whether there is a load: a torque sensor, gravity, a spring or an inertia.
     pub loaded: bool,
     /// Working period \[s\].
@@ -273,6 +275,12 @@ pub trait Effect: Send + Sync {
 
     /// Whether it is a load on the joint (spring, weight) rather than friction.
     fn is_load(&self) -> bool {
+        false
+    }
+
+    /// Whether it shows mainly just after reversals, where other rows are left
+    /// out: a model that has it is fitted to these rows too.
+    fn shows_at_turns(&self) -> bool {
         false
     }
 
