@@ -70,4 +70,6 @@ pub fn catalogue() -> Vec<EffectDescription> {
 #[cfg(test)]
 mod bench;
 #[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
 mod tests;

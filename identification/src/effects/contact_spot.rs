@@ -8,10 +8,10 @@ describe!(
     ContactSpot,
     "contact_spot",
     of: Contact,
-    "F_T = bl · exp(−((r − rl)/wl)²) · |F_N| · sign(ṙ)",
+    "F_T = bl · exp(−(|r − rl|/wl)^n) · |F_N| · sign(ṙ)",
     "a scratch, a stain of lubricant",
     coefficients: ["bl": ONE],
-    shape: ["rl": ANGLE, "wl": ANGLE],
+    shape: ["rl": ANGLE, "wl": ANGLE, "n": ONE],
     shows_as: "bump over place, sign by direction",
     excited_by: "sliding in both directions over the whole contour",
     shown_by: ContactSweep,
@@ -24,9 +24,9 @@ impl Effect for ContactSpot {
     }
 
     fn evaluate(&self, shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
-        if let ([c], [place, width, ..]) = (columns, shape) {
-            let off = (point.position - place) / width;
-            *c = (-off * off).exp() * point.load.abs() * point.sign();
+        if let ([c], [place, width, evenness, ..]) = (columns, shape) {
+            let off = (point.position - place).abs() / width;
+            *c = (-off.powf(*evenness)).exp() * point.load.abs() * point.sign();
         }
     }
 
@@ -37,7 +37,7 @@ impl Effect for ContactSpot {
             .flat_map(|(width, count)| {
                 (0..count).map(move |i| {
                     let share = (f64::from(i) + 0.5) / f64::from(count);
-                    vec![facts.position[0] + share * range, width * range]
+                    vec![facts.position[0] + share * range, width * range, 2.5]
                 })
             })
             .collect()
@@ -47,6 +47,8 @@ impl Effect for ContactSpot {
         vec![
             facts.position,
             [0.01 * facts.travel(), 0.3 * facts.travel()],
+            // From a bump to a stretch with sharp ends.
+            [1.5, 8.0],
         ]
     }
 

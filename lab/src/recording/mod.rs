@@ -313,7 +313,7 @@ fn check_constant(
     let channels: [(&str, bool, Channel); 5] = [
         ("position", true, |session| Some(&session.position)),
         (force, true, |session| Some(&session.motor_torque)),
-        ("normal_force", true, |session| {
+        ("normal_force", false, |session| {
             session.normal_force.as_ref()
         }),
         ("joint_torque", true, |session| {
