@@ -57,7 +57,7 @@ pub fn missing(setup: &Setup) -> Vec<EffectHandle> {
         ("asymmetric_coulomb", &["torque_sensor_offset"]),
         ("torque_sensor_offset", &["asymmetric_coulomb"]),
     ];
-    effects::all()
+    effects::of(setup.facts.joint.subject())
         .into_iter()
         .filter(|effect| {
             let id = effect.description().id.as_str();

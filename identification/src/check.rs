@@ -1,6 +1,6 @@
 //! Refuses recordings and models that make no sense, before anything is computed.
 
-use crate::data::{Dataset, Inertia, ModelSpec, Session};
+use crate::data::{Dataset, Inertia, JointType, ModelSpec, Session};
 use crate::error::PrepareError;
 
 /// Samples of a session at least.
@@ -16,10 +16,11 @@ pub fn check(dataset: &Dataset, spec: &ModelSpec) -> Result<(), PrepareError> {
         return Err(PrepareError::NoSession);
     }
     for session in dataset.sessions.iter().chain(&dataset.held_out) {
-        check_session(session)?;
+        check_session(session, dataset.joint)?;
     }
     let sessions: Vec<&Session> = dataset.sessions.iter().chain(&dataset.held_out).collect();
     mixed(&sessions, "joint_torque", |s| s.joint_torque.is_some())?;
+    mixed(&sessions, "normal_force", |s| s.normal_force.is_some())?;
     mixed(&sessions, "temperature", |s| s.temperature.is_some())?;
     if let Some(first) = sessions.first() {
         for session in &sessions {
@@ -29,10 +30,13 @@ pub fn check(dataset: &Dataset, spec: &ModelSpec) -> Result<(), PrepareError> {
         }
     }
     if dataset.sessions.iter().all(|s| constant(&s.position)) {
-        return Err(PrepareError::ConstantPosition);
+        return Err(PrepareError::ConstantPosition(dataset.joint));
     }
     if dataset.sessions.iter().all(|s| constant(&s.motor_torque)) {
-        return Err(PrepareError::ConstantMotorTorque);
+        return Err(PrepareError::ConstantForce(dataset.joint));
+    }
+    if dataset.joint.is_contact() {
+        check_contact(&sessions, spec)?;
     }
     if let Inertia::Given(inertia) = spec.inertia
         && !(inertia.is_finite() && inertia >= 0.0)
@@ -45,6 +49,21 @@ pub fn check(dataset: &Dataset, spec: &ModelSpec) -> Result<(), PrepareError> {
         return Err(PrepareError::GearRatio(ratio));
     }
     Ok(())
+}
+
+fn check_contact(sessions: &[&Session], spec: &ModelSpec) -> Result<(), PrepareError> {
+    let mut forces = sessions.iter().map(|s| s.normal_force.as_ref());
+    if forces.any(|force| force.is_none()) {
+        return Err(PrepareError::NoNormalForce);
+    }
+    let mut all = sessions.iter().filter_map(|s| s.normal_force.as_ref());
+    if !all.any(|force| force.iter().any(|f| *f > 0.0)) {
+        return Err(PrepareError::NeverTouched);
+    }
+    match spec.inertia {
+        Inertia::Given(0.0) => Ok(()),
+        _ => Err(PrepareError::InertiaOfContact),
+    }
 }
 
 fn constant(signal: &[f64]) -> bool {
@@ -67,7 +86,7 @@ fn mixed(
     })
 }
 
-fn check_session(session: &Session) -> Result<(), PrepareError> {
+fn check_session(session: &Session, joint: JointType) -> Result<(), PrepareError> {
     let name = || session.name.clone();
     if !(session.period.is_finite() && session.period > 0.0) {
         return Err(PrepareError::Period {
@@ -84,7 +103,8 @@ fn check_session(session: &Session) -> Result<(), PrepareError> {
     }
     let channels = [
         ("position", Some(&session.position)),
-        ("motor_torque", Some(&session.motor_torque)),
+        (joint.signal("motor_torque"), Some(&session.motor_torque)),
+        ("normal_force", session.normal_force.as_ref()),
     ]
     .into_iter()
     .chain([

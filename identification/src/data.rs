@@ -18,12 +18,16 @@ pub struct Session {
     pub start: f64,
     /// Sampling period \[s\].
     pub period: f64,
-    /// q \[rad\].
+    /// q \[rad\]; of a contact the place of the tip along the contour \[m\].
     pub position: Vec<f64>,
-    /// τ_m \[Nm\].
+    /// τ_m \[Nm\]; of a contact F_T \[N\], positive where it opposes a motion
+    /// towards larger `position`.
     pub motor_torque: Vec<f64>,
     /// τ \[Nm\], what the joint torque sensor feels; `None` where there is no sensor.
     pub joint_torque: Option<Vec<f64>>,
+    /// F_N \[N\] of a contact, positive when it pushes the tip out; else `None`.
+    #[serde(default)]
+    pub normal_force: Option<Vec<f64>>,
     /// Temperature \[degC\].
     pub temperature: Option<Vec<f64>>,
     /// Anything else by name: searched for dependence, usable in expressions.
@@ -34,7 +38,8 @@ pub struct Session {
     pub unloaded: bool,
 }
 
-/// Kind of joint: it decides the units in which results are told.
+/// What was recorded: it decides the catalogue of effects, and the names and
+/// units in which results are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointType {
@@ -43,9 +48,77 @@ pub enum JointType {
     Revolute,
     /// m, N, kg.
     Prismatic,
+    /// No joint, but the same to a fit: a tip that slides along a contour. m and
+    /// N, no inertia; F_T stands in the place of τ_F, F_N in that of the load:
+    /// F_T = Σ effects (equation 6).
+    Contact,
 }
 
-/// The recordings of one joint.
+impl JointType {
+    /// The catalogue that applies.
+    #[must_use]
+    pub const fn subject(self) -> Subject {
+        match self {
+            Self::Revolute | Self::Prismatic => Subject::Joint,
+            Self::Contact => Subject::Contact,
+        }
+    }
+
+    /// Whether a contact was recorded.
+    #[must_use]
+    pub const fn is_contact(self) -> bool {
+        matches!(self, Self::Contact)
+    }
+
+    /// What a signal of a joint is called here, in files and results.
+    #[must_use]
+    pub fn signal(self, of_joint: &str) -> &str {
+        if !self.is_contact() {
+            return of_joint;
+        }
+        match of_joint {
+            "position" => "place",
+            "velocity" => "tip_velocity",
+            "acceleration" => "tip_acceleration",
+            "load" => "normal_force",
+            "load_rate" => "normal_force_rate",
+            "motor_torque" => "tangential_force",
+            other => other,
+        }
+    }
+
+    /// Unit of forces or torques.
+    #[must_use]
+    pub const fn force_unit(self) -> &'static str {
+        match self {
+            Self::Revolute => "Nm",
+            Self::Prismatic | Self::Contact => "N",
+        }
+    }
+}
+
+/// What a catalogue of effects is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Subject {
+    /// τ_F of a joint.
+    Joint,
+    /// F_T of a tip in contact.
+    Contact,
+}
+
+impl Subject {
+    /// With an article, for messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Joint => "a joint",
+            Self::Contact => "a contact",
+        }
+    }
+}
+
+/// The recordings of one joint, or of one contact.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dataset {
     /// What models are fitted to.
@@ -100,7 +173,8 @@ pub enum Term {
 pub struct CustomEffect {
     /// Its name in results.
     pub name: String,
-    /// Over `q`, `qd`, `qdd`, `tau`, `tau_m`, `T` \[degC\], `t` (seconds since the first session's start) and extra signals.
+    /// Over `q`, `qd`, `qdd`, `tau`, `tau_m`, `T` \[degC\], `t` (seconds since the first session's start) and extra
+    /// signals; of a contact over `r` \[m\], `rd` \[m/s\], `rdd`, `F_N`, `F_T` \[N\], `T`, `t` and extra signals.
     pub expression: String,
     /// Lower and upper bound of the parameters that are searched.
     pub bounds: BTreeMap<String, [f64; 2]>,

@@ -16,6 +16,7 @@ use crate::proposal::Proposal;
 use crate::reversal;
 use crate::sensor_zero;
 use crate::setup::{BoundTerm, Setup};
+use crate::turns;
 
 /// A named effect explains this share of the mean square at least.
 const LEAST_SHARE: f64 = 0.01;
@@ -152,6 +153,7 @@ pub fn diagnose(
     reversal::settle(&setup, &mut passing, &trial.candidates);
     sensor_zero::settle(&setup, &mut passing);
     family::encompass(&setup, &design, &mut passing);
+    turns::settle(&setup, &design, &mut passing);
     let maps = maps(&setup, &design);
     if passing.is_empty() {
         passing.extend(named_by_map(&trial, &maps));
@@ -325,13 +327,21 @@ fn describe(
         effect: candidate.effect.clone(),
         shape: candidate.shape.clone(),
     };
-    let extended = setup.extended(term);
-    let after = fit(&extended, &Design::new(&extended));
+    // Before and after are told on the rows that a model with it is fitted to.
+    let (before, after) = if candidate.effect.shows_at_turns() {
+        let whole = setup.with_reversals();
+        let extended = whole.extended(term);
+        let before = fit(&whole, &Design::new(&whole)).held_out;
+        (before, fit(&extended, &Design::new(&extended)))
+    } else {
+        let extended = setup.extended(term);
+        (base.held_out, fit(&extended, &Design::new(&extended)))
+    };
     let id = candidate.id();
     let like = family::of(design, candidate, passing, &trial.candidates);
     NamedCandidate {
         effect: id.to_owned(),
-        held_out_before: base.held_out,
+        held_out_before: before,
         held_out_after: after.held_out,
         p_value: corrected(candidate, trial),
         share: candidate.score.share(),

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::data::{JointType, Subject};
+
 /// Why recordings and model cannot be put together.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PrepareError {
@@ -54,14 +56,26 @@ pub enum PrepareError {
         /// Which sample.
         sample: usize,
     },
-    /// The joint never moved.
+    /// The joint, or the tip, never moved.
     #[error(
-        "the position is constant in every session: nothing can be told from a joint at rest; record motion"
+        "the {} is constant in every session: nothing can be told from what is at rest; record motion",
+        .0.signal("position")
     )]
-    ConstantPosition,
-    /// The motor torque is constant.
-    #[error("the motor torque is constant in every session; is the right signal named?")]
-    ConstantMotorTorque,
+    ConstantPosition(JointType),
+    /// The motor torque, or the tangential force, is constant.
+    #[error("the {} is constant in every session; is the right signal named?", .0.signal("motor_torque"))]
+    ConstantForce(JointType),
+    /// A contact without its normal force.
+    #[error("a contact has a normal force; name it as signal normal_force")]
+    NoNormalForce,
+    /// The normal force is never positive.
+    #[error(
+        "the normal force is never above zero: the tip does not touch, or the sign is wrong (positive pushes the tip out)"
+    )]
+    NeverTouched,
+    /// An inertia in the model of a contact.
+    #[error("a contact has no inertia; leave it out of the model")]
+    InertiaOfContact,
     /// Some sessions have a channel, others do not.
     #[error("channel {channel} is in {with} of {all} sessions; it must be in all or in none")]
     Mixed {
@@ -95,6 +109,19 @@ pub enum PrepareError {
         id: String,
         /// Ids of the catalogue, separated by commas.
         known: String,
+    },
+    /// An effect of a contact in the model of a joint, or the other way round.
+    #[error(
+        "effect {id:?} is one of {}, but what is recorded is {}; `ferntast lab effects` lists both",
+        .of.name(), .recorded.name()
+    )]
+    OtherSubject {
+        /// What was asked for.
+        id: String,
+        /// What it is an effect of.
+        of: Subject,
+        /// What was recorded.
+        recorded: Subject,
     },
     /// The same effect twice.
     #[error("effect {0:?} is in the model twice; name it once")]

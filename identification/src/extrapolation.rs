@@ -13,7 +13,7 @@ const MARGIN: f64 = 0.05;
 pub struct Extrapolation {
     /// Name of the session.
     pub session: String,
-    /// `velocity`, `load` or `temperature`.
+    /// `velocity`, `load` or `temperature`; of a contact `tip_velocity`, `normal_force`.
     pub signal: String,
     /// Lowest and highest value fitted.
     pub fitted: [f64; 2],
@@ -60,7 +60,7 @@ pub fn find(setup: &Setup) -> Vec<Extrapolation> {
             if beyond > 0 {
                 found.push(Extrapolation {
                     session: session.name.clone(),
-                    signal: name.to_owned(),
+                    signal: setup.facts.joint.signal(name).to_owned(),
                     fitted,
                     reached,
                     share: beyond as f64 / session.rows.len().max(1) as f64,

@@ -248,12 +248,16 @@ fn farthest_apart(setup: &Setup, a: &Candidate, b: &Candidate) -> String {
             }
         }
     }
-    let (angle, torque) = match setup.facts.joint {
-        crate::data::JointType::Revolute => ("rad", "Nm"),
-        crate::data::JointType::Prismatic => ("m", "N"),
-    };
+    let joint = setup.facts.joint;
+    let (angle, force) = (crate::effects::ANGLE.of(joint), joint.force_unit());
+    let named = |signal: &str| joint.signal(signal).replace('_', " ");
     format!(
-        "position {:.3} {angle}, velocity {:.3} {angle}/s, load {:.2} {torque}",
-        best.1.position, best.1.velocity, best.1.load
+        "{} {:.3} {angle}, {} {:.3} {angle}/s, {} {:.2} {force}",
+        named("position"),
+        best.1.position,
+        named("velocity"),
+        best.1.velocity,
+        named("load"),
+        best.1.load
     )
 }

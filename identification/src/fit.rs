@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use crate::design::{BlockGrams, Design, SessionDesign};
+use crate::effects;
 use crate::gram::{Gram, pseudo_inverse};
 use crate::setup::{BoundTerm, Setup};
 use crate::statistics::jackknife_covariance;
@@ -51,7 +52,7 @@ impl Setup {
     pub fn extended(&self, term: BoundTerm) -> Self {
         let mut terms = self.terms.clone();
         let mut facts = self.facts.clone();
-        facts.load_coulomb |= term.effect.description().id == "load_coulomb";
+        facts.load_coulomb |= effects::is_load_coulomb(&term.effect.description().id);
         terms.push(term);
         let mut extended = Self {
             facts,

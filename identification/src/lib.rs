@@ -1,4 +1,4 @@
-//! What recordings say about a joint's model: how far off it is and where,
+//! What recordings say about a model of a joint, or of a contact: how far off it is and where,
 //! which physical effect is missing, and how far the error falls with it.
 //!
 //! ```text
@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Equation throughout: τ_m = J q̈ + τ + τ_F, joint quantities on the joint side
-//! of the gear. Pure: no file, clock, thread or randomness; the same recordings
+//! of the gear. A contact is the same without motor and inertia: F_T, which
+//! depends on F_N as τ_F on the load ([`JointType::Contact`]). Pure: no file, clock, thread or randomness; the same recordings
 //! give the same answer.
 
 pub mod add;
@@ -44,12 +45,13 @@ pub mod simulate;
 pub mod stated_filter;
 pub mod statistics;
 pub mod stiffness;
+pub mod turns;
 pub mod twin;
 pub mod validation;
 
 pub use add::{Addition, add};
 pub use compare::{Comparison, compare};
-pub use data::{CustomEffect, Dataset, Inertia, JointType, ModelSpec, Session, Term};
+pub use data::{CustomEffect, Dataset, Inertia, JointType, ModelSpec, Session, Subject, Term};
 pub use diagnose::{Diagnosis, Suspect, Verdict, diagnose};
 pub use effects::EffectDescription;
 pub use error::{ExpressionError, PrepareError};
@@ -67,5 +69,7 @@ pub fn catalogue() -> Vec<EffectDescription> {
 
 #[cfg(test)]
 mod bench;
+#[cfg(test)]
+mod contact_tests;
 #[cfg(test)]
 mod tests;

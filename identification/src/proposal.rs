@@ -22,15 +22,26 @@ pub enum Proposal {
     TemperatureSweep,
     /// The same motion at one temperature, on dates far apart.
     DateSweep,
+    /// A contact slid along at the same few speeds under several normal forces.
+    ContactForces,
+    /// A contact slid along at constant speeds from the slowest to the fastest.
+    ContactSpeeds,
+    /// Many turns of a tip in contact, short and slow, under several normal forces.
+    ContactTurns,
+    /// A contact slid along from end to end.
+    ContactSweep,
+    /// The same sliding on dates far apart.
+    ContactDates,
 }
 
 use Proposal::{
-    Accelerations, DateSweep, FastUnloaded, LoadSteps, SlowReversals, TemperatureSweep,
-    WidePosition, WideSpeedRange,
+    Accelerations, ContactDates, ContactForces, ContactSpeeds, ContactSweep, ContactTurns,
+    DateSweep, FastUnloaded, LoadSteps, SlowReversals, TemperatureSweep, WidePosition,
+    WideSpeedRange,
 };
 
 /// Which effects a motion tells from each other, the most telling motion first.
-const TELLS_APART: [(Proposal, &[&str]); 7] = [
+const TELLS_APART: [(Proposal, &[&str]); 12] = [
     (
         TemperatureSweep,
         &["temperature_coulomb", "temperature_viscous", "wear_drift"],
@@ -92,11 +103,28 @@ const TELLS_APART: [(Proposal, &[&str]); 7] = [
             "ripple",
         ],
     ),
+    (
+        ContactDates,
+        &["contact_wear", "contact_coulomb", "contact_spot"],
+    ),
+    (ContactTurns, &["contact_compliance", "contact_stribeck"]),
+    (
+        ContactSpeeds,
+        &["contact_coulomb", "contact_viscous", "contact_stribeck"],
+    ),
+    (
+        ContactForces,
+        &["contact_coulomb", "contact_viscous", "contact_stribeck"],
+    ),
+    (
+        ContactSweep,
+        &["contact_spot", "contact_coulomb", "contact_stribeck"],
+    ),
 ];
 
 impl Proposal {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 13] = [
         FastUnloaded,
         SlowReversals,
         WideSpeedRange,
@@ -105,6 +133,11 @@ impl Proposal {
         Accelerations,
         TemperatureSweep,
         DateSweep,
+        ContactForces,
+        ContactSpeeds,
+        ContactTurns,
+        ContactSweep,
+        ContactDates,
     ];
 
     /// Name in files and results.
@@ -119,6 +152,11 @@ impl Proposal {
             Accelerations => "accelerations",
             TemperatureSweep => "temperature_sweep",
             DateSweep => "date_sweep",
+            ContactForces => "contact_forces",
+            ContactSpeeds => "contact_speeds",
+            ContactTurns => "contact_turns",
+            ContactSweep => "contact_sweep",
+            ContactDates => "contact_dates",
         }
     }
 
@@ -140,6 +178,15 @@ impl Proposal {
                 "the same motion over the whole range of temperature, all within a day"
             }
             DateSweep => "the same motion at one temperature, on dates far apart",
+            ContactForces => {
+                "slide along the contour at the same few speeds under several normal forces"
+            }
+            ContactSpeeds => {
+                "slide along the contour at constant speeds from the slowest to the fastest, both directions"
+            }
+            ContactTurns => "many short slow strokes along the contour under several normal forces",
+            ContactSweep => "slide along the whole contour, slowly, both directions",
+            ContactDates => "the same sliding, at one temperature, on dates far apart",
         }
     }
 

@@ -12,7 +12,8 @@ const WORST: usize = 8;
 /// Residual over one signal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResidualMap {
-    /// `velocity`, `position`, `load`, `temperature`, `time`, `acceleration`, or an extra signal.
+    /// `velocity`, `position`, `load`, `temperature`, `time`, `acceleration`, `date`, or an extra
+    /// signal; of a contact as [`JointType::signal`](crate::JointType::signal) calls them.
     pub signal: String,
     /// Unit of the signal.
     pub unit: String,
@@ -59,23 +60,26 @@ pub struct Residual<'a> {
 /// Maps over all signals that there are.
 #[must_use]
 pub fn maps(residuals: &[Residual<'_>], facts: &crate::effects::Facts) -> Vec<ResidualMap> {
-    let angle = crate::effects::ANGLE.of(facts.joint);
-    let torque = crate::effects::TORQUE.of(facts.joint);
+    let joint = facts.joint;
+    let angle = crate::effects::ANGLE.of(joint);
+    let named = |signal: &str, unit: &str, value: fn(&Signals, usize) -> f64| {
+        map(residuals, joint.signal(signal), unit, value)
+    };
     let mut maps = vec![
-        map(residuals, "velocity", &format!("{angle}/s"), |s, at| {
+        named("velocity", &format!("{angle}/s"), |s, at| {
             s.points[at].velocity
         }),
-        map(residuals, "position", angle, |s, at| s.points[at].position),
-        map(
-            residuals,
-            "acceleration",
-            &format!("{angle}/s²"),
-            |s, at| s.points[at].acceleration,
-        ),
-        map(residuals, "time", "s", Signals::time),
+        named("position", angle, |s, at| s.points[at].position),
+        named("acceleration", &format!("{angle}/s²"), |s, at| {
+            s.points[at].acceleration
+        }),
+        named("time", "s", Signals::time),
     ];
     if facts.loaded {
-        maps.push(map(residuals, "load", torque, |s, at| s.points[at].load));
+        maps.push(named("load", joint.force_unit(), |s, at| s.points[at].load));
+    }
+    if facts.days > 0.5 {
+        maps.push(named("date", "d", |s, at| s.points[at].days));
     }
     if facts.temperature {
         maps.push(map(residuals, "temperature", "degC", |s, at| {

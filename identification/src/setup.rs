@@ -11,7 +11,7 @@ use crate::effects::{self, EffectHandle, Facts};
 use crate::error::PrepareError;
 use crate::expression::Compiled;
 use crate::refine;
-use crate::signals::{Filters, Signals, quantile};
+use crate::signals::{Filters, RESOLVED, Signals, quantile};
 
 /// An effect of the model with the shape it has.
 #[derive(Clone)]
@@ -44,10 +44,7 @@ impl Setup {
     /// See [`PrepareError`].
     pub fn new(dataset: &Dataset, spec: &ModelSpec) -> Result<Self, PrepareError> {
         check(dataset, spec)?;
-        let filters = match dataset.filter {
-            Some(filter) => Filters::stated(filter, &dataset.sessions),
-            None => Filters::choose(&dataset.sessions),
-        };
+        let filters = Filters::of(dataset);
         let mut sessions: Vec<Signals> = dataset
             .sessions
             .iter()
@@ -74,16 +71,20 @@ impl Setup {
             terms: Vec::new(),
         };
         setup.terms = setup.bind(spec)?;
+        if setup.terms.iter().any(|t| t.effect.shows_at_turns()) {
+            setup.keep_reversals();
+        }
         let parameters = setup.terms.iter().map(|t| t.effect.columns()).sum();
         let rows = setup.sessions.iter().map(|s| s.rows.len()).sum();
         if rows < 20 + 5 * parameters {
             return Err(PrepareError::NothingExcited { rows, parameters });
         }
-        if !setup.facts.joint_torque {
+        let is_load_modelled = !setup.facts.joint_torque && !dataset.joint.is_contact();
+        if is_load_modelled {
             setup.model_load();
         }
         setup.find_shapes();
-        if !setup.facts.joint_torque {
+        if is_load_modelled {
             setup.model_load();
         }
         setup.predict();
@@ -129,19 +130,32 @@ impl Setup {
     /// An unknown id, or an expression that cannot be used on these recordings.
     pub fn resolve(&self, term: &Term) -> Result<EffectHandle, PrepareError> {
         match term {
-            Term::Catalogue(id) => effects::find(id).ok_or_else(|| PrepareError::UnknownEffect {
-                id: id.clone(),
-                known: effects::all()
-                    .iter()
-                    .map(|e| e.description().id.clone())
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            }),
+            Term::Catalogue(id) => self.in_catalogue(id),
             Term::Custom(custom) => Ok(Arc::new(Compiled::new(
                 custom,
                 &self.facts,
                 &self.sessions,
             )?)),
+        }
+    }
+
+    fn in_catalogue(&self, id: &str) -> Result<EffectHandle, PrepareError> {
+        let subject = self.facts.joint.subject();
+        match effects::find(id) {
+            Some(effect) if effect.description().of == subject => Ok(effect),
+            Some(effect) => Err(PrepareError::OtherSubject {
+                id: id.to_owned(),
+                of: effect.description().of,
+                recorded: subject,
+            }),
+            None => Err(PrepareError::UnknownEffect {
+                id: id.to_owned(),
+                known: effects::of(subject)
+                    .iter()
+                    .map(|e| e.description().id.clone())
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            }),
         }
     }
 
@@ -166,30 +180,40 @@ impl Setup {
         0.0
     }
 
-    /// The same with the rows near rest and just after reversals.
+    /// The same with the rows near rest and just after reversals; of a contact
+    /// only while it lasts.
     #[must_use]
     pub fn with_reversals(&self) -> Self {
         let mut whole = Self {
             facts: self.facts.clone(),
             filters: self.filters,
             sessions: self.sessions.clone(),
-            held_out: Vec::new(),
+            held_out: self.held_out.clone(),
             terms: self.terms.clone(),
         };
-        for signals in &mut whole.sessions {
-            signals.rows.clone_from(&signals.all_rows);
-        }
+        whole.keep_reversals();
         whole
     }
 
-    /// Finds the shape of the model's own effects, one after the other, twice.
+    fn keep_reversals(&mut self) {
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            signals.rows.clone_from(&signals.turning_rows);
+        }
+    }
+
+    /// Finds the shape of the model's own effects, one after the other, twice:
+    /// one depends on the others', and on what they predict.
     fn find_shapes(&mut self) {
         let searched: Vec<usize> = (0..self.terms.len())
             .filter(|i| !self.terms[*i].shape.is_empty())
             .collect();
-        let rounds = if searched.len() > 1 { 2 } else { 1 };
+        let predicts = self.terms.iter().any(|t| t.effect.needs_prediction());
+        let rounds = if searched.len() > 1 || predicts { 2 } else { 1 };
         for _ in 0..rounds {
             for &at in &searched {
+                if self.terms[at].effect.needs_prediction() {
+                    self.predict();
+                }
                 let term = self.terms.remove(at);
                 let design = Design::new(self);
                 let shape = refine::search(self, &design, &term.effect);
@@ -379,7 +403,9 @@ fn gather(dataset: &Dataset, spec: &ModelSpec, sessions: &[Signals], filters: &F
         ],
         speed: [quantile(&mut speeds, 0.02), quantile(&mut speeds, 0.98)],
         motor_torque: quantile(&mut torques, 0.999),
-        loaded: dataset.sessions.iter().all(|s| s.joint_torque.is_some())
+        resolved: RESOLVED * filters.position_noise,
+        loaded: dataset.joint.is_contact()
+            || dataset.sessions.iter().all(|s| s.joint_torque.is_some())
             || spec.inertia != Inertia::Given(0.0)
             || spec
                 .effects
@@ -388,6 +414,9 @@ fn gather(dataset: &Dataset, spec: &ModelSpec, sessions: &[Signals], filters: &F
         period: sessions
             .first()
             .map_or(filters.thinning as f64, |s| s.period),
-        load_coulomb: spec.effects.iter().any(|t| t.name() == "load_coulomb"),
+        load_coulomb: spec
+            .effects
+            .iter()
+            .any(|t| effects::is_load_coulomb(t.name())),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::data::Session;
+use crate::data::{Dataset, Session};
 use crate::effects::Point;
 use crate::filter::{Kernel, noise_level, thin};
 use crate::stated_filter::StatedFilter;
@@ -15,6 +15,12 @@ const WORKING_PERIOD: f64 = 0.002;
 const TRAVEL_AFTER_REVERSAL: f64 = 0.006;
 /// Share of the top speed below which a joint is near rest.
 const NEAR_REST: f64 = 0.005;
+/// Share of the top of F_N below which a tip does not touch for certain.
+const LEAST_NORMAL_FORCE: f64 = 0.1;
+/// Travel of this many times the position's noise is seen for certain.
+pub const RESOLVED: f64 = 10.0;
+/// A tip that is near rest for longer than this \[s\] stays there; else it turns.
+const LONGEST_TURN: f64 = 0.15;
 
 /// Widths of the filters, the same for all sessions of a dataset.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +38,10 @@ pub struct Filters {
     pub rest_speed: f64,
     /// Travel \[rad\] after a reversal that is dropped.
     pub travel: f64,
+    /// Standard deviation of the position's noise \[rad\].
+    pub position_noise: f64,
+    /// Of a contact: F_N \[N\] below which the tip does not touch; `None` for a joint.
+    pub touching: Option<f64>,
     /// What takes the place of all this, if the user states it.
     pub stated: Option<StatedFilter>,
 }
@@ -53,6 +63,8 @@ pub struct Signals {
     pub rows: Vec<usize>,
     /// See [`Session::unloaded`].
     pub unloaded: bool,
+    /// The same with reversals: see [`Effect::shows_at_turns`](crate::effects::Effect::shows_at_turns).
+    pub turning_rows: Vec<usize>,
     /// The same rows without regard to rest and reversal, for the eye.
     pub all_rows: Vec<usize>,
 }
@@ -69,10 +81,52 @@ pub struct Channels {
 }
 
 impl Filters {
-    /// Chooses widths from the noise in the recordings: as little smoothing as
-    /// leaves the acceleration a twentieth noise, at most.
+    /// What fits these recordings: as stated, else chosen from the noise.
+    #[must_use]
+    pub fn of(dataset: &Dataset) -> Self {
+        let sessions = &dataset.sessions;
+        let chosen = match dataset.joint.is_contact() {
+            true => Self::of_contact(sessions),
+            false => Self::choose(sessions),
+        };
+        match dataset.filter {
+            Some(filter) => Self {
+                thinning: 1,
+                stride: filter.decimation.max(1),
+                stated: Some(filter),
+                ..chosen
+            },
+            None => chosen,
+        }
+    }
+
+    /// Chooses widths from the noise in the recordings of a joint: as little
+    /// smoothing as leaves the acceleration a twentieth noise, at most.
     #[must_use]
     pub fn choose(sessions: &[Session]) -> Self {
+        Self::least_smoothing(sessions, 2)
+    }
+
+    /// The same of a contact, where no acceleration is needed: the velocity
+    /// decides. What winds up before a tip slides is told by travel, so that no
+    /// more of it is dropped than the position leaves open, and the filter on
+    /// columns reaches no further than it must.
+    fn of_contact(sessions: &[Session]) -> Self {
+        let normal = sessions.iter().filter_map(|s| s.normal_force.as_ref());
+        let mut all: Vec<f64> = normal.flatten().map(|force| force.abs()).collect();
+        let chosen = Self::least_smoothing(sessions, 1);
+        Self {
+            column: chosen.state,
+            stride: (2.0 * chosen.state).round() as usize,
+            travel: RESOLVED * chosen.position_noise,
+            touching: Some(LEAST_NORMAL_FORCE * quantile(&mut all, 0.98)),
+            ..chosen
+        }
+    }
+
+    /// As little smoothing as leaves the derivative of this `order` a twentieth
+    /// noise, at most.
+    fn least_smoothing(sessions: &[Session], order: u8) -> Self {
         let period = sessions.first().map_or(0.01, |s| s.period);
         let thinning = ((WORKING_PERIOD / period + 1e-6).floor() as usize).max(1);
         let working = period * thinning as f64;
@@ -83,7 +137,7 @@ impl Filters {
         let noise = positions.iter().map(|q| noise_level(q)).fold(0.0, f64::max);
         let mut state = 6.0;
         for width in [1.0, 1.5, 2.0, 3.0, 4.0] {
-            let kernel = Kernel::sharp(width, 2, working);
+            let kernel = Kernel::sharp(width, order, working);
             let (mut sum, mut count) = (0.0, 1e-9);
             for q in &positions {
                 for at in (0..q.len()).step_by(3) {
@@ -112,18 +166,9 @@ impl Filters {
             stride: (2.0 * column).round() as usize,
             rest_speed: f64::max(NEAR_REST * top, 4.0 * noise * slope.noise_gain().sqrt()),
             travel: TRAVEL_AFTER_REVERSAL * range,
+            position_noise: noise,
+            touching: None,
             stated: None,
-        }
-    }
-
-    /// The filters that the user states, at the rate of the recording.
-    #[must_use]
-    pub fn stated(filter: StatedFilter, sessions: &[Session]) -> Self {
-        Self {
-            thinning: 1,
-            stride: filter.decimation.max(1),
-            stated: Some(filter),
-            ..Self::choose(sessions)
         }
     }
 
@@ -166,6 +211,8 @@ impl Signals {
             None => [kernel(0), kernel(1), kernel(2)],
         };
         let temperature = session.temperature.as_ref().map(|s| thin(s));
+        let normal_force = session.normal_force.as_ref().map(|s| thin(s));
+        let load = normal_force.as_ref().unwrap_or(&raw.joint_torque);
         let days = session.start / SECONDS_PER_DAY;
         let points: Vec<Point> = (0..raw.position.len())
             .map(|at| Point {
@@ -174,9 +221,9 @@ impl Signals {
                 velocity: slope.at(&raw.position, at),
                 acceleration: curvature.at(&raw.position, at),
                 motor_torque: smooth.at(&raw.motor_torque, at),
-                load: smooth.at(&raw.joint_torque, at),
-                load_rate: slope.at(&raw.joint_torque, at),
-                load_jerk: curvature.at(&raw.joint_torque, at),
+                load: smooth.at(load, at),
+                load_rate: slope.at(load, at),
+                load_jerk: curvature.at(load, at),
                 temperature: temperature.as_ref().map_or(0.0, |t| smooth.at(t, at)),
                 days: days + at as f64 * period / SECONDS_PER_DAY,
                 ..Point::default()
@@ -189,16 +236,23 @@ impl Signals {
             None => (reach..last).step_by(filters.stride.max(1)).collect(),
         };
         let mut sliding = Sliding::default();
-        let mut bad = vec![0_usize; points.len() + 1];
-        for at in 0..points.len() {
-            let slides = sliding.next(&points[at], filters);
-            bad[at + 1] = bad[at] + usize::from(!slides);
-        }
-        let rows = all_rows
+        let slides: Vec<bool> = points
             .iter()
-            .copied()
-            .filter(|at| filters.stated.is_some() || bad[at + reach] == bad[at - reach])
+            .map(|point| sliding.next(point, filters))
             .collect();
+        let turning_too = match filters.touching {
+            Some(least) => touching(&points, filters.rest_speed, least),
+            None => vec![true; points.len()],
+        };
+        let both: Vec<bool> = slides
+            .iter()
+            .zip(&turning_too)
+            .map(|(slides, counts)| *slides && *counts)
+            .collect();
+        let rows = |good: &[bool]| match filters.stated {
+            Some(_) => all_rows.clone(),
+            None => clear_of_bad(&all_rows, good, reach),
+        };
         Self {
             name: session.name.clone(),
             period,
@@ -210,7 +264,8 @@ impl Signals {
                 .collect(),
             raw,
             unloaded: session.unloaded,
-            rows,
+            rows: rows(&both),
+            turning_rows: rows(&turning_too),
             all_rows,
         }
     }
@@ -243,5 +298,66 @@ impl Sliding {
         }
         self.travelled += point.velocity.abs() * point.period;
         self.travelled > filters.travel
+    }
+}
+
+/// Rows with no bad sample within `reach`.
+fn clear_of_bad(rows: &[usize], good: &[bool], reach: usize) -> Vec<usize> {
+    let mut bad = vec![0_usize; good.len() + 1];
+    for (at, good) in good.iter().enumerate() {
+        bad[at + 1] = bad[at] + usize::from(!good);
+    }
+    let rows = rows.iter().copied();
+    rows.filter(|at| bad[at + reach] == bad[at - reach])
+        .collect()
+}
+
+/// Which samples of a contact count: the tip touches and does not stay at rest,
+/// where F_T may have any value that friction holds. Turns count: what winds up
+/// before the tip slides shows nowhere else.
+fn touching(points: &[Point], rest_speed: f64, least_force: f64) -> Vec<bool> {
+    let mut counts: Vec<bool> = points.iter().map(|p| p.load > least_force).collect();
+    let is_slow = |at: usize| points[at].velocity.abs() < rest_speed;
+    let mut at = 0;
+    while at < points.len() {
+        let from = at;
+        let mut time = 0.0;
+        while at < points.len() && is_slow(at) {
+            time += points[at].period;
+            at += 1;
+        }
+        if time > LONGEST_TURN {
+            counts[from..at].fill(false);
+        }
+        at += 1;
+    }
+    counts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tip_counts_where_it_touches_and_where_it_turns_but_not_where_it_stays() {
+        let velocity = |at: usize| match at {
+            0..50 | 130..150 => 0.01,
+            50..55 => 0.0,
+            55..100 => -0.01,
+            _ => 1e-5,
+        };
+        let points: Vec<Point> = (0..150)
+            .map(|at| Point {
+                period: 0.01,
+                velocity: velocity(at),
+                load: if at < 20 { 0.1 } else { 10.0 },
+                ..Point::default()
+            })
+            .collect();
+        let counts = touching(&points, 1e-3, 1.0);
+        for (at, counts) in counts.iter().enumerate() {
+            let stays = (100..130).contains(&at);
+            assert_eq!(*counts, at >= 20 && !stays, "sample {at}");
+        }
     }
 }

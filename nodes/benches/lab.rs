@@ -5,7 +5,7 @@
 use std::{path::Path, time::Instant};
 
 use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, compare, diagnose};
-use ferntast_nodes::challenge;
+use ferntast_nodes::challenge::TestBench;
 use ferntast_sim::joint_bench::{Bench, BenchConfig, HiddenEffect};
 
 const SAMPLES: usize = 600_000;
@@ -56,8 +56,8 @@ fn recording() -> Result<(Dataset, ModelSpec), String> {
     let recording = Bench::new(&config)
         .and_then(|bench| bench.record())
         .map_err(|error| error.to_string())?;
-    let model = challenge::model(&recording);
-    let mut dataset = challenge::dataset(&recording);
+    let model = HiddenEffect::model(&recording);
+    let mut dataset = HiddenEffect::dataset(&recording);
     let mut left = SAMPLES;
     for session in &mut dataset.sessions {
         let step = PERIOD / session.period;

@@ -205,11 +205,13 @@ function binned(drawings, nameX, nameY) {
 
 async function residualMap({ chart, section }, { results: { drawings }, view, joint }) {
   const { unit, joint: kind } = view.joints[joint];
-  const angle = kind === "prismatic" ? "m" : "rad";
+  const angle = kind === "revolute" ? "rad" : "m";
+  const called = kind === "contact" ? { position: "place", velocity: "tip velocity", acceleration: "tip acceleration", load: "normal force" } : {};
+  const nameOf = (name) => called[name] ?? name;
   const units = { position: angle, velocity: `${angle}/s`, acceleration: `${angle}/s²`, load: unit, temperature: "°C", time: "s" };
   const names = Object.keys(units).filter((name) => drawings.every((drawing) => drawing[name].length));
   const select = (label, value) => make("select", { "aria-label": label, style: "width:auto", onchange: () => show() },
-    names.map((name) => make("option", { value: name, textContent: name, selected: name === value })));
+    names.map((name) => make("option", { value: name, textContent: nameOf(name), selected: name === value })));
   const [across, up] = [select("signal across", "position"), select("signal up", "velocity")];
   section.insertBefore(make("div", { className: "row", style: "margin-bottom:6px" }, across, make("span", { className: "quiet small", textContent: "against" }), up), chart);
   const show = () => {
@@ -224,7 +226,7 @@ async function residualMap({ chart, section }, { results: { drawings }, view, jo
         colorbar: { title: { text: unit, side: "top" }, thickness: 12, outlinewidth: 0, tickfont: { size: 11 } },
         hovertemplate: `%{x:.4g}, %{y:.4g}: %{z:.4g} ${unit}<extra></extra>`,
       }],
-      layout: { xaxis: axis(across.value, units[across.value], { zeroline: false }), yaxis: axis(up.value, units[up.value], { zeroline: false }) },
+      layout: { xaxis: axis(nameOf(across.value), units[across.value], { zeroline: false }), yaxis: axis(nameOf(up.value), units[up.value], { zeroline: false }) },
     }));
   };
   await show();

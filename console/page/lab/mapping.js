@@ -4,12 +4,22 @@ import { fill, make } from "../common/dom.js";
 import { getJson, work } from "../common/server.js";
 
 /** Signals: name, what it is, unit, whether it must be, words by which a path is guessed. */
-const SIGNALS = [
+const OF_JOINT = [
   ["position", "position", "rad or m", true, [/position/, /^q(_m)?$/, /^pos/, /_q$/]],
   ["motor_torque", "motor torque", "Nm or N, joint side", true, [/motor.*(effort|torque)/, /^tau_m/, /effort/, /current/, /torque/, /force/, /^f/]],
   ["joint_torque", "joint torque sensor", "Nm or N", false, [/measured_js\.effort/, /^tau$/, /joint.*torque/]],
   ["temperature", "temperature", "°C", false, [/temperature/, /^temp/, /_degC$/]],
 ];
+
+const OF_CONTACT = [
+  ["position", "place along the contour", "m", true, [/measured_cp\.pose\.position\.x/, /place|along/, /position/, /^x/]],
+  ["tangential_force", "tangential force", "N, opposes motion to larger places", true, [/contact_cf\.wrench\.force\.x/, /tangential/, /^F_?T/i]],
+  ["normal_force", "normal force", "N, pushes the tip out", true, [/contact_cf\.wrench\.force\.z/, /normal/, /^F_?N/i]],
+  ["temperature", "temperature", "°C", false, [/temperature/, /^temp/, /_degC$/]],
+];
+
+/** Forces on the tip are recorded; friction opposes motion. */
+const turned = (name, path) => (name === "tangential_force" && /contact_cf\.wrench\.force\.x$/.test(path) ? `${path}.@negative` : path);
 
 function guess(paths, patterns, taken) {
   for (const pattern of patterns) {
@@ -36,25 +46,30 @@ export async function show(parent, entry, offered, begun, known = null) {
   const catalogue = await getJson("/api/lab/effects");
   offered ??= await getJson("/api/lab/offered", { path: entry.path });
   const paths = offered.paths;
-  const taken = new Set(offered.time ? [offered.time] : []);
-  const rows = SIGNALS.flatMap(([name, text, unit, must, patterns]) => {
-    const value = known ? known.signals[name] || "" : guess(paths, patterns, must ? taken : new Set([...taken, ...paths.filter((path) => !patterns[0].test(path))]));
-    if (value) taken.add(value);
-    return [make("label", { for: `signal-${name}` }, text, make("small", { className: "quiet", textContent: ` [${unit}]` })), choice(name, paths, value, must)];
-  });
+  const signalsOf = (kind) => {
+    const taken = new Set(offered.time ? [offered.time] : []);
+    return (kind === "contact" ? OF_CONTACT : OF_JOINT).flatMap(([name, text, unit, must, patterns]) => {
+      const value = known ? known.signals[name] || "" : guess(paths, patterns, must ? taken : new Set([...taken, ...paths.filter((path) => !patterns[0].test(path))]));
+      if (value) taken.add(value);
+      return [make("label", { for: `signal-${name}` }, text, make("small", { className: "quiet", textContent: ` [${unit}]` })), choice(name, paths, value, must)];
+    });
+  };
   const isCsv = entry.path.toLowerCase().endsWith(".csv");
   const time = isCsv ? [make("label", { for: "signal-time" }, "time", make("small", { className: "quiet", textContent: " [s]" })), choice("time", paths, offered.time, true)] : [];
-  const kind = make("select", { id: "joint-kind" }, make("option", { value: "revolute", textContent: "revolute (rad, Nm)" }), make("option", { value: "prismatic", textContent: "prismatic (m, N)", selected: known?.joint === "prismatic" }));
+  const kind = make("select", { id: "joint-kind" }, make("option", { value: "revolute", textContent: "revolute (rad, Nm)" }), make("option", { value: "prismatic", textContent: "prismatic (m, N)", selected: known?.joint === "prismatic" }),
+    make("option", { value: "contact", textContent: "no joint, a contact (m, N)", selected: known?.joint === "contact" }));
   const given = known?.inertia?.given;
   const inertia = make("input", { id: "inertia", type: "number", step: "any", min: 0, value: given ?? "", placeholder: "fitted", "aria-describedby": "inertia-note" });
   const ratio = make("input", { id: "gear", type: "number", step: "any", min: 0, value: known?.gear_ratio ?? "", placeholder: "not known" });
-  const used = new Set(known ? known.effects.filter((effect) => typeof effect === "string") : ["coulomb", "viscous"]);
-  const effects = make("fieldset", {}, make("legend", { className: "small quiet", textContent: "effects that the model has" }),
-    catalogue.map((effect) => make("label", { className: "check", title: effect.equation }, make("input", { type: "checkbox", value: effect.id, checked: used.has(effect.id) }), effect.id.replaceAll("_", " "))));
+  const used = new Set(known ? known.effects.filter((effect) => typeof effect === "string") : ["coulomb", "viscous", "contact_coulomb"]);
+  const effects = make("fieldset", {});
+  const effectsOf = (kind) => fill(effects, make("legend", { className: "small quiet", textContent: "effects that the model has" }),
+    catalogue.filter((effect) => (effect.of === "contact") === (kind === "contact")).map((effect) => make("label", { className: "check", title: effect.equation }, make("input", { type: "checkbox", value: effect.id, checked: used.has(effect.id) }), effect.id.replaceAll("_", " "))));
   const folder = entry.path.includes("/") ? `${entry.path.slice(0, entry.path.lastIndexOf("/"))}/` : "";
   const stem = entry.path.slice(folder.length).replace(/\.(mcap|csv)$/i, "");
   const name = make("input", { id: "experiment-name", type: "text", required: true, value: `${folder}${stem}${known ? `-${known.title}` : ""}.toml` });
   const trouble = make("p", { className: "error wide", role: "alert", hidden: true });
+  const rows = make("div", { style: "display:contents" });
   const form = make("form", { className: "form" }, rows, time,
     make("label", { for: "joint-kind", textContent: "joint" }), kind,
     make("label", { for: "inertia" }, "inertia", make("small", { id: "inertia-note", className: "quiet", textContent: " [kg m² or kg], empty: fitted" })), inertia,
@@ -62,16 +77,23 @@ export async function show(parent, entry, offered, begun, known = null) {
     effects,
     make("label", { for: "experiment-name", textContent: "experiment file" }), name,
     make("div", { className: "wide row" }, make("button", { className: "primary", type: "submit", id: "begin", textContent: "Begin" })), trouble);
+  const ofKind = () => {
+    fill(rows, signalsOf(kind.value));
+    effectsOf(kind.value);
+    for (const input of [inertia, ratio]) input.disabled = kind.value === "contact";
+  };
+  kind.onchange = ofKind;
+  ofKind();
   form.onsubmit = async (event) => {
     event.preventDefault();
     trouble.hidden = true;
     const signals = {};
-    for (const select of form.querySelectorAll("select[name]")) if (select.value) signals[select.name] = select.value;
+    for (const select of form.querySelectorAll("select[name]")) if (select.value) signals[select.name] = turned(select.name, select.value);
     const up = "../".repeat(name.value.split("/").length - 1);
     const experiment = {
       recordings: [`${up}${entry.path}`], signals, joint: kind.value,
       inertia: inertia.value === "" ? "fit" : { given: Number(inertia.value) },
-      gear_ratio: ratio.value === "" ? null : Number(ratio.value),
+      gear_ratio: ratio.value === "" || kind.value === "contact" ? null : Number(ratio.value),
       effects: [...effects.querySelectorAll("input:checked")].map((box) => box.value),
     };
     try {

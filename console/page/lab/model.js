@@ -14,6 +14,7 @@ export function enable(on) {
 const nameOf = (effect) => (typeof effect === "string" ? effect : effect.name);
 
 function inertia(joint) {
+  if (joint.joint === "contact") return "a contact";
   const unit = joint.joint === "prismatic" ? "kg" : "kg m²";
   return joint.inertia === "fit" ? "inertia fitted" : `inertia ${significant(joint.inertia.given)} ${unit}`;
 }
@@ -27,13 +28,14 @@ export function figures({ results, view, joint }) {
   const { comparison: c } = results;
   const { unit } = view.joints[joint];
   fill(parts.figures,
-    figure(`${significant(c.rms.held_out)} ${unit}`, `error on data held out (${percent(c.relative_error_held_out)} of the torque)`),
+    figure(`${significant(c.rms.held_out)} ${unit}`, `error on data held out (${percent(c.relative_error_held_out)} of what is measured)`),
     figure(`${significant(c.rms.train)} ${unit}`, `error on data fitted (${percent(c.relative_error)})`),
     figure(c.noise.repeats === null ? "–" : `${significant(c.noise.repeats)} ${unit}`, "noise between repeats: no model gets below it"),
     figure(c.samples.toLocaleString("en"), `samples, ${c.used.toLocaleString("en")} used, held out by ${c.held_out_by}`));
 }
 
-function ownEffect(actions) {
+function ownEffect(actions, isContact) {
+  const signals = isContact ? "r, rd, rdd, F_N, F_T, T, t" : "q, qd, qdd, tau, tau_m, T, t";
   const name = make("input", { type: "text", required: true, id: "own-name", placeholder: "cogging", pattern: "[a-z][a-z0-9_]*" });
   const expression = make("input", { type: "text", required: true, id: "own-expression", placeholder: "a*sin(6*q) + b*cos(6*q)" });
   const bounds = make("input", { type: "text", id: "own-bounds", placeholder: "vs=0.005,0.2   (only of parameters that are searched)" });
@@ -41,7 +43,7 @@ function ownEffect(actions) {
     make("label", { for: "own-name", textContent: "name" }), name,
     make("label", { for: "own-expression" }, "expression", make("small", { className: "quiet", textContent: " [Nm or N]" })), expression,
     make("label", { for: "own-bounds", textContent: "bounds" }), bounds,
-    make("p", { className: "wide small quiet", textContent: "Over q, qd, qdd, tau, tau_m, T, t and extra signals. Other names are parameters: fitted where they enter linearly, searched where bounds are given." }),
+    make("p", { className: "wide small quiet", textContent: `Over ${signals} and extra signals. Other names are parameters: fitted where they enter linearly, searched where bounds are given.` }),
     make("div", { className: "wide row" }, make("button", { type: "submit", id: "own-add", textContent: "Add this effect" })));
   form.onsubmit = (event) => {
     event.preventDefault();
@@ -50,10 +52,10 @@ function ownEffect(actions) {
   return make("details", {}, make("summary", { textContent: "An effect of your own" }), form);
 }
 
-async function catalogue(select, effects) {
+async function catalogue(select, effects, isContact) {
   const has = new Set(effects.map(nameOf));
   for (const effect of await getJson("/api/lab/effects")) {
-    if (!has.has(effect.id)) select.append(make("option", { value: effect.id, textContent: effect.id.replaceAll("_", " "), title: effect.equation }));
+    if (!has.has(effect.id) && (effect.of === "contact") === isContact) select.append(make("option", { value: effect.id, textContent: effect.id.replaceAll("_", " "), title: effect.equation }));
   }
 }
 
@@ -65,7 +67,7 @@ export function show(parent, { view, joint, path }, actions) {
   const act = (text, id, onclick, more = {}) => make("button", { type: "button", id, textContent: text, onclick, ...more });
   const select = make("select", { id: "add-effect", "aria-label": "Effect to add" }, make("option", { value: "", textContent: "add an effect of the catalogue …" }));
   select.onchange = () => { if (select.value) actions.add(select.value); };
-  catalogue(select, own.effects);
+  catalogue(select, own.effects, own.joint === "contact");
   parts = { figures: make("div", { className: "figures" }) };
   fill(parent,
     make("div", { className: "headline" },
@@ -86,5 +88,5 @@ export function show(parent, { view, joint, path }, actions) {
       }))),
     parts.figures,
     own.notes.map((note) => make("p", { className: "note", textContent: note })),
-    isFile ? make("div", { style: "margin-top:14px;display:grid;gap:10px;max-width:760px" }, select, ownEffect(actions)) : null);
+    isFile ? make("div", { style: "margin-top:14px;display:grid;gap:10px;max-width:760px" }, select, ownEffect(actions, own.joint === "contact")) : null);
 }

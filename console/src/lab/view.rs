@@ -26,7 +26,7 @@ pub struct FileView {
     history: Vec<StepView>,
 }
 
-/// An experiment on one joint.
+/// An experiment on one joint, or on a contact.
 #[derive(Debug, Serialize)]
 pub struct JointView {
     title: String,
@@ -113,7 +113,7 @@ fn joint(lab: &Lab, opened: &Opened) -> JointView {
         unit: opened.torque_unit(),
         recordings: names(&experiment.recordings),
         held_out: names(&experiment.held_out),
-        signals: signals(&experiment.signals),
+        signals: signals(&experiment.signals, experiment.joint),
         inertia: experiment.model.inertia,
         gear_ratio: experiment.model.gear_ratio,
         effects: experiment.model.effects.clone(),
@@ -128,10 +128,12 @@ fn joint(lab: &Lab, opened: &Opened) -> JointView {
     }
 }
 
-fn signals(signals: &Signals) -> BTreeMap<String, String> {
+fn signals(signals: &Signals, joint: JointType) -> BTreeMap<String, String> {
     let named = [
         ("position", Some(&signals.position)),
-        ("motor_torque", Some(&signals.motor_torque)),
+        ("tip_y", signals.tip_y.as_ref()),
+        (joint.signal("motor_torque"), Some(&signals.motor_torque)),
+        ("normal_force", signals.normal_force.as_ref()),
         ("joint_torque", signals.joint_torque.as_ref()),
         ("temperature", signals.temperature.as_ref()),
         ("time", signals.time.as_ref()),

@@ -20,7 +20,7 @@ pub(super) fn channels(setup: &Setup) -> Vec<Channel> {
     let facts = &setup.facts;
     let collect =
         |name: &str, slow: bool, value: &dyn Fn(&crate::signals::Signals, usize) -> f64| Channel {
-            name: name.to_owned(),
+            name: facts.joint.signal(name).to_owned(),
             slow,
             values: setup
                 .sessions

@@ -20,7 +20,8 @@ use crate::validation::{Score, between, within};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Dependence {
     /// One signal or two: `position`, `velocity`, `load`, `acceleration`,
-    /// `load_rate`, `temperature`, `date`, `time`, or the name of an extra signal.
+    /// `load_rate`, `temperature`, `date`, `time`, or the name of an extra signal;
+    /// of a contact as [`JointType::signal`](crate::JointType::signal) calls them.
     pub signals: Vec<String>,
     /// Share of the residual's mean square that a map over them explains on
     /// data left out.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::data::JointType;
+use crate::data::{JointType, Subject};
 use crate::proposal::Proposal;
 
 /// A unit, for both kinds of joint.
@@ -10,7 +10,7 @@ use crate::proposal::Proposal;
 pub struct Unit {
     /// With rad and Nm.
     pub revolute: &'static str,
-    /// With m and N.
+    /// With m and N: of a contact, too.
     pub prismatic: &'static str,
 }
 
@@ -38,7 +38,7 @@ impl Unit {
     pub fn of(&self, joint: JointType) -> &'static str {
         match joint {
             JointType::Revolute => self.revolute,
-            JointType::Prismatic => self.prismatic,
+            JointType::Prismatic | JointType::Contact => self.prismatic,
         }
     }
 }
@@ -46,6 +46,8 @@ impl Unit {
 pub(crate) const TORQUE: Unit = Unit::new("Nm", "N");
 pub(crate) const ANGLE: Unit = Unit::new("rad", "m");
 pub(crate) const SPEED: Unit = Unit::new("rad/s", "m/s");
+pub(crate) const STIFFNESS: Unit = Unit::new("Nm/rad", "N/m");
+pub(crate) const DAY: Unit = Unit::same("d");
 pub(crate) const ONE: Unit = Unit::same("1");
 
 /// A parameter's name and unit.
@@ -62,7 +64,9 @@ pub struct Quantity {
 pub struct EffectDescription {
     /// Name in files, on the command line and in results.
     pub id: String,
-    /// Its part of τ_F.
+    /// What it is an effect of.
+    pub of: Subject,
+    /// Its part of τ_F, of a contact of F_T.
     pub equation: String,
     /// Where the equation is from.
     pub source: String,
@@ -81,8 +85,11 @@ pub struct EffectDescription {
 }
 
 /// Makes the struct of an effect whose only field is its description.
+/// After the id, `of: Contact` says that it is one of a contact.
 macro_rules! describe {
-    ($name:ident, $id:literal, $equation:literal, $source:literal,
+    (@subject) => { $crate::data::Subject::Joint };
+    (@subject $of:ident) => { $crate::data::Subject::$of };
+    ($name:ident, $id:literal, $(of: $of:ident,)? $equation:literal, $source:literal,
      coefficients: [$($coefficient:literal: $coefficient_unit:expr),* $(,)?],
      shape: [$($shape:literal: $shape_unit:expr),* $(,)?],
      shows_as: $shows:literal, excited_by: $excited:literal, shown_by: $shown:ident,
@@ -94,6 +101,7 @@ macro_rules! describe {
             fn default() -> Self {
                 Self($crate::effects::EffectDescription {
                     id: $id.to_owned(),
+                    of: $crate::effects::describe!(@subject $($of)?),
                     equation: $equation.to_owned(),
                     source: $source.to_owned(),
                     coefficients: vec![$($crate::effects::Quantity {

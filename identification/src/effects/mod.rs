@@ -11,6 +11,12 @@ mod asymmetric_viscous;
 mod backlash;
 mod cable_spring;
 mod channel_delay;
+mod contact_compliance;
+mod contact_coulomb;
+mod contact_spot;
+mod contact_stribeck;
+mod contact_viscous;
+mod contact_wear;
 mod coulomb;
 mod cubic_viscous;
 mod current_saturation;
@@ -38,13 +44,15 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::data::JointType;
+use crate::data::{JointType, Subject};
 pub(crate) use description::describe;
-pub(crate) use description::{ANGLE, ONE, SPEED, TORQUE};
+pub(crate) use description::{ANGLE, DAY, ONE, SPEED, STIFFNESS, TORQUE};
 pub use description::{EffectDescription, Quantity, Unit};
 pub use fitted_inertia::FittedInertia;
 
-/// State of the joint at one sample. For a prismatic joint read m for rad and N for Nm.
+/// State of the joint at one sample. For a prismatic joint read m for rad and N
+/// for Nm. For a contact, too: then q is the place along the contour, τ_m and
+/// τ_F are F_T, and the load is F_N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// Time \[s\] since the sample before.
@@ -57,7 +65,8 @@ pub struct Point {
     pub acceleration: f64,
     /// τ_m as recorded \[Nm\].
     pub motor_torque: f64,
-    /// Load τ \[Nm\]: the joint torque sensor, or without one the modelled load.
+    /// Load τ \[Nm\]: the joint torque sensor, or without one the modelled load;
+    /// of a contact F_N \[N\].
     pub load: f64,
     /// τ̇ \[Nm/s\].
     pub load_rate: f64,
@@ -124,11 +133,13 @@ pub struct Facts {
     pub speed: [f64; 2],
     /// Top of |τ_m| \[Nm\].
     pub motor_torque: f64,
+    /// Travel \[rad\] that is seen for certain, for the position's noise.
+    pub resolved: f64,
     /// Whether there is a load: a torque sensor, gravity, a spring or an inertia.
     pub loaded: bool,
     /// Working period \[s\].
     pub period: f64,
-    /// Whether the model has load-dependent Coulomb friction.
+    /// Whether the model has Coulomb friction that grows with the load.
     pub load_coulomb: bool,
 }
 
@@ -267,6 +278,12 @@ pub trait Effect: Send + Sync {
         false
     }
 
+    /// Whether it shows mainly just after reversals, where other rows are left
+    /// out: a model that has it is fitted to these rows too.
+    fn shows_at_turns(&self) -> bool {
+        false
+    }
+
     /// Whether its columns need the model's own prediction.
     fn needs_prediction(&self) -> bool {
         false
@@ -307,7 +324,7 @@ pub trait Effect: Send + Sync {
 /// A shared effect.
 pub type EffectHandle = Arc<dyn Effect>;
 
-/// Every effect of the catalogue.
+/// Every effect of the catalogue, of joints and of contacts.
 #[must_use]
 pub fn all() -> Vec<EffectHandle> {
     vec![
@@ -336,7 +353,26 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(torque_sensor_offset::TorqueSensorOffset::default()),
         Arc::new(channel_delay::ChannelDelay::default()),
         Arc::new(current_saturation::CurrentSaturation::default()),
+        Arc::new(contact_coulomb::ContactCoulomb::default()),
+        Arc::new(contact_viscous::ContactViscous::default()),
+        Arc::new(contact_stribeck::ContactStribeck::default()),
+        Arc::new(contact_compliance::ContactCompliance::default()),
+        Arc::new(contact_spot::ContactSpot::default()),
+        Arc::new(contact_wear::ContactWear::default()),
     ]
+}
+
+/// The effects of the catalogue that are about `subject`.
+#[must_use]
+pub fn of(subject: Subject) -> Vec<EffectHandle> {
+    let mut effects = all();
+    effects.retain(|effect| effect.description().of == subject);
+    effects
+}
+
+/// Whether the effect `id` is Coulomb friction that grows with the load.
+pub(crate) fn is_load_coulomb(id: &str) -> bool {
+    ["load_coulomb", "contact_coulomb"].contains(&id)
 }
 
 /// The effect with this id.

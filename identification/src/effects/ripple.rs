@@ -32,7 +32,9 @@ impl Effect for Ripple {
             crate::data::JointType::Revolute => 1.0,
             // Per metre of travel: the gear ratio is motor turns a screw turn,
             // whose lead is not known; only the free search applies.
-            crate::data::JointType::Prismatic => return Vec::new(),
+            crate::data::JointType::Prismatic | crate::data::JointType::Contact => {
+                return Vec::new();
+            }
         };
         facts.gear_ratio.map_or_else(Vec::new, |ratio| {
             [1.0, 2.0, 4.0]

@@ -7,16 +7,29 @@ mod grammar;
 
 use std::collections::BTreeMap;
 
-use crate::data::CustomEffect;
+use crate::data::{CustomEffect, Subject};
 use crate::effects::{
     Effect, EffectDescription, Facts, MOST_COLUMNS, Memory, Point, Quantity, Unit,
 };
 use crate::error::ExpressionError;
+use crate::proposal::Proposal;
 use crate::signals::Signals;
 use grammar::Formula;
 
-/// Names of the signals that every recording may have.
-const SIGNALS: [&str; 7] = ["q", "qd", "qdd", "tau", "tau_m", "T", "t"];
+/// Names of the signals that every recording may have: of a joint …
+const OF_JOINT: [&str; 7] = ["q", "qd", "qdd", "tau", "tau_m", "T", "t"];
+/// … and of a contact, in the same order.
+const OF_CONTACT: [&str; 7] = ["r", "rd", "rdd", "F_N", "F_T", "T", "t"];
+
+/// Names that mean a signal in expressions about `subject`.
+#[must_use]
+pub const fn signal_names(subject: Subject) -> [&'static str; 7] {
+    match subject {
+        Subject::Joint => OF_JOINT,
+        Subject::Contact => OF_CONTACT,
+    }
+}
+
 const SECONDS_PER_DAY: f64 = 86_400.0;
 
 /// Where the value of a variable of the formula comes from.
@@ -63,7 +76,7 @@ impl Compiled {
             .map(|s| s.extra.keys().cloned().collect())
             .unwrap_or_default();
         let mut compiled = Self {
-            description: describe(custom),
+            description: describe(custom, facts.joint.subject()),
             sources: Vec::new(),
             extra: Vec::new(),
             bounds: Vec::new(),
@@ -109,9 +122,10 @@ impl Compiled {
             self.description.shape.push(quantity(name));
             return Ok(Source::Shape(self.bounds.len() - 1));
         }
-        if let Some(at) = SIGNALS.iter().position(|s| *s == name) {
+        let signals = signal_names(facts.joint.subject());
+        if let Some(at) = signals.iter().position(|s| *s == name) {
             if name == "T" && !facts.temperature {
-                let known: Vec<&str> = SIGNALS
+                let known: Vec<&str> = signals
                     .iter()
                     .copied()
                     .filter(|s| *s != "T")
@@ -301,16 +315,21 @@ fn quantity(name: &str) -> Quantity {
     }
 }
 
-fn describe(custom: &CustomEffect) -> EffectDescription {
+fn describe(custom: &CustomEffect, of: Subject) -> EffectDescription {
+    let (force, shown_by) = match of {
+        Subject::Joint => ("τ_F", Proposal::LoadSteps),
+        Subject::Contact => ("F_T", Proposal::ContactForces),
+    };
     EffectDescription {
         id: custom.name.clone(),
-        equation: format!("τ_F = {}", custom.expression),
+        of,
+        equation: format!("{force} = {}", custom.expression),
         source: "the user's own".to_owned(),
         coefficients: Vec::new(),
         shape: Vec::new(),
         shows_as: "as the expression says".to_owned(),
         excited_by: "motion over which the expression varies".to_owned(),
-        shown_by: crate::proposal::Proposal::LoadSteps,
+        shown_by,
         taken_for: Vec::new(),
     }
 }

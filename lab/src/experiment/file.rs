@@ -15,8 +15,8 @@ pub(super) struct File {
     #[serde(default)]
     pub(super) unloaded: Paths,
     pub(super) filter: Option<ferntast_identification::StatedFilter>,
-    #[serde(default)]
-    pub(super) joint: Joint,
+    pub(super) joint: Option<Joint>,
+    pub(super) contact: Option<Contact>,
     pub(super) signals: SignalsTable,
     pub(super) model: Model,
     pub(super) lineage: Option<Lineage>,
@@ -45,19 +45,31 @@ impl Paths {
     }
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Joint {
     #[serde(default, rename = "type")]
     pub(super) kind: ferntast_identification::JointType,
 }
 
+/// What is touched.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Contact {
+    /// Its corners in order, in the frame of the tip's position \[m\].
+    pub(super) contour: Option<Vec<[f64; 2]>>,
+}
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SignalsTable {
-    pub(super) position: String,
-    pub(super) motor_torque: String,
+    pub(super) position: Option<String>,
+    /// Of a contact, in place of the position: x and y of the tip.
+    pub(super) tip: Option<[String; 2]>,
+    pub(super) motor_torque: Option<String>,
     pub(super) joint_torque: Option<String>,
+    pub(super) tangential_force: Option<String>,
+    pub(super) normal_force: Option<String>,
     pub(super) temperature: Option<String>,
     pub(super) time: Option<String>,
     #[serde(default)]
@@ -67,7 +79,7 @@ pub(super) struct SignalsTable {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Model {
-    pub(super) inertia: Inertia,
+    pub(super) inertia: Option<Inertia>,
     pub(super) gear_ratio: Option<f64>,
     pub(super) effects: Vec<Effect>,
 }

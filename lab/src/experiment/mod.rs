@@ -22,11 +22,31 @@
 //! effects = ["coulomb", { name = "cogging", expression = "a*sin(k*q)", k = [5.0, 7.0] }]
 //! ```
 //!
+//! A contact in place of a joint, equation (6) in place of (2):
+//!
+//! ```toml
+//! recording = "edge"
+//! [contact]                     # m, N
+//! contour = [[0.2, -0.03], [0.4, -0.03]]      # optional, for `tip`: corners in order [m]
+//! [signals]
+//! tangential_force = "/follower/contact_cf.wrench.force.x.@negative" # N, opposes motion to larger places
+//! normal_force = "/follower/contact_cf.wrench.force.z"               # N, pushes the tip out
+//! position = "/follower/measured_cp.pose.position.x"                 # place along the contour [m]
+//! # tip = ["/follower/measured_cp.pose.position.x", "/follower/measured_cp.pose.position.y"]
+//! temperature = "/temperature.temperature"    # degC, optional; time and extra as of a joint
+//! [model]
+//! effects = ["contact_coulomb", { name = "film", expression = "c*F_N*rd" }]
+//! ```
+//!
+//! `position` goes along a straight contour as it is; `tip` is laid on the
+//! `contour`. [`contact`](self::contact) has the rest.
+//!
 //! Relative paths count from the file's folder. `${FERNTAST_DATA}` at the
 //! beginning of a path stands for the folder of shared recordings: the
 //! environment variable of that name, else `../shared/data` seen from the
 //! working folder ([`data_folder`]).
 
+mod contact;
 mod error;
 mod file;
 mod lineage;
@@ -40,8 +60,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, StatedFilter, Term};
+use ferntast_identification::{
+    CustomEffect, Inertia, JointType, ModelSpec, StatedFilter, Term, expression::signal_names,
+};
 
+pub use contact::Contour;
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
 pub use own::RECORD;
@@ -49,9 +72,6 @@ pub use write::{AddedEffect, write_child};
 
 /// What stands for the folder of shared recordings in a path.
 pub const DATA_VARIABLE: &str = "${FERNTAST_DATA}";
-
-/// Names that mean something in expressions already.
-const TAKEN: [&str; 7] = ["q", "qd", "qdd", "tau", "tau_m", "T", "t"];
 
 /// An experiment.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,8 +88,10 @@ pub struct Experiment {
     pub unloaded: Vec<PathBuf>,
     /// Filters stated in the file.
     pub filter: Option<StatedFilter>,
-    /// Kind of joint.
+    /// Kind of joint, or a contact.
     pub joint: JointType,
+    /// Of a contact: what the tip is laid on, where it is not a place already.
+    pub contour: Option<Contour>,
     /// Where the signals are.
     pub signals: Signals,
     /// The model that is believed.
@@ -81,10 +103,15 @@ pub struct Experiment {
 /// Where the signals are: message paths, in CSV names of columns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signals {
-    /// q \[rad\].
+    /// q \[rad\]; of a contact the place along the contour \[m\], or x of the
+    /// tip where there is a `tip_y`.
     pub position: String,
-    /// τ_m \[Nm\].
+    /// y of the tip \[m\].
+    pub tip_y: Option<String>,
+    /// τ_m \[Nm\]; of a contact F_T \[N\].
     pub motor_torque: String,
+    /// F_N \[N\] of a contact.
+    pub normal_force: Option<String>,
     /// τ \[Nm\].
     pub joint_torque: Option<String>,
     /// \[degC\].
@@ -172,6 +199,21 @@ impl Experiment {
                 "the list is empty: name a recording".to_owned(),
             ));
         }
+        let (joint, contour) = match (file.joint, file.contact) {
+            (Some(_), Some(_)) => {
+                let reason = "there is a [joint] too: an experiment is about one of the two";
+                return Err(refuse("contact", reason.to_owned()));
+            }
+            (Some(joint), None) if joint.kind.is_contact() => {
+                let reason = "a contact has a table of its own: write [contact] instead of [joint]";
+                return Err(refuse("joint.type", reason.to_owned()));
+            }
+            (joint, None) => (joint.map(|joint| joint.kind).unwrap_or_default(), None),
+            (None, Some(table)) => {
+                let contour = contact::contour(table.contour, file.signals.tip.is_some(), &refuse)?;
+                (JointType::Contact, contour)
+            }
+        };
         let title = path.file_name().unwrap_or(path.as_os_str());
         Ok(Experiment {
             path: Some(path.to_owned()),
@@ -180,9 +222,10 @@ impl Experiment {
             held_out: resolve(file.held_out),
             unloaded: resolve(file.unloaded),
             filter: filter(file.filter, &refuse)?,
-            joint: file.joint.kind,
-            signals: signals(file.signals, &refuse)?,
-            model: model(file.model, &refuse)?,
+            joint,
+            contour,
+            signals: signals(file.signals, joint, &refuse)?,
+            model: model(file.model, joint, &refuse)?,
             lineage: file.lineage,
         })
     }
@@ -207,14 +250,16 @@ fn filter(
 
 fn signals(
     table: file::SignalsTable,
+    joint: JointType,
     refuse: &impl Fn(&str, String) -> ExperimentError,
 ) -> Result<Signals, ExperimentError> {
+    let taken = signal_names(joint.subject());
     for name in table.extra.keys() {
         let key = format!("signals.extra.{name}");
-        if TAKEN.contains(&name.as_str()) {
+        if taken.contains(&name.as_str()) {
             let reason = format!(
                 "the name is taken; choose another than {}",
-                TAKEN.join(", ")
+                taken.join(", ")
             );
             return Err(refuse(&key, reason));
         }
@@ -222,9 +267,58 @@ fn signals(
             return Err(refuse(&key, NO_NAME.to_owned()));
         }
     }
+    let must = |key: &str, path: Option<String>, what: &str| {
+        path.ok_or_else(|| refuse(&format!("signals.{key}"), format!("it is missing: {what}")))
+    };
+    let contact_only = [
+        ("tip", table.tip.is_some()),
+        ("tangential_force", table.tangential_force.is_some()),
+        ("normal_force", table.normal_force.is_some()),
+    ];
+    let joint_only = [
+        ("motor_torque", table.motor_torque.is_some()),
+        ("joint_torque", table.joint_torque.is_some()),
+    ];
+    let (others, of) = match joint.is_contact() {
+        true => (&joint_only[..], "a joint, but this is a [contact]"),
+        false => (
+            &contact_only[..],
+            "a contact: write [contact] into the file",
+        ),
+    };
+    if let Some((name, _)) = others.iter().find(|(_, given)| *given) {
+        return Err(refuse(
+            &format!("signals.{name}"),
+            format!("it is a signal of {of}"),
+        ));
+    }
+    let (position, tip_y) = match (table.position, table.tip) {
+        (Some(_), Some(_)) => {
+            let reason = "there is a position too: name one of the two".to_owned();
+            return Err(refuse("signals.tip", reason));
+        }
+        (position, None) => (must("position", position, contact::position(joint))?, None),
+        (None, Some([x, y])) => (x, Some(y)),
+    };
+    let (motor_torque, normal_force) = match joint.is_contact() {
+        true => (
+            must(
+                "tangential_force",
+                table.tangential_force,
+                contact::TANGENTIAL,
+            )?,
+            Some(must("normal_force", table.normal_force, contact::NORMAL)?),
+        ),
+        false => (
+            must("motor_torque", table.motor_torque, contact::MOTOR)?,
+            None,
+        ),
+    };
     Ok(Signals {
-        position: table.position,
-        motor_torque: table.motor_torque,
+        position,
+        tip_y,
+        motor_torque,
+        normal_force,
         joint_torque: table.joint_torque,
         temperature: table.temperature,
         time: table.time,
@@ -241,27 +335,18 @@ fn is_name(name: &str) -> bool {
 
 fn model(
     model: file::Model,
+    joint: JointType,
     refuse: &impl Fn(&str, String) -> ExperimentError,
 ) -> Result<ModelSpec, ExperimentError> {
-    let inertia = match model.inertia {
-        file::Inertia::Given(value) if value.is_finite() && (0.0..=1e6).contains(&value) => {
-            Inertia::Given(value)
-        }
-        file::Inertia::Given(value) => {
-            let reason =
-                format!("{value} is outside 0 … 1000000 kg m²; set it within these bounds");
-            return Err(refuse("model.inertia", reason));
-        }
-        file::Inertia::Fit(file::FitTable { fit: true }) => Inertia::Fit,
-        file::Inertia::Fit(_) => {
-            let reason = "give a number, or { fit = true } to have it fitted".to_owned();
-            return Err(refuse("model.inertia", reason));
-        }
-    };
+    let inertia = inertia(model.inertia, joint, refuse)?;
     if let Some(ratio) = model.gear_ratio
         && !(ratio.is_finite() && (1e-3..=1e6).contains(&ratio))
     {
         let reason = format!("{ratio} is outside 0.001 … 1000000; set it within these bounds");
+        return Err(refuse("model.gear_ratio", reason));
+    }
+    if model.gear_ratio.is_some() && joint.is_contact() {
+        let reason = "a contact has no gear: leave it out".to_owned();
         return Err(refuse("model.gear_ratio", reason));
     }
     let mut effects: Vec<Term> = Vec::new();
@@ -281,6 +366,29 @@ fn model(
         gear_ratio: model.gear_ratio,
         effects,
     })
+}
+
+fn inertia(
+    inertia: Option<file::Inertia>,
+    joint: JointType,
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<Inertia, ExperimentError> {
+    let reason = match (inertia, joint.is_contact()) {
+        (None, true) => return Ok(Inertia::Given(0.0)),
+        (Some(_), true) => "a contact has no inertia: leave it out".to_owned(),
+        (None, false) => "it is missing: give a number, or { fit = true }".to_owned(),
+        (Some(file::Inertia::Given(value)), false) if (0.0..=1e6).contains(&value) => {
+            return Ok(Inertia::Given(value));
+        }
+        (Some(file::Inertia::Given(value)), false) => {
+            format!("{value} is outside 0 … 1000000 kg m²; set it within these bounds")
+        }
+        (Some(file::Inertia::Fit(file::FitTable { fit: true })), false) => return Ok(Inertia::Fit),
+        (Some(file::Inertia::Fit(_)), false) => {
+            "give a number, or { fit = true } to have it fitted".to_owned()
+        }
+    };
+    Err(refuse("model.inertia", reason))
 }
 
 fn checked(

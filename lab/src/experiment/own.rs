@@ -60,6 +60,7 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
             unloaded: Vec::new(),
             filter: None,
             joint: JointType::Revolute,
+            contour: None,
             signals: Signals {
                 position: format!("{measured}.position[{index}]"),
                 motor_torque: format!("{motor}.effort[{index}]"),

@@ -45,7 +45,7 @@ fn what_is_wrong_is_named() {
         (
             "motor_torque = \"/m.effort[0]\"",
             "",
-            "missing field `motor_torque`",
+            "signals.motor_torque: it is missing",
         ),
         ("position =", "positon =", "unknown field `positon`"),
         (
@@ -207,4 +207,88 @@ fn what_must_not_be_written_is_refused() {
     fs::write(at("e.toml"), text + circle).unwrap();
     let error = history(&at("e.toml"), folder.path()).unwrap_err();
     assert!(error.to_string().contains("lead back to it"));
+}
+
+const CONTACT: &str = r#"
+recording = "edge"
+[contact]
+contour = [[0.2, -0.03], [0.4, -0.03]]
+[signals]
+tangential_force = "/follower/contact_cf.wrench.force.x.@negative"
+normal_force = "/follower/contact_cf.wrench.force.z"
+tip = ["/follower/measured_cp.pose.position.x", "/follower/measured_cp.pose.position.y"]
+[model]
+effects = ["contact_coulomb", { name = "film", expression = "a*F_N*rd" }]
+"#;
+
+#[test]
+fn a_contact_has_forces_and_a_place_in_place_of_torques() {
+    let experiment = parse(CONTACT).unwrap();
+    assert_eq!(experiment.joint, JointType::Contact);
+    assert_eq!(experiment.model.inertia, Inertia::Given(0.0));
+    let contour = experiment.contour.unwrap();
+    assert!((contour.place(0.25, -0.0301) - 0.05).abs() < 1e-12);
+    let signals = experiment.signals;
+    assert!(signals.motor_torque.ends_with("force.x.@negative"));
+    assert!(signals.normal_force.unwrap().ends_with("force.z"));
+    assert!(signals.position.ends_with(".x") && signals.tip_y.unwrap().ends_with(".y"));
+
+    let place = CONTACT
+        .replace("contour = [[0.2, -0.03], [0.4, -0.03]]", "")
+        .replace("tip = [\"/follower/measured_cp.pose.position.x\", \"/follower/measured_cp.pose.position.y\"]", "position = \"r\"");
+    assert_eq!(parse(&place).unwrap().signals.position, "r");
+}
+
+#[test]
+fn what_is_wrong_with_a_contact_is_named() {
+    let normal = "normal_force = \"/follower/contact_cf.wrench.force.z\"";
+    for (from, to, words) in [
+        (normal, "", "signals.normal_force: it is missing"),
+        (
+            "tangential_force",
+            "motor_torque",
+            "signals.motor_torque: it is a signal of a joint",
+        ),
+        (
+            "[contact]\ncontour = [[0.2, -0.03], [0.4, -0.03]]",
+            "",
+            "signals.tip: it is a signal of a contact",
+        ),
+        (
+            "[contact]\n",
+            "[joint]\ntype = \"contact\"\n[contact]\n",
+            "there is a [joint] too",
+        ),
+        (
+            "contour = [[0.2, -0.03], [0.4, -0.03]]",
+            "",
+            "contact.contour: it is missing",
+        ),
+        (
+            "[0.4, -0.03]]",
+            "[0.2, -0.03]]",
+            "contact.contour: give two corners",
+        ),
+        (
+            "[model]",
+            "[model]\ninertia = 1.0",
+            "model.inertia: a contact has no inertia",
+        ),
+        (
+            "[model]",
+            "[model]\ngear_ratio = 160",
+            "model.gear_ratio: a contact has no gear",
+        ),
+        (
+            "[model]",
+            "[signals.extra]\nF_N = \"/x.y\"\n[model]",
+            "the name is taken",
+        ),
+    ] {
+        let told = parse(&CONTACT.replace(from, to)).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}\n{words}");
+    }
+    let kind = "recording = \"e\"\n[joint]\ntype = \"contact\"\n[signals]\nposition = \"r\"\n[model]\neffects = []\n";
+    let told = parse(kind).unwrap_err().to_string();
+    assert!(told.contains("write [contact]"), "{told}");
 }

@@ -26,6 +26,10 @@ use crate::{csv, experiment::Experiment};
 pub(crate) use bag::numbers_of;
 pub use error::LoadError;
 
+/// The tip's coordinates as signals.
+const TIP_X: &str = "tip[0]";
+const TIP_Y: &str = "tip[1]";
+
 /// Times above this are dates: 1973 \[ns\] since 1970.
 const DATES: i64 = 100_000_000_000_000_000;
 
@@ -151,13 +155,20 @@ fn same(a: &Path, b: &Path) -> bool {
 /// The signals in the order of a piece's channels.
 fn wanted(experiment: &Experiment) -> Vec<Wanted> {
     let signals = &experiment.signals;
+    let position = match signals.tip_y {
+        Some(_) => TIP_X,
+        None => "position",
+    };
+    let force = experiment.joint.signal("motor_torque");
     let optional = [
+        (TIP_Y, &signals.tip_y),
         ("joint_torque", &signals.joint_torque),
+        ("normal_force", &signals.normal_force),
         ("temperature", &signals.temperature),
     ];
     let mut wanted = vec![
-        ("position".to_owned(), signals.position.clone()),
-        ("motor_torque".to_owned(), signals.motor_torque.clone()),
+        (position.to_owned(), signals.position.clone()),
+        (force.to_owned(), signals.motor_torque.clone()),
     ];
     for (name, path) in optional {
         wanted.extend(path.iter().map(|path| (name.to_owned(), path.clone())));
@@ -223,16 +234,24 @@ fn read_file(
             period: piece.period,
             ..Session::default()
         };
+        let mut across = Vec::new();
         for (signal, values) in wanted.iter().zip(piece.channels) {
             match signal.signal.as_str() {
-                "position" => session.position = values,
-                "motor_torque" => session.motor_torque = values,
+                "position" | TIP_X => session.position = values,
+                TIP_Y => across = values,
+                "motor_torque" | "tangential_force" => session.motor_torque = values,
+                "normal_force" => session.normal_force = Some(values),
                 "joint_torque" => session.joint_torque = Some(values),
                 "temperature" => session.temperature = Some(values),
                 other => {
                     let name = other.strip_prefix("extra.").unwrap_or(other);
                     session.extra.insert(name.to_owned(), values);
                 }
+            }
+        }
+        if let Some(contour) = &experiment.contour {
+            for (place, y) in session.position.iter_mut().zip(across) {
+                *place = contour.place(*place, y);
             }
         }
         clock.end = clock.end.max(start + session.period * session.len() as f64);
@@ -290,9 +309,13 @@ fn check_constant(
     notes: &mut Vec<String>,
 ) -> Result<(), LoadError> {
     type Channel = fn(&Session) -> Option<&Vec<f64>>;
-    let channels: [(&str, bool, Channel); 4] = [
+    let force = experiment.joint.signal("motor_torque");
+    let channels: [(&str, bool, Channel); 5] = [
         ("position", true, |session| Some(&session.position)),
-        ("motor_torque", true, |session| Some(&session.motor_torque)),
+        (force, true, |session| Some(&session.motor_torque)),
+        ("normal_force", false, |session| {
+            session.normal_force.as_ref()
+        }),
         ("joint_torque", true, |session| {
             session.joint_torque.as_ref()
         }),

@@ -157,14 +157,17 @@ fn figures(comparison: &Comparison, unit: &str) -> Vec<Figure> {
             "error on data held out",
             format!("{} {unit}", significant(comparison.rms.held_out)),
             &format!(
-                "{:.2} % of the torque",
+                "{:.2} % of what is measured",
                 comparison.relative_error_held_out * 100.0
             ),
         ),
         figure(
             "error on data fitted",
             format!("{} {unit}", significant(comparison.rms.train)),
-            &format!("{:.2} % of the torque", comparison.relative_error * 100.0),
+            &format!(
+                "{:.2} % of what is measured",
+                comparison.relative_error * 100.0
+            ),
         ),
     ];
     if let Some(noise) = comparison.noise.repeats {

@@ -8,7 +8,7 @@ mod start;
 
 use std::path::Path;
 
-use ferntast_identification::{Comparison, Dataset, Diagnosis, JointType, compare, diagnose};
+use ferntast_identification::{Comparison, Dataset, Diagnosis, compare, diagnose};
 
 use crate::{
     experiment::{self, Experiment},
@@ -35,10 +35,7 @@ impl Opened {
     /// Unit of torques or forces.
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
-        match self.experiment.joint {
-            JointType::Revolute => "Nm",
-            JointType::Prismatic => "N",
-        }
+        self.experiment.joint.force_unit()
     }
 
     /// Reads the recordings of `experiment`.

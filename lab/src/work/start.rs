@@ -22,9 +22,10 @@ pub struct Beginning {
     #[serde(default)]
     pub joint: JointType,
     /// Signals by name: position, motor_torque, and what else there is of
-    /// joint_torque, temperature, time; anything else is an extra signal.
+    /// joint_torque, temperature, time; of a contact position, tangential_force,
+    /// normal_force; anything else is an extra signal.
     pub signals: std::collections::BTreeMap<String, String>,
-    /// J.
+    /// J; a contact has none.
     pub inertia: Inertia,
     /// Motor turns in one turn of the joint \[1\].
     #[serde(default)]
@@ -34,9 +35,11 @@ pub struct Beginning {
 }
 
 /// Signals that are not extra ones.
-const NAMED: [&str; 5] = [
+const NAMED: [&str; 7] = [
     "position",
     "motor_torque",
+    "tangential_force",
+    "normal_force",
     "joint_torque",
     "temperature",
     "time",
@@ -71,14 +74,20 @@ fn document(beginning: &Beginning) -> DocumentMut {
         document.insert("held_out", list(&beginning.held_out));
     }
     let mut joint = Table::new();
-    joint.insert(
-        "type",
-        value(match beginning.joint {
-            JointType::Revolute => "revolute",
-            JointType::Prismatic => "prismatic",
-        }),
-    );
-    document.insert("joint", Item::Table(joint));
+    let kind = match beginning.joint {
+        JointType::Revolute => Some("revolute"),
+        JointType::Prismatic => Some("prismatic"),
+        JointType::Contact => None,
+    };
+    match kind {
+        Some(kind) => {
+            joint.insert("type", value(kind));
+            document.insert("joint", Item::Table(joint));
+        }
+        None => {
+            document.insert("contact", Item::Table(joint));
+        }
+    }
     let mut signals = Table::new();
     let mut extra = Table::new();
     let given = beginning
@@ -97,21 +106,24 @@ fn document(beginning: &Beginning) -> DocumentMut {
     }
     document.insert("signals", Item::Table(signals));
     let mut model = Table::new();
-    model.insert(
-        "inertia",
-        match beginning.inertia {
-            Inertia::Given(inertia) => value(inertia),
-            Inertia::Fit => {
-                let mut fit = InlineTable::new();
-                fit.insert("fit", true.into());
-                value(fit)
-            }
-        },
-    );
+    if !beginning.joint.is_contact() {
+        model.insert("inertia", inertia(beginning.inertia));
+    }
     if let Some(ratio) = beginning.gear_ratio {
         model.insert("gear_ratio", value(ratio));
     }
     model.insert("effects", list(&beginning.effects));
     document.insert("model", Item::Table(model));
     document
+}
+
+fn inertia(inertia: Inertia) -> Item {
+    match inertia {
+        Inertia::Given(inertia) => value(inertia),
+        Inertia::Fit => {
+            let mut fit = InlineTable::new();
+            fit.insert("fit", true.into());
+            value(fit)
+        }
+    }
 }

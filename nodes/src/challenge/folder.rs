@@ -6,19 +6,14 @@ use std::{
 };
 
 use ferntast_bus::{
-    Bus, CreateError, McapBus, PublishError,
+    Bus, McapBus,
     mcap::{CreateBagError, FinishBagError},
 };
-use ferntast_msgs::{
-    Time,
-    sample::{JointFields, JointSample, TemperatureSample},
-    topics,
-};
-use ferntast_sim::joint_bench::{Bench, BenchConfig, BenchError, BenchRecording};
+use ferntast_sim::bench::{BenchConfig, BenchError};
 use serde::{Deserialize, Serialize};
 
-/// Date of the first session: when ROKVISS went into operation.
-const FIRST_SESSION: i64 = 1_107_216_000;
+use super::{TestBench, WriteError};
+
 const SEALED: &str = "answer.sealed";
 
 /// What was hidden.
@@ -34,7 +29,7 @@ pub struct Answer {
     pub seed: u64,
     /// True parameters: name, value, unit.
     pub truth: Vec<(String, f64, String)>,
-    /// Error that the true model leaves with nominal parameters \[Nm\].
+    /// Error that the true model leaves with nominal parameters \[Nm, of a contact N\].
     pub reference_rms: f64,
 }
 
@@ -58,12 +53,9 @@ pub enum ChallengeError {
     /// The recording cannot be made.
     #[error(transparent)]
     Bag(#[from] CreateBagError),
-    /// A topic cannot be made in it.
+    /// The recording cannot be written.
     #[error(transparent)]
-    Topic(#[from] CreateError),
-    /// A message cannot be written.
-    #[error(transparent)]
-    Publish(#[from] PublishError),
+    Write(#[from] WriteError),
     /// The recording cannot be closed.
     #[error(transparent)]
     Finish(#[from] FinishBagError),
@@ -77,28 +69,32 @@ pub enum ChallengeError {
 /// # Errors
 ///
 /// [`ChallengeError`].
-pub fn create(folder: &Path, config: &BenchConfig) -> Result<(), ChallengeError> {
+pub fn create<H: TestBench>(
+    folder: &Path,
+    config: &BenchConfig<H, H::Motion>,
+) -> Result<(), ChallengeError> {
     if folder.exists() {
         return Err(ChallengeError::Exists(folder.to_owned()));
     }
-    let recording = Bench::new(config)?.record()?;
+    let recording = H::record(&H::bench(config)?)?;
     let at = |name: &str| folder.join(name);
     let file = |path: PathBuf| move |source| ChallengeError::File { path, source };
     fs::create_dir_all(folder).map_err(file(folder.to_owned()))?;
-    write_recording(&at("recording"), &recording)?;
-    fs::write(at("experiment.toml"), experiment(&recording))
+    let bag = McapBus::create(&at("recording"))?;
+    H::publish(&recording, &Bus::Mcap(bag.clone()))?;
+    bag.finish()?;
+    fs::write(at("experiment.toml"), H::experiment(&recording))
         .map_err(file(at("experiment.toml")))?;
     let answer = Answer {
         hidden: ids(&config.hidden, |own| vec![own.id()]),
         accepted: ids(&config.hidden, |own| own.accepted().to_vec()),
         strength: config.strength,
         seed: config.seed,
-        truth: recording
-            .truth
+        truth: H::truth(&recording)
             .iter()
             .map(|own| (own.name.to_owned(), own.value, own.unit.to_owned()))
             .collect(),
-        reference_rms: recording.reference_rms(),
+        reference_rms: H::reference_rms(&recording),
     };
     let text = serde_json::to_string(&answer)
         .map_err(|error| file(at(SEALED))(io::Error::other(error)))?;
@@ -142,64 +138,6 @@ fn unseal(sealed: &str) -> Option<String> {
         .collect::<Option<_>>()?;
     bytes.reverse();
     String::from_utf8(bytes).ok()
-}
-
-fn write_recording(folder: &Path, recording: &BenchRecording) -> Result<(), ChallengeError> {
-    let bag = McapBus::create(folder)?;
-    let bus = Bus::Mcap(bag.clone());
-    let mut measured = bus.publisher(topics::FOLLOWER_MEASURED_JS)?;
-    let mut motor = bus.publisher(topics::FOLLOWER_MOTOR_JS)?;
-    let mut temperature = bus.publisher(topics::FOLLOWER_JOINT_1_TEMPERATURE)?;
-    for session in &recording.sessions {
-        for (index, time) in session.time.iter().enumerate() {
-            let stamp = Time::from_nanos(FIRST_SESSION * 1_000_000_000)
-                .plus_seconds(session.start)
-                .plus_seconds(*time);
-            // The bench has one joint; the other stands still.
-            let sample = JointSample {
-                position: [session.position[index], 0.0],
-                effort: [session.joint_torque[index], 0.0],
-                fields: JointFields::POSITION.with(JointFields::EFFORT),
-                ..JointSample::zero(stamp)
-            };
-            measured.publish(stamp, &sample)?;
-            let torque = [session.motor_torque[index], 0.0];
-            motor.publish(stamp, &JointSample::efforts(stamp, torque))?;
-            let warm = TemperatureSample::new(stamp, session.temperature[index]);
-            temperature.publish(stamp, &warm)?;
-        }
-    }
-    bag.finish()?;
-    Ok(())
-}
-
-fn experiment(recording: &BenchRecording) -> String {
-    let believed = &recording.believed;
-    let effects: Vec<String> = believed
-        .effects
-        .iter()
-        .map(|id| format!("\"{id}\""))
-        .collect();
-    format!(
-        "# One joint on its bench, {} sessions. What is missing from this model?\n\
-         recording = \"recording\"\n\n\
-         [signals]\n\
-         position = \"{measured}.position[0]\"     # rad\n\
-         joint_torque = \"{measured}.effort[0]\"   # Nm\n\
-         motor_torque = \"{}.effort[0]\"      # Nm\n\
-         temperature = \"{}.temperature\" # degC\n\n\
-         [model]\n\
-         inertia = {:.6} # kg m2\n\
-         gear_ratio = {}\n\
-         effects = [{}]\n",
-        recording.sessions.len(),
-        topics::FOLLOWER_MOTOR_JS.name,
-        topics::FOLLOWER_JOINT_1_TEMPERATURE.name,
-        believed.inertia,
-        believed.gear_ratio,
-        effects.join(", "),
-        measured = topics::FOLLOWER_MEASURED_JS.name,
-    )
 }
 
 #[cfg(test)]

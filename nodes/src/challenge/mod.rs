@@ -1,9 +1,10 @@
-//! Recordings with a hidden effect: one to learn on, many as a blind test.
+//! Recordings with a hidden effect, of a joint or of a contact: one to learn on,
+//! many as a blind test.
 
 mod bench;
 mod blind;
 mod folder;
 
-pub use bench::{dataset, hidden_by, model};
+pub use bench::{TestBench, WriteError, hidden_by};
 pub use blind::{BlindTest, Count, FollowedUp, Miss, Plan, run as blind_test};
 pub use folder::{Answer, ChallengeError, create, reveal};

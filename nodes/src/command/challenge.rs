@@ -1,21 +1,28 @@
 //! `ferntast challenge`.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use clap::Subcommand;
-use ferntast_sim::joint_bench::{BenchConfig, BenchError, HiddenEffect};
+use ferntast_sim::{
+    bench::{BenchConfig, BenchError},
+    contact_bench, joint_bench,
+};
 use indicatif::ProgressBar;
 use serde_json::json;
 
 use super::{Failure, output::print_json};
-use crate::challenge::{self, BlindTest, Count, Plan};
+use crate::challenge::{self, BlindTest, Count, Plan, TestBench};
 
 /// Recordings with a hidden effect: to learn on, and to test the lab with.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Learn on one:\n  \
     ferntast challenge new recordings/riddle\n  \
     ferntast lab diagnose recordings/riddle/experiment.toml\n  \
-    ferntast challenge reveal recordings/riddle stribeck")]
+    ferntast challenge reveal recordings/riddle stribeck\n\n\
+    The same of a tip on an edge: ferntast challenge new recordings/riddle --contact")]
 pub struct Arguments {
     #[command(subcommand)]
     action: Action,
@@ -28,7 +35,11 @@ enum Action {
         /// Folder, which must not exist yet.
         folder: PathBuf,
 
-        /// Decides joint, sessions, noise, and what is hidden.
+        /// A tip that slides along an edge instead of a joint.
+        #[arg(long)]
+        contact: bool,
+
+        /// Decides joint or edge, sessions, noise, and what is hidden.
         #[arg(long, default_value_t = 1)]
         seed: u64,
 
@@ -40,9 +51,9 @@ enum Action {
         #[arg(long, value_name = "EFFECT")]
         hide: Vec<String>,
 
-        /// Sessions, each at another date and temperature.
-        #[arg(long, default_value_t = 6)]
-        sessions: usize,
+        /// Sessions, each at another date and temperature [default: 6, of a contact 8].
+        #[arg(long)]
+        sessions: Option<usize>,
     },
     /// Open the sealed answer.
     Reveal {
@@ -53,6 +64,10 @@ enum Action {
     },
     /// Put many recordings to the diagnosis and print how it did, with the misses.
     Blind {
+        /// Contacts instead of joints.
+        #[arg(long)]
+        contact: bool,
+
         /// Recordings of each effect at each strength.
         #[arg(long, default_value_t = 3)]
         repeats: usize,
@@ -80,19 +95,22 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     match arguments.action {
         Action::New {
             folder,
+            contact,
             seed,
             strength,
             hide,
             sessions,
         } => {
-            let config = BenchConfig {
+            let asked = Asked {
                 seed,
-                hidden: hidden(seed, &hide).map_err(Failure::refused)?,
                 strength,
+                hide,
                 sessions,
-                ..BenchConfig::default()
             };
-            challenge::create(&folder, &config).map_err(Failure::refused)?;
+            match contact {
+                true => create::<contact_bench::HiddenEffect>(&folder, &asked)?,
+                false => create::<joint_bench::HiddenEffect>(&folder, &asked)?,
+            }
             let experiment = folder.join("experiment.toml");
             if json {
                 print_json(&json!({"experiment": experiment}))?;
@@ -103,6 +121,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         }
         Action::Reveal { folder, answer } => reveal(&folder, &answer, json),
         Action::Blind {
+            contact,
             repeats,
             strengths,
             nothing,
@@ -116,12 +135,31 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 nothing,
                 two,
             };
-            blind(&plan, json)
+            blind(&plan, contact, json)
         }
     }
 }
 
-fn hidden(seed: u64, hide: &[String]) -> Result<Vec<HiddenEffect>, BenchError> {
+/// What a challenge is asked to be like.
+struct Asked {
+    seed: u64,
+    strength: f64,
+    hide: Vec<String>,
+    sessions: Option<usize>,
+}
+
+fn create<H: TestBench>(folder: &Path, asked: &Asked) -> Result<(), Failure> {
+    let config = BenchConfig {
+        seed: asked.seed,
+        hidden: hidden::<H>(asked.seed, &asked.hide).map_err(Failure::refused)?,
+        strength: asked.strength,
+        sessions: asked.sessions.unwrap_or(H::SESSIONS),
+        ..BenchConfig::default()
+    };
+    challenge::create(folder, &config).map_err(Failure::refused)
+}
+
+fn hidden<H: TestBench>(seed: u64, hide: &[String]) -> Result<Vec<H>, BenchError> {
     match hide {
         [] => Ok(challenge::hidden_by(seed).into_iter().collect()),
         [none] if none == "none" => Ok(Vec::new()),
@@ -129,7 +167,7 @@ fn hidden(seed: u64, hide: &[String]) -> Result<Vec<HiddenEffect>, BenchError> {
     }
 }
 
-fn reveal(folder: &std::path::Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {
+fn reveal(folder: &Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {
     let answer = challenge::reveal(folder).map_err(Failure::refused)?;
     let outside = !answer.hidden.is_empty() && answer.accepted.is_empty();
     let right = match guess {
@@ -156,12 +194,16 @@ fn reveal(folder: &std::path::Path, guess: &str, json: bool) -> Result<ExitCode,
     Ok(ExitCode::SUCCESS)
 }
 
-fn blind(plan: &Plan, json: bool) -> Result<ExitCode, Failure> {
+fn blind(plan: &Plan, contact: bool, json: bool) -> Result<ExitCode, Failure> {
     let bar = ProgressBar::new(0);
-    let test = challenge::blind_test(plan, &|done, all| {
+    let progress = |done: usize, all: usize| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
-    });
+    };
+    let test = match contact {
+        true => challenge::blind_test::<contact_bench::HiddenEffect>(plan, &progress),
+        false => challenge::blind_test::<joint_bench::HiddenEffect>(plan, &progress),
+    };
     bar.finish_and_clear();
     let test = test.map_err(Failure::refused)?;
     if json {

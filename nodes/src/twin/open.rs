@@ -33,6 +33,14 @@ pub enum TwinOpenError {
     /// Its recordings cannot be used.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// It is about a contact.
+    #[error(
+        "{path}: it is about a contact, and a twin follows a joint; hold a contact against its recording by `ferntast lab compare`"
+    )]
+    Contact {
+        /// The experiment file.
+        path: PathBuf,
+    },
     /// A signal is not one that a session has.
     #[error(
         "{path}: signals.{signal} is {found:?}; a twin follows one joint of a session, so it has to be {expected}"
@@ -75,6 +83,10 @@ pub enum TwinOpenError {
 /// See [`TwinOpenError`].
 pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
     let experiment = Experiment::read(path, &experiment::data_folder())?;
+    if experiment.joint.is_contact() {
+        let path = path.to_owned();
+        return Err(TwinOpenError::Contact { path });
+    }
     let joint = joint_of(&experiment.signals, path)?;
     let loaded = recording::load(&experiment)?;
     let twin = Twin::new(&loaded.dataset, &experiment.model, MEMORY).map_err(|source| {

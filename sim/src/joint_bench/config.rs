@@ -1,156 +1,17 @@
-//! What a recording is to be like.
-
-use thiserror::Error;
+//! What a recording of a joint is to be like.
 
 use super::{HiddenEffect, Motion};
 
-/// What a recording is to be like. The same configuration gives the same bytes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BenchConfig {
-    /// Decides parameters, dates, temperatures, random motion and noise.
-    pub seed: u64,
-    /// Effects in the truth that the believed model lacks; empty: nothing is
-    /// hidden. None twice, at most four.
-    pub hidden: Vec<HiddenEffect>,
-    /// Size of the hidden effects, 0.05 … 2; at 1 the smallest (inertia, load,
-    /// delays) stand out from the filtered noise by about 4 in the standard
-    /// motion, most by 5 to 12, the terms of equation (4) by far more.
-    pub strength: f64,
-    /// Sessions on different dates and at different temperatures, 1 … 32.
-    pub sessions: usize,
-    /// Motion of the sessions; session n moves by `motions[n % motions.len()]`.
-    pub motions: Vec<Motion>,
-    /// Sensor noise, as a factor on its usual size, 0 … 10. At 0 nothing is quantised either.
-    pub noise: f64,
-    /// How much parameters differ between sessions, as a factor on the usual
-    /// 2 % of Coulomb friction and 0.7 % of the rest, 0 … 10.
-    pub scatter: f64,
-}
-
-impl Default for BenchConfig {
-    fn default() -> Self {
-        BenchConfig {
-            seed: 1,
-            hidden: Vec::new(),
-            strength: 1.0,
-            sessions: 6,
-            motions: vec![Motion::Standard],
-            noise: 1.0,
-            scatter: 1.0,
-        }
-    }
-}
-
-/// Why there is no recording.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum BenchError {
-    /// No effect has this id.
-    #[error("effect \"{id}\" cannot be hidden: choose one of {known}")]
-    UnknownEffect {
-        /// What was asked for.
-        id: String,
-        /// What there is, separated by commas.
-        known: String,
-    },
-    /// No motion has this id.
-    #[error("there is no motion \"{id}\": choose one of {known}")]
-    UnknownMotion {
-        /// What was asked for.
-        id: String,
-        /// What there is, separated by commas.
-        known: String,
-    },
-    /// A value is out of bounds.
-    #[error("{key} = {value} is out of bounds: choose {low} to {high}")]
-    OutOfBounds {
-        /// Field of [`BenchConfig`].
-        key: &'static str,
-        /// What was given.
-        value: f64,
-        /// Least allowed.
-        low: f64,
-        /// Most allowed.
-        high: f64,
-    },
-    /// An effect is hidden twice.
-    #[error("\"{effect}\" is hidden twice: name each effect once")]
-    Twice {
-        /// Which.
-        effect: HiddenEffect,
-    },
-    /// No motion is given.
-    #[error("motions is empty: name at least one motion, such as \"standard\"")]
-    NoMotion,
-    /// These effects cannot act together.
-    #[error("\"{first}\" and \"{second}\" overlap: both change {shared}; hide one of them")]
-    Overlap {
-        /// One of the two.
-        first: HiddenEffect,
-        /// The other.
-        second: HiddenEffect,
-        /// What both change.
-        shared: &'static str,
-    },
-    /// The joint ran away.
-    #[error(
-        "the joint ran away in session {session} at {time:.3} s: lower the strength or take another seed"
-    )]
-    RanAway {
-        /// Which session, from 0.
-        session: usize,
-        /// When \[s\].
-        time: f64,
-    },
-}
-
-impl BenchConfig {
-    /// Checks every value.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, or what of the hidden effects does not go together.
-    pub fn validate(&self) -> Result<(), BenchError> {
-        let within = |key, value: f64, low, high| {
-            if (low..=high).contains(&value) {
-                Ok(())
-            } else {
-                Err(BenchError::OutOfBounds {
-                    key,
-                    value,
-                    low,
-                    high,
-                })
-            }
-        };
-        within("strength", self.strength, 0.05, 2.0)?;
-        within("sessions", self.sessions as f64, 1.0, 32.0)?;
-        within("hidden.len()", self.hidden.len() as f64, 0.0, 4.0)?;
-        within("noise", self.noise, 0.0, 10.0)?;
-        within("scatter", self.scatter, 0.0, 10.0)?;
-        if self.motions.is_empty() {
-            return Err(BenchError::NoMotion);
-        }
-        for (index, &first) in self.hidden.iter().enumerate() {
-            for &second in &self.hidden[..index] {
-                if first == second {
-                    return Err(BenchError::Twice { effect: first });
-                }
-                if let Some(shared) = overlap(first, second) {
-                    return Err(BenchError::Overlap {
-                        first: second,
-                        second: first,
-                        shared,
-                    });
-                }
-            }
-        }
-        Ok(())
-    }
-}
+/// What a recording of a joint is to be like.
+///
+/// At strength 1 the smallest effects (inertia, load, delays) stand out from the
+/// filtered noise by about 4 in the standard motion, most by 5 to 12, the terms
+/// of equation (4) by far more. Between sessions Coulomb friction differs by
+/// 2 %, the rest by 0.7 %.
+pub type BenchConfig = crate::bench::BenchConfig<HiddenEffect, Motion>;
 
 /// What both effects change, where they cannot act side by side.
-fn overlap(first: HiddenEffect, second: HiddenEffect) -> Option<&'static str> {
+pub(super) fn overlap(first: HiddenEffect, second: HiddenEffect) -> Option<&'static str> {
     use HiddenEffect::{
         Backlash, CubicViscous, Elasticity, NonlinearViscous, QuadraticViscous, Viscous,
     };

@@ -1,99 +1,78 @@
 //! Names of what a recording can hide, and what the experimenter still believes.
 
-use std::fmt;
-use std::str::FromStr;
-
-use super::config::BenchError;
-
-macro_rules! hidden_effects {
-    ($($(#[$doc:meta])* $variant:ident = $id:literal,)*) => {
-        /// An effect that is in the truth of a recording and not in the model
-        /// that the experimenter believes in.
-        ///
-        /// The first 24 are the joint effects of the catalogue; those whose id
-        /// begins with `unknown_` are in no catalogue.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum HiddenEffect {
-            $($(#[$doc])* $variant,)*
-        }
-
-        impl HiddenEffect {
-            /// All of them, the catalogue's first.
-            pub const ALL: &'static [HiddenEffect] = &[$(HiddenEffect::$variant,)*];
-
-            /// The id in files, on the command line and in JSON.
-            pub const fn id(self) -> &'static str {
-                match self {
-                    $(HiddenEffect::$variant => $id,)*
-                }
-            }
-        }
-    };
-}
+use super::config::overlap;
+use crate::bench::{Hideable, hidden_effects};
 
 hidden_effects! {
-    /// b_0 sign(q̇).
-    Coulomb = "coulomb",
-    /// b_0T |τ| sign(q̇).
-    LoadCoulomb = "load_coulomb",
-    /// b_1 q̇.
-    Viscous = "viscous",
-    /// b_2 q̇|q̇|.
-    QuadraticViscous = "quadratic_viscous",
-    /// b_3 q̇³.
-    CubicViscous = "cubic_viscous",
-    /// b_2 q̇|q̇| + b_3 q̇³: the step from equation (3) to (4).
-    NonlinearViscous = "nonlinear_viscous",
-    /// More Coulomb friction near rest.
-    Stribeck = "stribeck",
-    /// Coulomb friction that differs by direction.
-    AsymmetricCoulomb = "asymmetric_coulomb",
-    /// Coulomb friction that changes with temperature.
-    TemperatureCoulomb = "temperature_coulomb",
-    /// Viscous friction that changes with temperature.
-    TemperatureViscous = "temperature_viscous",
-    /// Coulomb friction that grows with the days.
-    WearDrift = "wear_drift",
-    /// Torque periodic in the wave generator's turn.
-    Ripple = "ripple",
-    /// Bristles that bend before the joint slides.
-    PreslidingHysteresis = "presliding_hysteresis",
-    /// More Coulomb friction at one position.
-    LocalFriction = "local_friction",
-    /// Inertia that the believed model does not have.
-    Inertia = "inertia",
-    /// Weight that the torque sensor does not feel.
-    Gravity = "gravity",
-    /// A cable along the joint that pulls back.
-    CableSpring = "cable_spring",
-    /// Compliance between motor and the measured position.
-    Elasticity = "elasticity",
-    /// Dead zone between motor and gear.
-    Backlash = "backlash",
-    /// Wrong motor constant.
-    MotorConstant = "motor_constant",
-    /// Wrong gain of the torque sensor.
-    TorqueSensorGain = "torque_sensor_gain",
-    /// Wrong zero of the torque sensor.
-    TorqueSensorOffset = "torque_sensor_offset",
-    /// One channel stamped late.
-    ChannelDelay = "channel_delay",
-    /// Motor torque clipped.
-    CurrentSaturation = "current_saturation",
-    /// Outside the catalogue: a pull that turns with temperature and position.
-    UnknownTemperaturePosition = "unknown_temperature_position",
-    /// Outside the catalogue: friction that differs while load builds up or falls.
-    UnknownTorqueRate = "unknown_torque_rate",
-    /// Outside the catalogue: friction that grows while the speed changes.
-    UnknownAcceleration = "unknown_acceleration",
-    /// Outside the catalogue: viscous friction that grows with the square of the load.
-    UnknownVelocityLoad = "unknown_velocity_load",
-    /// Outside the catalogue: a step of torque at one position, whatever the direction.
-    UnknownPositionStep = "unknown_position_step",
-    /// Outside the catalogue: a slow oscillation in time, as from a supply.
-    UnknownOscillation = "unknown_oscillation",
-    /// Outside the catalogue: friction that falls as the joint's own work warms it.
-    UnknownWorkHeating = "unknown_work_heating",
+    /// An effect that is in the truth of a joint's recording and not in the
+    /// model that the experimenter believes in.
+    ///
+    /// The first 24 are the joint effects of the catalogue; those whose id
+    /// begins with `unknown_` are in no catalogue.
+    pub enum HiddenEffect {
+        /// b_0 sign(q̇).
+        Coulomb = "coulomb",
+        /// b_0T |τ| sign(q̇).
+        LoadCoulomb = "load_coulomb",
+        /// b_1 q̇.
+        Viscous = "viscous",
+        /// b_2 q̇|q̇|.
+        QuadraticViscous = "quadratic_viscous",
+        /// b_3 q̇³.
+        CubicViscous = "cubic_viscous",
+        /// b_2 q̇|q̇| + b_3 q̇³: the step from equation (3) to (4).
+        NonlinearViscous = "nonlinear_viscous",
+        /// More Coulomb friction near rest.
+        Stribeck = "stribeck",
+        /// Coulomb friction that differs by direction.
+        AsymmetricCoulomb = "asymmetric_coulomb",
+        /// Coulomb friction that changes with temperature.
+        TemperatureCoulomb = "temperature_coulomb",
+        /// Viscous friction that changes with temperature.
+        TemperatureViscous = "temperature_viscous",
+        /// Coulomb friction that grows with the days.
+        WearDrift = "wear_drift",
+        /// Torque periodic in the wave generator's turn.
+        Ripple = "ripple",
+        /// Bristles that bend before the joint slides.
+        PreslidingHysteresis = "presliding_hysteresis",
+        /// More Coulomb friction at one position.
+        LocalFriction = "local_friction",
+        /// Inertia that the believed model does not have.
+        Inertia = "inertia",
+        /// Weight that the torque sensor does not feel.
+        Gravity = "gravity",
+        /// A cable along the joint that pulls back.
+        CableSpring = "cable_spring",
+        /// Compliance between motor and the measured position.
+        Elasticity = "elasticity",
+        /// Dead zone between motor and gear.
+        Backlash = "backlash",
+        /// Wrong motor constant.
+        MotorConstant = "motor_constant",
+        /// Wrong gain of the torque sensor.
+        TorqueSensorGain = "torque_sensor_gain",
+        /// Wrong zero of the torque sensor.
+        TorqueSensorOffset = "torque_sensor_offset",
+        /// One channel stamped late.
+        ChannelDelay = "channel_delay",
+        /// Motor torque clipped.
+        CurrentSaturation = "current_saturation",
+        /// Outside the catalogue: a pull that turns with temperature and position.
+        UnknownTemperaturePosition = "unknown_temperature_position",
+        /// Outside the catalogue: friction that differs while load builds up or falls.
+        UnknownTorqueRate = "unknown_torque_rate",
+        /// Outside the catalogue: friction that grows while the speed changes.
+        UnknownAcceleration = "unknown_acceleration",
+        /// Outside the catalogue: viscous friction that grows with the square of the load.
+        UnknownVelocityLoad = "unknown_velocity_load",
+        /// Outside the catalogue: a step of torque at one position, whatever the direction.
+        UnknownPositionStep = "unknown_position_step",
+        /// Outside the catalogue: a slow oscillation in time, as from a supply.
+        UnknownOscillation = "unknown_oscillation",
+        /// Outside the catalogue: friction that falls as the joint's own work warms it.
+        UnknownWorkHeating = "unknown_work_heating",
+    }
 }
 
 /// The effects of equation (4), which every believed model starts from.
@@ -105,29 +84,31 @@ const BASE: [HiddenEffect; 5] = [
     HiddenEffect::CubicViscous,
 ];
 
-impl HiddenEffect {
-    /// True for an effect that the catalogue has.
-    pub fn in_catalogue(self) -> bool {
-        !self.id().starts_with("unknown_")
+impl Hideable for HiddenEffect {
+    const ALL: &'static [Self] = HiddenEffect::ALL;
+
+    fn id(self) -> &'static str {
+        self.id()
     }
 
-    /// Ids that count as the right answer; empty outside the catalogue.
-    ///
-    /// The quadratic and the cubic term together are found by naming either.
-    pub fn accepted(self) -> &'static [&'static str] {
+    // The quadratic and the cubic term together are found by naming either.
+    fn accepted(self) -> &'static [&'static str] {
         match self {
             HiddenEffect::QuadraticViscous => &["quadratic_viscous", "nonlinear_viscous"],
             HiddenEffect::CubicViscous => &["cubic_viscous", "nonlinear_viscous"],
             HiddenEffect::NonlinearViscous => {
                 &["nonlinear_viscous", "quadratic_viscous", "cubic_viscous"]
             }
-            _ => match Self::ALL.iter().position(|&other| other == self) {
-                Some(index) if self.in_catalogue() => &IDS[index..=index],
-                _ => &[],
-            },
+            _ => self.own_id(),
         }
     }
 
+    fn overlap(self, other: Self) -> Option<&'static str> {
+        overlap(self, other)
+    }
+}
+
+impl HiddenEffect {
     /// True where the believed model lacks `base` because `self` hides it.
     fn hides(self, base: HiddenEffect) -> bool {
         match self {
@@ -140,43 +121,12 @@ impl HiddenEffect {
     }
 }
 
-const IDS: [&str; HiddenEffect::ALL.len()] = {
-    let mut ids = [""; HiddenEffect::ALL.len()];
-    let mut index = 0;
-    while index < ids.len() {
-        ids[index] = HiddenEffect::ALL[index].id();
-        index += 1;
-    }
-    ids
-};
-
 /// Ids of the effects in the believed model: equation (4) minus what is hidden.
 pub(super) fn believed_effects(hidden: &[HiddenEffect]) -> Vec<&'static str> {
     BASE.into_iter()
         .filter(|&base| !hidden.iter().any(|effect| effect.hides(base)))
         .map(HiddenEffect::id)
         .collect()
-}
-
-impl fmt::Display for HiddenEffect {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.id())
-    }
-}
-
-impl FromStr for HiddenEffect {
-    type Err = BenchError;
-
-    fn from_str(id: &str) -> Result<Self, BenchError> {
-        Self::ALL
-            .iter()
-            .copied()
-            .find(|effect| effect.id() == id)
-            .ok_or_else(|| BenchError::UnknownEffect {
-                id: id.into(),
-                known: IDS.join(", "),
-            })
-    }
 }
 
 #[cfg(test)]

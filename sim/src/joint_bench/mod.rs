@@ -36,25 +36,21 @@ mod servo;
 #[cfg(test)]
 mod tests;
 
-pub use config::{BenchConfig, BenchError};
+pub use crate::bench::{BenchError, Hideable, LOG_PERIOD};
+pub use config::BenchConfig;
 pub use hidden::HiddenEffect;
 pub use motion::Motion;
 pub use recording::{BenchRecording, BenchSession, TrueParameter, TrueSignals};
 pub use residual::Residual;
 
 use effect::{Effect, Reading};
-use parameters::{Conditions, JointParameters};
+use parameters::JointParameters;
 use plant::{Plant, friction};
 use sensors::Sensors;
 use servo::Servo;
 
-use crate::random::Random;
+use crate::bench::{Conditions, MILLISECONDS_A_LOG, SECONDS_A_DAY, Stream, random};
 
-/// Period of the log \[s\]: the paper's.
-pub const LOG_PERIOD: f64 = 0.012;
-/// Milliseconds between two log entries.
-const MILLISECONDS_A_LOG: usize = 12;
-const SECONDS_A_DAY: f64 = 86_400.0;
 /// Nothing on the bench turns further \[rad\].
 const FARTHEST: f64 = 10.0;
 
@@ -78,28 +74,6 @@ pub struct Bench {
     believed: Believed,
 }
 
-/// Streams of random numbers, so that one's length does not change another.
-#[derive(Clone, Copy)]
-enum Stream {
-    Joint = 1,
-    Conditions = 2,
-    Effect = 3,
-    Motion = 4,
-    Session = 5,
-    Noise = 6,
-}
-
-/// Mixes seed, stream and index (SplitMix64's finaliser).
-fn random(seed: u64, stream: Stream, index: usize) -> Random {
-    let mut mixed = seed
-        .wrapping_mul(0x9E37_79B9_7F4A_7C15)
-        .wrapping_add((stream as u64) << 32)
-        .wrapping_add(index as u64 + 1);
-    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    Random::new(mixed ^ (mixed >> 31))
-}
-
 impl Bench {
     /// Draws joint and hidden effects.
     ///
@@ -108,7 +82,7 @@ impl Bench {
     /// A value is out of bounds, or the hidden effects do not go together.
     pub fn new(config: &BenchConfig) -> Result<Self, BenchError> {
         config.validate()?;
-        let plain = JointParameters::draw(&mut random(config.seed, Stream::Joint, 0));
+        let plain = JointParameters::draw(&mut random(config.seed, Stream::Subject, 0));
         let effects: Vec<Box<dyn Effect>> = config
             .hidden
             .iter()

@@ -1,19 +1,21 @@
 //! Motions that the lab can ask for, as position over time.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
 
 use super::BenchError;
+use crate::bench::Programme;
 use crate::random::Random;
 
 /// A motion that a session runs.
 ///
 /// Each one after the first shows what the standard motion leaves confounded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Motion {
     /// The paper's: the contour's spring pulled at 1, 5, 10, 20 and 40 °/s,
     /// then a sine, then moves to random places at random speeds.
+    #[default]
     Standard,
     /// No spring; strong and fast moves. Tells motor constant, torque gain and
     /// load-dependent friction apart, shows inertia and delays.
@@ -213,134 +215,4 @@ fn accelerations(programme: &mut Programme) {
     for speed in [3.0, 12.0, 30.0] {
         programme.stroke(0.05, 0.4, speed * DEGREE, 9.0);
     }
-}
-
-/// One stretch of a programme.
-#[derive(Clone, Copy, Debug)]
-enum Piece {
-    Rest,
-    /// Speed rises and falls by raised cosines, so that acceleration has no step.
-    Move {
-        speed: f64,
-        ramp: f64,
-    },
-    /// `centre` − `reach` cos(ω t) from its turning point, or the move there.
-    Sine {
-        reach: f64,
-        rate: f64,
-    },
-}
-
-/// Position over time, as stretches one after another, from 0 on.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Programme {
-    /// Start \[s\], start position \[rad\], what follows.
-    pieces: Vec<(f64, f64, Piece)>,
-    end: f64,
-    position: f64,
-}
-
-impl Programme {
-    /// Its length \[s\].
-    pub(super) fn duration(&self) -> f64 {
-        self.end
-    }
-
-    fn push(&mut self, piece: Piece, duration: f64, position: f64) {
-        self.pieces.push((self.end, self.position, piece));
-        self.end += duration;
-        self.position = position;
-    }
-
-    fn rest(&mut self, duration: f64) {
-        self.push(Piece::Rest, duration, self.position);
-    }
-
-    /// Moves to `target` \[rad\] at `speed` \[rad/s\], with at most
-    /// `acceleration` \[rad/s²\]; a short way is taken more slowly.
-    fn to(&mut self, target: f64, speed: f64, acceleration: f64) {
-        let way = target - self.position;
-        if way.abs() < 1e-6 {
-            return;
-        }
-        // A raised-cosine ramp of duration r peaks at speed π/(2 r).
-        let speed = speed.min((way.abs() * acceleration / FRAC_PI_2).sqrt());
-        let ramp = FRAC_PI_2 * speed / acceleration;
-        let duration = way.abs() / speed + ramp;
-        let speed = speed.copysign(way);
-        self.push(Piece::Move { speed, ramp }, duration, target);
-    }
-
-    /// To `from`, then to `target` and back at one speed.
-    fn stroke(&mut self, from: f64, target: f64, speed: f64, acceleration: f64) {
-        self.to(from, 0.3, 2.0);
-        self.to(target, speed, acceleration);
-        self.to(from, speed, acceleration);
-    }
-
-    /// `cycles` of a sine whose lower turning point is here.
-    fn sine(&mut self, reach: f64, speed: f64, cycles: f64) {
-        let rate = speed / reach;
-        self.push(
-            Piece::Sine { reach, rate },
-            cycles * TAU / rate,
-            self.position,
-        );
-    }
-
-    /// Position \[rad\], velocity and acceleration at `time` \[s\]; `cursor` is
-    /// the stretch found last and only moves on.
-    pub(super) fn at(&self, time: f64, cursor: &mut usize) -> [f64; 3] {
-        while self
-            .pieces
-            .get(*cursor + 1)
-            .is_some_and(|(start, ..)| *start <= time)
-        {
-            *cursor += 1;
-        }
-        let Some(&(start, from, piece)) = self.pieces.get(*cursor) else {
-            return [self.position, 0.0, 0.0];
-        };
-        let next = self.pieces.get(*cursor + 1).map_or(self.end, |next| next.0);
-        let (time, left) = (time - start, next - time);
-        match piece {
-            Piece::Rest => [from, 0.0, 0.0],
-            Piece::Move { speed, ramp } => {
-                let to = self
-                    .pieces
-                    .get(*cursor + 1)
-                    .map_or(self.position, |next| next.1);
-                if left <= 0.0 {
-                    [to, 0.0, 0.0]
-                } else if time < ramp {
-                    let [way, velocity, acceleration] = rise(time, speed, ramp);
-                    [from + way, velocity, acceleration]
-                } else if left < ramp {
-                    let [way, velocity, acceleration] = rise(left, speed, ramp);
-                    [to - way, velocity, -acceleration]
-                } else {
-                    [from + speed * (time - 0.5 * ramp), speed, 0.0]
-                }
-            }
-            Piece::Sine { reach, rate } => {
-                let (sine, cosine) = (rate * time).sin_cos();
-                [
-                    from + reach * (1.0 - cosine),
-                    reach * rate * sine,
-                    reach * rate * rate * cosine,
-                ]
-            }
-        }
-    }
-}
-
-/// Way, velocity and acceleration `time` after the start of a ramp to `speed`.
-fn rise(time: f64, speed: f64, ramp: f64) -> [f64; 3] {
-    let rate = PI / ramp;
-    let (sine, cosine) = (rate * time).sin_cos();
-    [
-        0.5 * speed * (time - sine / rate),
-        0.5 * speed * (1.0 - cosine),
-        0.5 * speed * rate * sine,
-    ]
 }

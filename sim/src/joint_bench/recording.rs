@@ -3,18 +3,8 @@
 use super::effect::Reading;
 use super::{Believed, HiddenEffect, Motion};
 
-/// A true parameter, before it scatters between sessions.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TrueParameter {
-    /// The hidden effect that it belongs to; none: the joint's own.
-    pub effect: Option<HiddenEffect>,
-    /// Name within its effect.
-    pub name: &'static str,
-    /// In `unit`.
-    pub value: f64,
-    /// Unit, "-" for none.
-    pub unit: &'static str,
-}
+/// A true parameter of the joint, or of what it hides.
+pub type TrueParameter = crate::bench::TrueParameter<HiddenEffect>;
 
 /// What nobody on the bench can see, one entry a log entry.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,12 +4,9 @@
 //! For the author of a test: parameters are the true ones and nothing is
 //! fitted. The lab has its own, which fits.
 
-use std::f64::consts::{LN_2, TAU};
+use super::{BenchRecording, BenchSession};
+use crate::bench::{differentiate, rms, smooth};
 
-use super::{BenchRecording, BenchSession, LOG_PERIOD};
-
-/// Cut-off (−3 dB) of the low-pass on every channel \[Hz\].
-const CUT_OFF: f64 = 8.0;
 /// Slower than this, the sign of the velocity is not known \[rad/s\].
 const REST: f64 = 0.008;
 /// Entries on either side of rest that do not count either.
@@ -63,38 +60,6 @@ impl Friction {
     }
 }
 
-/// Gaussian low-pass forwards and backwards in time at once; at the ends over
-/// what there is.
-fn smooth(values: &[f64]) -> Vec<f64> {
-    let deviation = LN_2.sqrt() / (TAU * CUT_OFF) / LOG_PERIOD;
-    let reach = (4.0 * deviation).ceil() as usize;
-    let weights: Vec<f64> = (0..=reach)
-        .map(|step| (-0.5 * (step as f64 / deviation).powi(2)).exp())
-        .collect();
-    (0..values.len())
-        .map(|index| {
-            let from = index.saturating_sub(reach);
-            let near = values[from..].iter().take(index + reach + 1 - from);
-            let (mut sum, mut weight) = (0.0, 0.0);
-            for (offset, value) in near.enumerate() {
-                let w = weights[(from + offset).abs_diff(index)];
-                sum += w * value;
-                weight += w;
-            }
-            sum / weight
-        })
-        .collect()
-}
-
-/// Central differences; at the ends 0.
-fn differentiate(values: &[f64]) -> Vec<f64> {
-    let mut rates = vec![0.0; values.len()];
-    for (rate, around) in rates.iter_mut().skip(1).zip(values.windows(3)) {
-        *rate = (around[2] - around[0]) / (2.0 * LOG_PERIOD);
-    }
-    rates
-}
-
 fn used(velocity: &[f64]) -> Vec<bool> {
     let count = velocity.len();
     let mut used = vec![true; count];
@@ -110,15 +75,6 @@ fn used(velocity: &[f64]) -> Vec<bool> {
     used[..edge].fill(false);
     used[count - edge..].fill(false);
     used
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, n), x| (sum + x * x, n + 1.0));
-    if count > 0.0 {
-        f64::sqrt(sum / count)
-    } else {
-        0.0
-    }
 }
 
 impl BenchRecording {

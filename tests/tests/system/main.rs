@@ -7,6 +7,7 @@ mod delay;
 mod dynamics;
 mod estimator;
 mod lab;
+mod lab_contact;
 mod lab_page;
 mod laws;
 mod lockstep;

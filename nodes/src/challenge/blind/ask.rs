@@ -4,13 +4,9 @@ use ferntast_identification::{
     Dataset, Diagnosis, ModelSpec, Proposal, Term, Verdict, add, design::Design, diagnose,
     fit::fit, setup::Setup,
 };
-use ferntast_sim::joint_bench::{Bench, BenchConfig, BenchRecording, HiddenEffect, Motion};
+use ferntast_sim::bench::{BenchConfig, BenchError};
 
-use super::{
-    super::bench::{dataset, model, session},
-    Case,
-    tally::FollowedUp,
-};
+use super::{super::TestBench, Case, tally::FollowedUp};
 
 /// Sessions of an experiment that the lab proposes.
 const MORE_SESSIONS: usize = 6;
@@ -28,23 +24,24 @@ pub(super) struct Given {
     pub(super) followed_up: Option<FollowedUp>,
 }
 
-pub(super) fn ask(case: &Case) -> Result<Given, String> {
-    let what = || case.hidden.map_or("nothing", HiddenEffect::id);
+pub(super) fn ask<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
+    let what = || case.hidden.map_or("nothing", H::id);
     answer(case).map_err(|error| format!("{} hidden, seed {}: {error}", what(), case.seed))
 }
 
-fn answer(case: &Case) -> Result<Given, String> {
+fn answer<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
     let config = BenchConfig {
         seed: case.seed,
         hidden: case.hidden.into_iter().collect(),
         strength: case.strength,
+        sessions: H::SESSIONS,
         ..BenchConfig::default()
     };
-    let bench = Bench::new(&config).map_err(|error| error.to_string())?;
-    let recording = bench.record().map_err(|error| error.to_string())?;
-    let (data, believed) = (dataset(&recording), model(&recording));
+    let bench = H::bench(&config).map_err(describe)?;
+    let recording = H::record(&bench).map_err(describe)?;
+    let (data, believed) = (H::dataset(&recording), H::model(&recording));
     let diagnosis = put(&data, &believed)?;
-    let accepted = case.hidden.map_or(&[][..], HiddenEffect::accepted);
+    let accepted = case.hidden.map_or(&[][..], H::accepted);
     let is_right = |name: &String| accepted.contains(&name.as_str());
     let first = diagnosis.candidates.first();
     let named = first.map(|own| own.effect.clone());
@@ -53,7 +50,7 @@ fn answer(case: &Case) -> Result<Given, String> {
         Some(name) => {
             let term = Term::Catalogue(name.clone());
             let added = add(&data, &believed, &term).map_err(|error| error.to_string())?;
-            Some(added.held_out_after / true_model_reaches(&config)?)
+            Some(added.held_out_after / true_model_reaches::<H>(&config)?)
         }
         None => None,
     };
@@ -66,7 +63,7 @@ fn answer(case: &Case) -> Result<Given, String> {
     };
     let followed_up = match proposal {
         Some((proposal, was_family)) => {
-            let after = put(&joined(&bench, &recording, data, proposal)?, &believed)?;
+            let after = put(&joined::<H>(&bench, &recording, data, proposal)?, &believed)?;
             let first = after.candidates.first();
             let only = |own: &&diagnose::NamedCandidate| {
                 is_right(&own.effect) && own.indistinguishable_from.iter().all(is_right)
@@ -100,39 +97,34 @@ fn put(data: &Dataset, believed: &ModelSpec) -> Result<Diagnosis, String> {
 
 /// The recording with the experiment that was proposed: same joint, same
 /// hidden effect, later days.
-fn joined(
-    bench: &Bench,
-    recording: &BenchRecording,
+fn joined<H: TestBench>(
+    bench: &H::Bench,
+    recording: &H::Recording,
     mut data: Dataset,
     proposal: Proposal,
 ) -> Result<Dataset, String> {
-    let motion: Motion = proposal.id().parse().map_err(describe)?;
-    let more = bench
-        .follow_up(recording, motion, MORE_SESSIONS)
-        .map_err(describe)?;
-    for own in &more {
-        let number = data.sessions.len() + 1;
-        data.sessions.push(session(own, number));
-    }
+    let motion: H::Motion = proposal.id().parse().map_err(describe)?;
+    let more = H::follow_up(bench, recording, motion, MORE_SESSIONS).map_err(describe)?;
+    data.sessions.extend(more);
     Ok(data)
 }
 
-fn describe(error: ferntast_sim::joint_bench::BenchError) -> String {
+fn describe(error: BenchError) -> String {
     error.to_string()
 }
 
-/// Error \[Nm\] on data held out that equation (4), fitted, leaves on the same
-/// recording without the hidden effect: same joint, motion, scatter and noise.
-/// No model that has the effect exactly can do better.
-fn true_model_reaches(config: &BenchConfig) -> Result<f64, String> {
+/// Error \[Nm, of a contact N\] on data held out that what everybody believes,
+/// fitted, leaves on the same recording without the hidden effect: same bench,
+/// motion, scatter and noise. No model that has the effect exactly can do better.
+fn true_model_reaches<H: TestBench>(config: &BenchConfig<H, H::Motion>) -> Result<f64, String> {
     let config = BenchConfig {
         hidden: Vec::new(),
         ..config.clone()
     };
-    let recording = Bench::new(&config)
-        .and_then(|bench| bench.record())
+    let recording = H::bench(&config)
+        .and_then(|bench| H::record(&bench))
         .map_err(describe)?;
-    let setup =
-        Setup::new(&dataset(&recording), &model(&recording)).map_err(|error| error.to_string())?;
+    let setup = Setup::new(&H::dataset(&recording), &H::model(&recording))
+        .map_err(|error| error.to_string())?;
     Ok(fit(&setup, &Design::new(&setup)).held_out)
 }

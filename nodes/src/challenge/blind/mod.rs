@@ -13,7 +13,7 @@ use std::{
     thread,
 };
 
-use ferntast_sim::joint_bench::HiddenEffect;
+use super::TestBench;
 
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 
@@ -33,17 +33,17 @@ pub struct Plan {
 }
 
 #[derive(Clone, Copy)]
-struct Case {
-    hidden: Option<HiddenEffect>,
+struct Case<H> {
+    hidden: Option<H>,
     strength: f64,
     seed: u64,
 }
 
 impl Plan {
-    fn cases(&self) -> Vec<Case> {
+    fn cases<H: TestBench>(&self) -> Vec<Case<H>> {
         let mut cases = Vec::new();
         for repeat in 0..self.repeats as u64 {
-            for &hidden in HiddenEffect::ALL {
+            for &hidden in H::ALL {
                 for &strength in &self.strengths {
                     // Every recording has a joint of its own.
                     let seed = self.seed.wrapping_add(cases.len() as u64 + repeat);
@@ -72,8 +72,11 @@ impl Plan {
 /// # Errors
 ///
 /// A recording that cannot be made or diagnosed, with what it hid.
-pub fn run(plan: &Plan, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<BlindTest, String> {
-    let cases = plan.cases();
+pub fn run<H: TestBench>(
+    plan: &Plan,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<BlindTest, String> {
+    let cases = plan.cases::<H>();
     let next = AtomicUsize::new(0);
     let answers = Mutex::new(Vec::new());
     let workers = thread::available_parallelism().map_or(1, usize::from);
@@ -98,7 +101,7 @@ pub fn run(plan: &Plan, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Blin
     }
     for index in 0..plan.two {
         let seed = plan.seed.wrapping_add(2_000_000 + index as u64);
-        let found = two::two_at_once(seed)?;
+        let found = two::two_at_once::<H>(seed)?;
         test.both_of_two.note(found == 2);
         test.one_of_two.note(found >= 1);
         progress(cases.len() + index + 1, cases.len() + plan.two);

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use ferntast_identification::Verdict;
-use ferntast_sim::joint_bench::HiddenEffect;
 use serde::Serialize;
 
-use super::{Case, ask::Given};
+use super::{super::TestBench, Case, ask::Given};
 
 /// Within this factor of what the true model reaches, an error has fallen as
 /// far as it can.
@@ -118,10 +117,10 @@ pub struct BlindTest {
 }
 
 impl BlindTest {
-    pub(super) fn note(&mut self, case: &Case, given: Given) {
+    pub(super) fn note<H: TestBench>(&mut self, case: &Case<H>, given: Given) {
         let named = given.named.filter(|_| given.verdict == Verdict::Missing);
         let strength = case.strength.to_string();
-        let accepted = case.hidden.map_or(&[][..], HiddenEffect::accepted);
+        let accepted = case.hidden.map_or(&[][..], H::accepted);
         let is_right = |name: &String| accepted.contains(&name.as_str());
         let first = named.as_ref().is_some_and(is_right);
         let in_family = first || (named.is_some() && given.family.iter().any(is_right));

@@ -1,14 +1,14 @@
 //! Two effects hidden at once, found by adding what is named.
 
 use ferntast_identification::{Dataset, ModelSpec, Term, Verdict, add, diagnose};
-use ferntast_sim::joint_bench::{Bench, BenchConfig, HiddenEffect};
+use ferntast_sim::bench::BenchConfig;
 
-use super::super::bench::{dataset, model};
+use super::super::TestBench;
 
 /// Hides two effects and adds what is named until nothing more is; gives how
 /// many of the two were named.
-pub(super) fn two_at_once(seed: u64) -> Result<usize, String> {
-    let catalogue: Vec<HiddenEffect> = HiddenEffect::ALL
+pub(super) fn two_at_once<H: TestBench>(seed: u64) -> Result<usize, String> {
+    let catalogue: Vec<H> = H::ALL
         .iter()
         .copied()
         .filter(|own| own.in_catalogue())
@@ -24,15 +24,16 @@ pub(super) fn two_at_once(seed: u64) -> Result<usize, String> {
         let config = BenchConfig {
             seed,
             hidden: vec![first, second],
+            sessions: H::SESSIONS,
             ..BenchConfig::default()
         };
-        let Ok(bench) = Bench::new(&config) else {
+        let Ok(bench) = H::bench(&config) else {
             continue;
         };
         let failed = |error: String| format!("{first} and {second} hidden, seed {seed}: {error}");
-        let recording = bench.record().map_err(|error| failed(error.to_string()))?;
-        let named = add_all(&dataset(&recording), model(&recording)).map_err(failed)?;
-        let is_named = |effect: &HiddenEffect| {
+        let recording = H::record(&bench).map_err(|error| failed(error.to_string()))?;
+        let named = add_all(&H::dataset(&recording), H::model(&recording)).map_err(failed)?;
+        let is_named = |effect: &H| {
             named
                 .iter()
                 .any(|name| effect.accepted().contains(&name.as_str()))

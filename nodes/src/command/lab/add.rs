@@ -14,13 +14,14 @@ use super::{
 #[command(after_help = "Examples:\n  \
     ferntast lab add E.toml stribeck -o E2.toml\n  \
     ferntast lab add E.toml 'cogging=a*sin(6*q) + b*cos(6*q)'\n  \
-    ferntast lab add E.toml 'bump=a*exp(-(qd/vs)^2)' --bound vs=0.005,0.2")]
+    ferntast lab add E.toml 'bump=a*exp(-(qd/vs)^2)' --bound vs=0.005,0.2\n  \
+    ferntast lab add contact.toml 'film=c*F_N*rd'")]
 pub struct Arguments {
     /// Experiment file.
     experiment: PathBuf,
 
     /// Effect: an id of the catalogue (`ferntast lab effects`), or NAME=EXPRESSION over q, qd,
-    /// qdd, tau, tau_m, T, t and extra signals.
+    /// qdd, tau, tau_m, T, t and extra signals; of a contact over r, rd, rdd, F_N, F_T, T, t.
     effect: String,
 
     /// Bounds of a parameter of the expression that is searched, not fitted.

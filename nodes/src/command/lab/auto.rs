@@ -12,7 +12,7 @@ use super::{
     open, table,
 };
 
-/// No joint has so many effects that these data can tell apart.
+/// No joint and no contact has so many effects that these data can tell apart.
 const MOST_STEPS: usize = 8;
 
 /// Diagnose and add until the model is complete, or what is left has no name.

@@ -13,6 +13,7 @@ mod table;
 use std::process::ExitCode;
 
 use clap::Subcommand;
+use ferntast_identification::Subject;
 
 use super::Failure;
 
@@ -33,6 +34,14 @@ use super::Failure;
     [model]\n  \
     inertia = { fit = true }                 # or a number [kg m2]\n  \
     effects = [\"coulomb\", \"viscous\", { name = \"cogging\", expression = \"a*sin(6*q) + b*cos(6*q)\" }]\n\n\
+    A contact in place of a joint (equation 6):\n  \
+    [contact]\n  \
+    [signals]\n  \
+    tangential_force = \"/follower/contact_cf.wrench.force.x.@negative\" # opposes motion to larger places\n  \
+    normal_force = \"/follower/contact_cf.wrench.force.z\"               # pushes the tip out\n  \
+    position = \"/follower/measured_cp.pose.position.x\"                 # along the contour; or tip = [x, y]\n  \
+    [model]                                  # with tip: contour = [[x, y], ...] in [contact]\n  \
+    effects = [\"contact_coulomb\"]\n\n\
     A recording of a session can be given in place of an experiment file.")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -55,7 +64,7 @@ enum Action {
     Report(report::Arguments),
     /// Work in the browser.
     Serve(serve::Arguments),
-    /// List the effects of the catalogue.
+    /// List the effects of the catalogue, of joints and of contacts.
     Effects,
 }
 
@@ -79,8 +88,11 @@ fn effects(json: bool) -> Result<ExitCode, Failure> {
         super::output::print_json(&catalogue)?;
         return Ok(ExitCode::SUCCESS);
     }
-    for effect in catalogue {
-        println!("{:24} {}", effect.id, effect.equation);
+    for subject in [Subject::Joint, Subject::Contact] {
+        println!("of {}", subject.name());
+        for effect in catalogue.iter().filter(|effect| effect.of == subject) {
+            println!("  {:24} {}", effect.id, effect.equation);
+        }
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -36,7 +36,7 @@ pub fn parameters(parameters: &BTreeMap<String, Parameter>, not_excited: &[Strin
 /// How far off the model is, and where.
 pub fn comparison(comparison: &Comparison, unit: &str) {
     println!(
-        "{} samples, {} used; error {} {unit} fitted, {} {unit} held out ({:.1} % of the torque); noise between repeats {}",
+        "{} samples, {} used; error {} {unit} fitted, {} {unit} held out ({:.1} % of what is measured); noise between repeats {}",
         comparison.samples,
         comparison.used,
         significant(comparison.rms.train),

@@ -36,6 +36,7 @@ mod wear_drift;
 
 use super::HiddenEffect;
 use super::parameters::JointParameters;
+use crate::bench::{about, either_sign};
 use crate::random::Random;
 
 /// The joint where friction acts, at one instant, joint side.
@@ -151,15 +152,4 @@ pub(super) fn draw(
         Hidden::UnknownOscillation => unknown_oscillation::draw(strength, random),
         Hidden::UnknownWorkHeating => unknown_work_heating::draw(strength, random),
     }
-}
-
-/// `size` within ±15 %, with either sign.
-fn either_sign(size: f64, random: &mut Random) -> f64 {
-    let size = about(size, random);
-    if random.chance(0.5) { size } else { -size }
-}
-
-/// `size` within ±15 %.
-fn about(size: f64, random: &mut Random) -> f64 {
-    size * (0.85 + 0.3 * random.uniform())
 }

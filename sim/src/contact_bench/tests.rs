@@ -1,0 +1,95 @@
+use super::*;
+use crate::bench::Hideable;
+
+fn record(config: &ContactConfig) -> ContactRecording {
+    ContactBench::new(config).unwrap().record()
+}
+
+fn hiding(hidden: HiddenEffect, strength: f64, seed: u64) -> ContactConfig {
+    ContactConfig {
+        seed,
+        hidden: vec![hidden],
+        strength,
+        ..ContactConfig::default()
+    }
+}
+
+/// Same configuration, same bytes; another seed, other bytes.
+#[test]
+fn a_seed_decides_everything() {
+    let config = hiding(HiddenEffect::ContactSpot, 1.0, 4);
+    let first = record(&config);
+    assert_eq!(first, record(&config));
+    assert_ne!(first, record(&ContactConfig { seed: 5, ..config }));
+}
+
+#[test]
+fn logs_are_every_12_ms_and_dates_rise() {
+    let recording = record(&ContactConfig::default());
+    assert_eq!(recording.sessions.len(), 6);
+    let starts = recording.sessions.windows(2);
+    assert!(starts.into_iter().all(|pair| pair[0].start < pair[1].start));
+    for session in &recording.sessions {
+        let length = session.time.len();
+        assert!((4000..20_000).contains(&length), "{length}");
+        for channel in [&session.place, &session.tangential, &session.normal] {
+            assert_eq!(channel.len(), length);
+            assert!(channel.iter().all(|value| value.is_finite()));
+        }
+        assert!((session.time[1] - crate::bench::LOG_PERIOD).abs() < 1e-12);
+        assert!(session.normal.iter().any(|force| *force > 20.0));
+    }
+}
+
+#[test]
+fn what_is_hidden_stands_out_and_nothing_hidden_does_not() {
+    for &hidden in HiddenEffect::ALL {
+        let full = record(&hiding(hidden, 1.0, 7)).visibility();
+        let quarter = record(&hiding(hidden, 0.25, 7)).visibility();
+        println!("{hidden}: {full:.1} {quarter:.1}");
+        assert!(
+            full > 2.0 && quarter < 0.7 * full,
+            "{hidden}: {full} {quarter}"
+        );
+    }
+    let nothing = record(&ContactConfig::default()).visibility();
+    assert!(nothing < 0.7, "{nothing}");
+}
+
+#[test]
+fn what_does_not_go_together_is_refused() {
+    let config = ContactConfig {
+        hidden: vec![
+            HiddenEffect::ContactCoulomb,
+            HiddenEffect::ContactCompliance,
+        ],
+        ..ContactConfig::default()
+    };
+    let error = ContactBench::new(&config).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains("contact_compliance"), "{error}");
+}
+
+#[test]
+fn every_id_reads_back() {
+    for &effect in HiddenEffect::ALL {
+        assert_eq!(effect.id().parse::<HiddenEffect>().unwrap(), effect);
+        assert_eq!(effect.in_catalogue(), !effect.accepted().is_empty());
+    }
+    let error = "contact_magic".parse::<HiddenEffect>().unwrap_err();
+    assert!(error.to_string().contains("contact_spot"), "{error}");
+}
+
+#[test]
+fn more_sessions_come_later() {
+    let bench = ContactBench::new(&ContactConfig::default()).unwrap();
+    let recorded = bench.record();
+    let last = recorded.sessions.last().unwrap().start;
+    for motion in Motion::ALL {
+        let more = bench.follow_up(&recorded, motion, 2);
+        assert!(
+            more.iter()
+                .all(|session| session.start > last && session.time.len() > 1000)
+        );
+        assert_eq!(motion.id().parse::<Motion>().unwrap(), motion);
+    }
+}

@@ -1,0 +1,230 @@
+//! The model lab on contacts: what slides along an edge in place of a joint.
+
+use std::{fs, time::Duration};
+
+use ferntast_tests::{Process, Session};
+use serde_json::Value;
+
+use crate::support::{number, refused, run};
+
+/// A shipped experiment file in the session's folder, its recordings looked for there.
+fn shipped(session: &Session, name: &str, change: impl Fn(String) -> String) -> String {
+    let path = ferntast_tests::root().join("config/experiments").join(name);
+    let text = fs::read_to_string(path).expect("a shipped experiment");
+    let text = change(text.replace("../../recordings/", ""));
+    fs::write(session.folder().join(name), text).expect("scratch folder");
+    name.to_owned()
+}
+
+fn first(told: &Value) -> &str {
+    told["candidates"][0]["effect"].as_str().unwrap_or_default()
+}
+
+#[test]
+fn a_riddle_of_a_contact_is_made_solved_and_revealed() {
+    let session = Session::new();
+    let new = [
+        "challenge",
+        "new",
+        "riddle",
+        "--contact",
+        "--hide",
+        "contact_compliance",
+        "--json",
+    ];
+    run(&session, &new).success();
+    let diagnose = |file: &str| {
+        run(&session, &["lab", "diagnose", file, "--json"])
+            .success()
+            .json()
+    };
+    let told = diagnose("riddle/experiment.toml");
+    assert_eq!(first(&told), "contact_compliance", "{told:#}");
+    let best = &told["candidates"][0];
+    assert_eq!(best["parameters"]["k"]["unit"], "N/m");
+    assert!(number(best, "held_out_after") < 0.3 * number(best, "held_out_before"));
+
+    let auto = ["lab", "auto", "riddle/experiment.toml", "--json"];
+    let auto = run(&session, &auto).success().json();
+    assert_eq!(auto["verdict"], "complete", "{auto:#}");
+    let last = auto["experiment"].as_str().expect("a file").to_owned();
+    let history = run(&session, &["lab", "history", &last, "--json"])
+        .success()
+        .json();
+    assert_eq!(history[1]["added"], "contact_compliance");
+    assert_eq!(history[1]["unit"], "N");
+    run(&session, &["lab", "report", &last, "-o", "page.html"]).success();
+    let page = fs::read_to_string(session.folder().join("page.html")).expect("the page");
+    assert!(page.contains("tip_velocity") && page.contains("normal_force"));
+
+    let reveal = [
+        "challenge",
+        "reveal",
+        "riddle",
+        "contact_compliance",
+        "--json",
+    ];
+    assert_eq!(run(&session, &reveal).success().json()["right"], true);
+    refused(
+        &session,
+        &[
+            "challenge",
+            "new",
+            "other",
+            "--contact",
+            "--hide",
+            "stribeck",
+        ],
+        &["stribeck", "contact_stribeck"],
+    );
+}
+
+#[test]
+fn blind_on_contacts_that_nobody_has_seen() {
+    let session = Session::new();
+    let arguments = [
+        "challenge",
+        "blind",
+        "--contact",
+        "--repeats",
+        "2",
+        "--strengths",
+        "1,0.5,0.25",
+        "--nothing",
+        "40",
+        "--two",
+        "6",
+        "--seed",
+        "424242",
+        "--json",
+    ];
+    let told = Process::spawn(session.ferntast(&arguments))
+        .wait(Duration::from_secs(900))
+        .success()
+        .json();
+    let share = |value: &Value| number(value, "found") / number(value, "tried");
+    let misses = &told["misses"];
+    assert_eq!(number(&told["right_first"]["1"], "tried"), 12.0);
+    assert!(share(&told["right_first"]["1"]) >= 0.95, "{misses:#}");
+    assert!(share(&told["in_family"]["1"]) >= 0.99, "{misses:#}");
+    assert!(share(&told["right_first"]["0.5"]) >= 0.80, "{misses:#}");
+    assert!(share(&told["unknown_not_named"]["1"]) >= 0.90, "{misses:#}");
+    assert!(share(&told["one_of_two"]) >= 0.8, "{told:#}");
+    assert!(share(&told["false_alarms"]) <= 0.03, "{misses:#}");
+}
+
+/// What the simulated arm leaves in a recording of its own topics: equation (6).
+#[test]
+fn the_arms_own_contact_is_coulomb_friction() {
+    let session = Session::new();
+    let record = [
+        "experiment",
+        "contact",
+        "--surface",
+        "lubricated",
+        "--day",
+        "57",
+        "-o",
+        "edge",
+    ];
+    run(&session, &record).success();
+    let file = shipped(&session, "contact.toml", |text| {
+        text.replace("effects = [\"contact_coulomb\"]", "effects = []")
+    });
+    let told = run(&session, &["lab", "diagnose", &file, "--json"])
+        .success()
+        .json();
+    assert_eq!(first(&told), "contact_coulomb", "{told:#}");
+    // On day 57 its true coefficient is 0.45 − 0.35 exp(−57/300).
+    let truth = 0.45 - 0.35 * (-57.0_f64 / 300.0).exp();
+    let b0t = number(&told["candidates"][0]["parameters"]["b0T"], "value");
+    assert!((b0t / truth - 1.0).abs() < 0.05, "{b0t} for {truth}");
+}
+
+/// Fig. 17, through the recorder: the lubricant wears off.
+#[test]
+fn wear_of_the_lubricated_edge_is_found_in_the_missions_recordings() {
+    let session = Session::new();
+    let days = [1.0, 57.0, 131.04, 201.05, 300.03, 407.01, 541.04, 736.02];
+    let mission = format!(
+        "name = \"edge\"\ndescription = \"The lubricated edge.\"\narm = \"rokviss\"\nseed = 5\nground = false\n\
+         days = {days:?}\n[[experiment]]\nkind = \"contact\"\nsurface = \"lubricated\"\n\
+         forces = [15.0, 25.0]\nfrequencies = [0.4]\ntime_per_press = 5.0\n"
+    );
+    fs::write(session.folder().join("edge.toml"), mission).expect("scratch folder");
+    let campaign = ["experiment", "campaign", "edge.toml", "-o", "mission"];
+    run(&session, &campaign).success();
+    let file = shipped(&session, "contact_mission.toml", |text| {
+        let kept = text.lines().filter(|line| {
+            let is_recording = line.contains("mission/day_");
+            !is_recording
+                || days
+                    .iter()
+                    .any(|day| line.contains(&format!("day_{day:07.2}/")))
+        });
+        kept.collect::<Vec<_>>().join("\n")
+    });
+    let told = run(&session, &["lab", "diagnose", &file, "--json"])
+        .success()
+        .json();
+    assert_eq!(told["verdict"], "missing", "{told:#}");
+    assert_eq!(first(&told), "contact_wear", "{told:#}");
+    // 0.35 in all, 63 % of it in 300 days.
+    let parameters = &told["candidates"][0]["parameters"];
+    let (all, days) = (
+        number(&parameters["bw"], "value"),
+        number(&parameters["tw"], "value"),
+    );
+    assert!((0.25..0.5).contains(&all), "{all}");
+    assert!((180.0..600.0).contains(&days), "{days} d");
+}
+
+#[test]
+fn bad_input_gets_one_clear_message() {
+    let session = Session::new();
+    let rows: Vec<String> = (0..2000)
+        .map(|row| {
+            let (sine, cosine) = (0.01 * f64::from(row)).sin_cos();
+            format!(
+                "{},{sine},{},{}",
+                0.01 * f64::from(row),
+                4.0 * cosine.signum(),
+                10.0
+            )
+        })
+        .collect();
+    let text = format!("t_s,r,f_t,f_n\n{}\n", rows.join("\n"));
+    fs::write(session.folder().join("edge.csv"), text).expect("scratch folder");
+    let good = "[contact]\n[signals]\ntangential_force = \"f_t\"\nnormal_force = \"f_n\"\nposition = \"r\"";
+    let joint = "[signals]\nposition = \"r\"\nmotor_torque = \"f_t\"";
+    let diagnose = |head: &str, model: &str, words: &[&str]| {
+        let text = format!("recording = \"edge.csv\"\n{head}\n[model]\n{model}\n");
+        fs::write(session.folder().join("e.toml"), text).expect("scratch folder");
+        refused(&session, &["lab", "diagnose", "e.toml"], words);
+    };
+    diagnose(
+        good,
+        "effects = [\"coulomb\"]",
+        &["coulomb", "a joint", "a contact"],
+    );
+    diagnose(
+        joint,
+        "inertia = 1.0\neffects = [\"contact_coulomb\"]",
+        &["contact_coulomb", "a contact", "a joint"],
+    );
+    let without = good.replace("normal_force = \"f_n\"\n", "");
+    diagnose(
+        &without,
+        "effects = []",
+        &["signals.normal_force", "missing"],
+    );
+    diagnose(good, "inertia = 1.0\neffects = []", &["inertia"]);
+    diagnose(good, "effects = [\"contact_magic\"]", &["contact_spot"]);
+    let text = format!("recording = \"edge.csv\"\n{good}\n[model]\neffects = []\n");
+    fs::write(session.folder().join("twin.toml"), text).expect("scratch folder");
+    refused(
+        &session,
+        &["lockstep", "--duration", "1", "--twin", "twin.toml"],
+        &["contact", "joint"],
+    );
+}
