@@ -3,6 +3,7 @@
 pub mod arm;
 pub mod carry;
 pub mod challenge;
+mod choice_parameter;
 pub mod clock;
 pub mod command;
 pub mod config;
@@ -11,7 +12,6 @@ pub mod doctor;
 pub mod estimator;
 pub mod experiment;
 mod gateway;
-mod law_parameter;
 pub mod link;
 pub mod lockstep;
 pub mod master;
