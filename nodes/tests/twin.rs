@@ -39,11 +39,16 @@ effects = ["coulomb", "load_coulomb", "viscous", "quadratic_viscous", "cubic_vis
 /// The scenario at 10 °C; where `free` the hand stays clear of everything and
 /// is quicker: so friction shows over speed.
 fn scenario(seed: u64, free: bool) -> Loaded {
-    let mut loaded = config::load_scenario("rokviss").unwrap();
+    let mut loaded = config::load_scenario("rokviss").expect("a session in lockstep");
     loaded.scenario.seed = seed;
     loaded.arm.truth.environment.temperature = Some([10.0; 2]);
     if free {
-        let hand = loaded.scenario.hand.scripted.as_mut().unwrap();
+        let hand = loaded
+            .scenario
+            .hand
+            .scripted
+            .as_mut()
+            .expect("a session in lockstep");
         for phase in &mut hand.script.phase {
             phase.duration *= 0.6;
             if let Motion::Reach { to } = &mut phase.motion {
@@ -51,7 +56,7 @@ fn scenario(seed: u64, free: bool) -> Loaded {
             }
         }
     }
-    loaded.complete().unwrap();
+    loaded.complete().expect("a session in lockstep");
     loaded
 }
 
@@ -71,22 +76,24 @@ fn worn(loaded: &mut Loaded, factor: f64) {
 
 /// A twin, fitted to 40 s of `loaded` with another seed.
 fn twin_of(loaded: &Loaded) -> twin::TwinModel {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a session in lockstep");
     let mut loaded = loaded.clone();
     loaded.scenario.seed += 1000;
     let first = folder.path().join("first");
-    let mut session = LockstepSession::new(&loaded, Some(&first)).unwrap();
+    let mut session = LockstepSession::new(&loaded, Some(&first)).expect("a session in lockstep");
     session.run(40.0);
-    session.finish().unwrap();
+    session.finish().expect("a session in lockstep");
     let file = folder.path().join("joint.toml");
-    fs::write(&file, EXPERIMENT).unwrap();
-    twin::open(&file).unwrap()
+    fs::write(&file, EXPERIMENT).expect("a session in lockstep");
+    twin::open(&file).expect("a session in lockstep")
 }
 
 /// A session of `loaded`, watched, with a twin fitted to the arm as it is configured.
 fn watched(loaded: &Loaded) -> Watched {
-    let mut session = LockstepSession::new(loaded, None).unwrap();
-    session.add_twin(twin_of(&scenario(3, true))).unwrap();
+    let mut session = LockstepSession::new(loaded, None).expect("a session in lockstep");
+    session
+        .add_twin(twin_of(&scenario(3, true)))
+        .expect("a session in lockstep");
     Watched::new(session)
 }
 
@@ -101,7 +108,10 @@ struct Watched {
 impl Watched {
     fn new(session: LockstepSession) -> Self {
         let bus = session.bus();
-        let open = |topic| bus.subscriber(topic, Depth::Queue(256)).unwrap();
+        let open = |topic| {
+            bus.subscriber(topic, Depth::Queue(256))
+                .expect("a session in lockstep")
+        };
         Self {
             setpoint: open(topics::FOLLOWER_SETPOINT_JS),
             measured: open(topics::FOLLOWER_MEASURED_JS),
@@ -139,7 +149,9 @@ impl Watched {
     }
 
     fn command(&mut self, command: FrictionCommand) {
-        self.session.command_friction_at(0.0, command).unwrap();
+        self.session
+            .command_friction_at(0.0, command)
+            .expect("a session in lockstep");
     }
 }
 

@@ -194,8 +194,8 @@ impl FeedForward {
     pub fn take_over(&mut self, found: &[FoundParameter<'_>]) -> Result<usize, TakeOverRefusal> {
         let mut target = self.configured;
         let mut taken = 0;
-        for i in 0..self.count {
-            let (name, configured) = (self.names[i], self.configured[i]);
+        for (place, name) in target.iter_mut().zip(self.names).take(self.count) {
+            let configured = *place;
             let certain = found
                 .iter()
                 .find(|own| is_same(own.name, name) && self.is_certain(own, configured));
@@ -212,7 +212,7 @@ impl FeedForward {
                     upper,
                 });
             }
-            target[i] = own.value;
+            *place = own.value;
             taken += 1;
         }
         if taken == 0 {

@@ -26,8 +26,8 @@ pub fn off_line(rows: &[Row]) -> Option<[Estimate; 2]> {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let alike =
         product(&first, &second).powi(2) / (product(&first, &first) * product(&second, &second));
-    // Also where a column is zero, and their likeness no number.
-    if !(alike < MOST_ALIKE) {
+    // Where a column is zero, their likeness is no number.
+    if alike.is_nan() || alike >= MOST_ALIKE {
         return None;
     }
     let measured: Vec<f64> = rows.iter().map(|row| row.measured).collect();

@@ -155,7 +155,7 @@ fn a_take_over_is_recorded_and_replayed_byte_for_byte() {
         let own: &ferntast_msgs::sample::FrictionStatusSample = &own.message;
         own.source == ferntast_msgs::sample::FrictionSource::TWIN
     };
-    let last = friction.iter().filter(by_the_twin).next_back();
+    let last = friction.iter().rfind(by_the_twin);
     let last = last.expect("taken over").message;
     // Close to what was configured, since it is the same arm; but not it.
     for i in 0..last.len() {
