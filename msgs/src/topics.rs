@@ -5,10 +5,11 @@ use std::marker::PhantomData;
 use crate::{
     Message,
     sample::{
-        AuthoritySample, ContactStateSample, HealthSample, JointSample, LawCommandSample,
-        LinkCommandSample, LinkStatusSample, OperatingStateSample, PoseSample,
-        RecorderCommandSample, RecorderStatusSample, RobotDescriptionSample, StateCommandSample,
-        TemperatureSample, TransformsSample, TwinParametersSample, WrenchSample,
+        AuthoritySample, ContactStateSample, FrictionCommandSample, FrictionStatusSample,
+        HealthSample, JointSample, LawCommandSample, LinkCommandSample, LinkStatusSample,
+        OperatingStateSample, PoseSample, RecorderCommandSample, RecorderStatusSample,
+        RobotDescriptionSample, StateCommandSample, TemperatureSample, TransformsSample,
+        TwinParametersSample, WrenchSample,
     },
 };
 
@@ -76,7 +77,8 @@ macro_rules! topics {
 topics! {
     /// Motor position on the joint side \[rad\], velocity \[rad/s\], joint torque sensor \[Nm\].
     FOLLOWER_MEASURED_JS: JointSample = "/follower/measured_js", Stream;
-    /// Motor position \[rad\]; effort is the motor torque from the current, joint side \[Nm\].
+    /// Motor position \[rad\]; effort is the motor torque from the current, joint side \[Nm\],
+    /// at the middle of the time that it was held for.
     FOLLOWER_MOTOR_JS: JointSample = "/follower/motor_js", Stream;
     /// Mean of joint 1's sensors \[degC\].
     FOLLOWER_JOINT_1_TEMPERATURE: TemperatureSample = "/follower/joint_1/temperature", Stream;
@@ -102,6 +104,12 @@ topics! {
     FOLLOWER_OPERATING_STATE: OperatingStateSample = "/follower/operating_state", State;
     /// CRTK command to the arm's servo.
     FOLLOWER_STATE_COMMAND: StateCommandSample = "/follower/state_command", Event;
+    /// Command to the servo's friction feed-forward: take over what the twin found, or give it back.
+    FOLLOWER_FRICTION_COMMAND: FrictionCommandSample = "/follower/friction_command", Event;
+    /// The friction that the servo feeds forward at joint 1.
+    FOLLOWER_JOINT_1_FRICTION: FrictionStatusSample = "/follower/joint_1/friction", State;
+    /// The same at joint 2.
+    FOLLOWER_JOINT_2_FRICTION: FrictionStatusSample = "/follower/joint_2/friction", State;
     /// The hand as the device measures it.
     LEADER_MEASURED_CP: PoseSample = "/leader/measured_cp", Stream;
     /// The hand as accepted: valid, in range, from the source that holds the authority.

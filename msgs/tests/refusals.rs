@@ -213,6 +213,22 @@ fn laws_have_names_of_at_most_24_bytes() {
 }
 
 #[test]
+fn friction_is_told_of_a_known_joint_from_a_known_source() {
+    let good = FrictionStatusSample::nothing(STAMP, 1);
+    assert_eq!(FrictionStatusSample::from_ros(&good.to_ros()), Ok(good));
+    refused(FrictionStatusSample::nothing(STAMP, 9), "joint");
+    let mut status = good.to_ros();
+    status.source = "guessed".to_owned();
+    let found = known(FrictionStatusSample::from_ros(&status));
+    assert_eq!(found, ("source", "guessed".to_owned()));
+    let mut command = FrictionCommandSample::new(STAMP, FrictionCommand::TAKE_OVER).to_ros();
+    assert_eq!(command.string, "take_over");
+    command.string = "take_all".to_owned();
+    let found = known(FrictionCommandSample::from_ros(&command));
+    assert_eq!(found, ("string", "take_all".to_owned()));
+}
+
+#[test]
 fn a_twin_s_lists_are_of_one_length_and_fit() {
     let known_sample = TwinParametersSample {
         count: 2,

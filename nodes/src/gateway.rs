@@ -11,8 +11,8 @@ use ferntast_msgs::{
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
+    choice_parameter::ChoiceParameter,
     config::{GatewaySection, HandSource, Middleware},
-    law_parameter::LawParameter,
     pace,
     process::{PERIOD_NANOS, ProcessError, Surroundings},
     relay::Relay,
@@ -45,6 +45,7 @@ fn comes_in(topic: &str, crtk: bool) -> bool {
     topic == topics::FOLLOWER_STATE_COMMAND.name
         || topic == topics::LEADER_STATE_COMMAND.name
         || topic == topics::LINK_LAW_COMMAND.name
+        || topic == topics::FOLLOWER_FRICTION_COMMAND.name
         || topic == topics::FOLLOWER_SERVO_JP.name
         || topic == topics::LINK_COMMAND.name
         || topic == topics::RECORDER_COMMAND.name
@@ -93,6 +94,8 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         carrier.add(topic, &ros, bus, stamp, every, |_, _| {})?;
     }
     carrier.add(topics::LINK_LAW_COMMAND, &ros, bus, stamp, every, |_, _| {})?;
+    let friction = topics::FOLLOWER_FRICTION_COMMAND;
+    carrier.add(friction, &ros, bus, stamp, every, |_, _| {})?;
     carrier.add(
         topics::FOLLOWER_SERVO_JP,
         &ros,
@@ -115,11 +118,16 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         )?;
     }
 
-    let mut law = LawParameter::open(around, &ros)?;
+    let mut parameters = [
+        ChoiceParameter::law(around, &ros)?,
+        ChoiceParameter::friction(around, &ros)?,
+    ];
     let mut relay = Relay::new(around, PERIOD_NANOS)?;
     relay.begin(carrier);
     pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
-        law.round(wake.now);
+        for parameter in &mut parameters {
+            parameter.round(wake.now);
+        }
         relay.round(wake.now, wake, |_, _| {})
     });
     Ok(())

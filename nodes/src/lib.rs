@@ -3,6 +3,7 @@
 pub mod arm;
 pub mod carry;
 pub mod challenge;
+mod choice_parameter;
 pub mod clock;
 pub mod command;
 pub mod config;
@@ -12,7 +13,6 @@ pub mod estimator;
 pub mod experiment;
 mod foxglove;
 mod gateway;
-mod law_parameter;
 pub mod link;
 pub mod lockstep;
 pub mod master;

@@ -6,9 +6,12 @@ use ferntast_bus::{Bus, CreateError, McapBus, MemoryBus, frames, mcap::BagOption
 use ferntast_lab::experiment::RECORD;
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
-    Text, Time,
-    sample::{Faults, LawCommandSample, StateCommand, StateCommandSample},
-    topics,
+    Message, Text, Time,
+    sample::{
+        Faults, FrictionCommand, FrictionCommandSample, LawCommandSample, StateCommand,
+        StateCommandSample,
+    },
+    topics::{self, Topic},
 };
 use ferntast_sim::{
     arm::SimulatedArmError,
@@ -235,16 +238,43 @@ impl LockstepSession {
     ///
     /// A topic that cannot be opened.
     pub fn switch_law_at(&mut self, seconds: f64, law: &str) -> Result<(), RunError> {
-        let mut publisher = self.bus.publisher(topics::LINK_LAW_COMMAND)?;
-        let at = self.executor.now().plus_nanos((seconds * 1e9) as i64);
         let law = Text::new(law);
-        let mut asked = false;
+        self.publish_at(seconds, topics::LINK_LAW_COMMAND, move |stamp| {
+            LawCommandSample { stamp, law }
+        })
+    }
+
+    /// Gives a command to the servo's friction feed-forward, `seconds` \[s\] after now.
+    ///
+    /// # Errors
+    ///
+    /// A topic that cannot be opened.
+    pub fn command_friction_at(
+        &mut self,
+        seconds: f64,
+        command: FrictionCommand,
+    ) -> Result<(), RunError> {
+        let topic = topics::FOLLOWER_FRICTION_COMMAND;
+        self.publish_at(seconds, topic, move |now| {
+            FrictionCommandSample::new(now, command)
+        })
+    }
+
+    fn publish_at<M: Message>(
+        &mut self,
+        seconds: f64,
+        topic: Topic<M>,
+        message: impl Fn(Time) -> M + 'static,
+    ) -> Result<(), RunError> {
+        let mut publisher = self.bus.publisher(topic)?;
+        let at = self.executor.now().plus_nanos((seconds * 1e9) as i64);
+        let mut published = false;
         self.executor
             .add(PERIOD_NANOS, move |now: Time, _: &mut Bus| {
-                if !asked && now >= at {
-                    asked = true;
+                if !published && now >= at {
+                    published = true;
                     // Memory does not refuse what is valid.
-                    let _ = publisher.publish(now, &LawCommandSample { stamp: now, law });
+                    let _ = publisher.publish(now, &message(now));
                 }
             })?;
         Ok(())

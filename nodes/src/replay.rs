@@ -61,12 +61,16 @@ pub struct Comparison {
 }
 
 /// Inputs of servo and estimator.
-const INPUTS: [&str; 4] = [
+const INPUTS: [&str; 5] = [
     "/follower/measured_js",
     "/follower/servo_cp",
     "/follower/servo_jp",
     "/follower/state_command",
+    "/follower/friction_command",
 ];
+
+/// What the servo takes of a twin: from the recording, where no twin is run anew.
+const FROM_THE_TWIN: &str = "/twin/parameters";
 
 /// Inputs of a twin beside those.
 const OF_THE_TWIN: [&str; 3] = [
@@ -180,7 +184,11 @@ pub fn run(
     let there = |name: &str| topics_there.iter().any(|own| own == name);
     let mut carrier = Carrier::default();
     carrier.add_topics(&recording, &bus, Stamp::Received, |topic, _: Delivery| {
-        let wanted = INPUTS.contains(&topic) || (twin.is_some() && OF_THE_TWIN.contains(&topic));
+        let wanted = INPUTS.contains(&topic)
+            || match twin.is_some() {
+                true => OF_THE_TWIN.contains(&topic),
+                false => topic == FROM_THE_TWIN,
+            };
         if wanted && there(topic) {
             Carry::Every { queue: 64 }
         } else {
@@ -196,6 +204,15 @@ pub fn run(
         &bus,
         topics::FOLLOWER_OPERATING_STATE,
     )?;
+    for topic in [
+        topics::FOLLOWER_JOINT_1_FRICTION,
+        topics::FOLLOWER_JOINT_2_FRICTION,
+    ] {
+        // Recordings of earlier versions have none.
+        if there(topic.name) {
+            add_check(&mut checks, &recording, &bus, topic)?;
+        }
+    }
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_MEASURED_CP)?;
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_MEASURED_CF)?;
     add_check(&mut checks, &recording, &bus, topics::FOLLOWER_CONTACT_CF)?;

@@ -1,7 +1,7 @@
 //! The flexible joint of the second paper: what its bench does, the regressions find.
 
 use ferntast_identification::flexible_joint::{
-    FlexibleJointSignals, Inertias, PARAMETERS, Row, off_line, on_line, rows,
+    FlexibleJointSignals, Inertias, OnLine, PARAMETERS, Row, off_line, on_line, rows,
 };
 use ferntast_model::recursive_least_squares::Forgetting;
 use ferntast_sim::flexible_joint_bench::{
@@ -102,9 +102,10 @@ fn rest_is_survived() {
     let rows = rows_of(&record(&truth, &run), &truth);
     let track = |forgetting| on_line(&rows[0], SCALES[0], NOISE[0], forgetting).unwrap();
     let plain = track(Forgetting::Exponential { factor: 0.999 });
-    assert!(plain.wind_up > 1e3, "{}", plain.wind_up);
+    let most = |track: &OnLine| track.wind_up(0, 0.0).max(track.wind_up(1, 0.0));
+    assert!(most(&plain) > 1e3, "{}", most(&plain));
     let variable = track(VARIABLE);
-    assert!(variable.wind_up <= 1.0 + 1e-9, "{}", variable.wind_up);
+    assert!(most(&variable) <= 1.0 + 1e-9, "{}", most(&variable));
     let batch = off_line(&rows[0]).unwrap();
     let after = variable
         .track

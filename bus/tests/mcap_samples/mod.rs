@@ -8,7 +8,8 @@ use ferntast_bus::mcap::{BagOptions, BagSummary, BagWriter};
 use ferntast_msgs::{
     Message, Text, Time,
     sample::{
-        AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, HealthSample, JointFields,
+        AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, FrictionCommand,
+        FrictionCommandSample, FrictionSource, FrictionStatusSample, HealthSample, JointFields,
         JointSample, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
         OperatingState, OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
         RecorderStatusSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
@@ -44,6 +45,8 @@ pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
         .or_else(|| pick(operating_state(k, stamp)))
         .or_else(|| pick(state_command(k, stamp)))
         .or_else(|| pick(law_command(k, stamp)))
+        .or_else(|| pick(friction_command(k, stamp)))
+        .or_else(|| pick(friction_status(k, stamp)))
         .or_else(|| pick(authority(k, stamp)))
         .or_else(|| pick(link_status(k, stamp)))
         .or_else(|| pick(twin_parameters(k, stamp)))
@@ -137,6 +140,25 @@ pub fn law_command(k: u32, stamp: Time) -> LawCommandSample {
         stamp,
         law: Text::display(format_args!("law_{k}")),
     }
+}
+
+fn friction_command(k: u32, stamp: Time) -> FrictionCommandSample {
+    FrictionCommandSample::new(stamp, FrictionCommand((k % 2 + 1) as u8))
+}
+
+fn friction_status(k: u32, stamp: Time) -> FrictionStatusSample {
+    let mut sample = FrictionStatusSample {
+        commands: u64::from(k),
+        refused: Text::new("no twin was heard"),
+        count: 1,
+        source: FrictionSource::TWIN,
+        ..FrictionStatusSample::nothing(stamp, 1)
+    };
+    sample.names[0] = Text::new("b_0");
+    sample.configured[0] = 12.5;
+    sample.values[0] = 13.25;
+    sample.targets[0] = 14.0;
+    sample
 }
 
 fn authority(k: u32, stamp: Time) -> AuthoritySample {

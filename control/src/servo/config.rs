@@ -1,5 +1,6 @@
 //! What can be tuned about the servo.
 
+use super::TakeOverConfig;
 use ferntast_model::{JOINTS, ParameterError, check};
 use serde::{Deserialize, Serialize};
 
@@ -50,6 +51,8 @@ pub struct ServoConfig {
     pub friction_compensation: f64,
     /// Setpoint speed below which the friction fed forward fades out \[rad/s\].
     pub friction_smoothing: f64,
+    /// How far friction that was found elsewhere may be taken over.
+    pub take_over: TakeOverConfig,
     /// How far beyond its limits a joint may be measured before that is a
     /// fault \[rad\].
     pub limit_margin: f64,
@@ -79,6 +82,7 @@ impl Default for ServoConfig {
             hold_damping: [40.0, 40.0],
             friction_compensation: 0.9,
             friction_smoothing: 0.01,
+            take_over: TakeOverConfig::default(),
             limit_margin: 0.02,
             overspeed_share: 1.5,
         }
@@ -157,6 +161,9 @@ impl ServoConfig {
             1.0,
             "rad/s",
         )?;
+        self.take_over
+            .validate()
+            .map_err(|error| error.within("take_over"))?;
         check("limit_margin", self.limit_margin, 0.0, 1.0, "rad")?;
         check("overspeed_share", self.overspeed_share, 1.0, 10.0, "-")
     }

@@ -14,16 +14,15 @@
 //! b > K T/2 + |B| (Colgate and Schenkel 1997), with b the joint's own viscous
 //! friction: about 165 Nm·s/rad against 1000 · 0.001 / 2 + 40.
 
-use super::{ServoConfig, Setpoint};
+use super::{FeedForward, ServoConfig, Setpoint};
 use ferntast_model::JOINTS;
 use ferntast_model::ParameterError;
-use ferntast_model::friction::{Friction, FrictionState};
 use ferntast_model::joint::JointParameters;
 
 /// Position law of one joint.
 #[derive(Clone, Debug)]
 pub struct PositionLaw {
-    friction: Friction,
+    friction: FeedForward,
     inertia: f64,
     stiffness: f64,
     pressing_limit: f64,
@@ -57,7 +56,7 @@ impl PositionLaw {
     ) -> Result<PositionLaw, ParameterError> {
         let index = index.min(JOINTS - 1);
         Ok(PositionLaw {
-            friction: Friction::new(&joint.friction).map_err(|error| error.within("friction"))?,
+            friction: FeedForward::new(&joint.friction, config.take_over)?,
             inertia: joint.motor_inertia,
             stiffness: config.stiffness[index],
             pressing_limit: config.pressing_limit[index],
@@ -68,6 +67,16 @@ impl PositionLaw {
             compensation: config.friction_compensation,
             smoothing: config.friction_smoothing,
         })
+    }
+
+    /// The friction that is fed forward.
+    pub fn feed_forward(&self) -> &FeedForward {
+        &self.friction
+    }
+
+    /// The same, to be told other friction.
+    pub fn feed_forward_mut(&mut self) -> &mut FeedForward {
+        &mut self.friction
     }
 
     /// Motor torque that follows `setpoint`, from motor position \[rad\],
@@ -101,13 +110,9 @@ impl PositionLaw {
     /// linearly through zero: no step when the setpoint turns.
     fn friction(&self, velocity: f64, load: f64) -> f64 {
         let speed = velocity.abs();
-        let state = FrictionState {
-            velocity: speed.max(self.smoothing).copysign(velocity),
-            load,
-            ..FrictionState::default()
-        };
+        let sliding = speed.max(self.smoothing).copysign(velocity);
         let fade = (speed / self.smoothing).min(1.0);
-        self.compensation * fade * self.friction.torque_within_range(&state).torque
+        self.compensation * fade * self.friction.torque(sliding, load)
     }
 
     fn limit(&self, torque: f64) -> LimitedTorque {

@@ -18,6 +18,7 @@
 mod command;
 mod compliance;
 mod config;
+mod feed_forward;
 mod law;
 mod setpoint;
 mod stall;
@@ -27,6 +28,9 @@ mod tests;
 pub use command::{Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target};
 pub use compliance::{stiffest, tip_compliance};
 pub use config::ServoConfig;
+pub use feed_forward::{
+    FedForward, FeedForward, FoundParameter, MOST_PARAMETERS, TakeOverConfig, TakeOverRefusal,
+};
 pub use law::{LimitedTorque, PositionLaw};
 pub use setpoint::{Setpoint, SetpointGenerator, SetpointLimits};
 
@@ -192,9 +196,22 @@ impl Servo {
         self.machine.state()
     }
 
+    /// The friction that is fed forward at each joint.
+    pub fn feed_forward(&self) -> [&FeedForward; JOINTS] {
+        self.laws.each_ref().map(PositionLaw::feed_forward)
+    }
+
+    /// The same at joint number `joint` (from 0), to be told other friction.
+    pub fn feed_forward_mut(&mut self, joint: usize) -> Option<&mut FeedForward> {
+        self.laws.get_mut(joint).map(PositionLaw::feed_forward_mut)
+    }
+
     /// One period at `now_ns` \[ns since the UNIX epoch\].
     pub fn step(&mut self, now_ns: i64, input: &ServoInput) -> ServoOutput {
         let stalled_ns = self.stall.step(now_ns);
+        for law in &mut self.laws {
+            law.feed_forward_mut().step(self.period);
+        }
         let measurement = self.usable(now_ns - stalled_ns, input.measurement.as_ref());
         let was = self.machine.state();
         let state_refused = input

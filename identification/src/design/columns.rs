@@ -1,6 +1,6 @@
 //! Columns of an effect on a session.
 
-use crate::effects::{EffectHandle, Exact, MOST_COLUMNS};
+use crate::effects::{EffectHandle, Exact, ExactSignal, MOST_COLUMNS};
 use crate::filter::Kernel;
 use crate::signals::{Filters, Signals};
 
@@ -51,26 +51,21 @@ pub fn filtered(
             .map(|column| smooth.at_samples(column, rows))
             .collect();
     }
-    let (q, tau) = (&signals.raw.position, &signals.raw.joint_torque);
-    exact
-        .iter()
-        .map(|channel| match channel {
-            Exact::One => vec![1.0; rows.len()],
-            Exact::Position => kernel(0).at_samples(q, rows),
-            Exact::Velocity => kernel(1).at_samples(q, rows),
-            Exact::Acceleration => kernel(2).at_samples(q, rows),
-            Exact::JointTorque => kernel(0).at_samples(tau, rows),
-            Exact::JointTorqueRate => kernel(1).at_samples(tau, rows),
-            Exact::Driven => {
-                let mut sum = kernel(0).at_samples(tau, rows);
-                let acceleration = kernel(2).at_samples(q, rows);
-                sum.iter_mut()
-                    .zip(acceleration)
-                    .for_each(|(s, a)| *s += inertia * a);
-                sum
-            }
-        })
-        .collect()
+    let column = |channel: &Exact| {
+        let mut sum = vec![channel.constant(); rows.len()];
+        for (signal, order, factor) in channel.parts(inertia) {
+            let signal = match signal {
+                ExactSignal::Position => &signals.raw.position,
+                ExactSignal::JointTorque => &signals.raw.joint_torque,
+            };
+            let filtered = kernel(order).at_samples(signal, rows);
+            sum.iter_mut()
+                .zip(filtered)
+                .for_each(|(sum, value)| *sum += factor * value);
+        }
+        sum
+    };
+    exact.iter().map(column).collect()
 }
 
 /// y = τ_m − τ − J q̈ at rows `rows`, through the column filter.

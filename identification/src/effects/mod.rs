@@ -185,6 +185,38 @@ pub enum Exact {
     Driven,
 }
 
+/// A signal that an [`Exact`] channel is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExactSignal {
+    /// q.
+    Position,
+    /// τ, measured.
+    JointTorque,
+}
+
+impl Exact {
+    /// What it is where no signal takes part.
+    pub(crate) fn constant(self) -> f64 {
+        f64::from(u8::from(self == Exact::One))
+    }
+
+    /// Signals, the order of their derivative, and factors that add up to it;
+    /// `inertia` is J.
+    pub(crate) fn parts(self, inertia: f64) -> impl Iterator<Item = (ExactSignal, u8, f64)> {
+        use ExactSignal::{JointTorque, Position};
+        let (first, second) = match self {
+            Exact::One => (None, None),
+            Exact::Position => (Some((Position, 0, 1.0)), None),
+            Exact::Velocity => (Some((Position, 1, 1.0)), None),
+            Exact::Acceleration => (Some((Position, 2, 1.0)), None),
+            Exact::JointTorque => (Some((JointTorque, 0, 1.0)), None),
+            Exact::JointTorqueRate => (Some((JointTorque, 1, 1.0)), None),
+            Exact::Driven => (Some((JointTorque, 0, 1.0)), Some((Position, 2, inertia))),
+        };
+        first.into_iter().chain(second)
+    }
+}
+
 /// How an effect goes with the direction of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {

@@ -1,11 +1,12 @@
 //! Batch least squares.
 
-use nalgebra::{Matrix2, Vector2};
-
 use super::Row;
+use crate::regression::by_blocks;
 
-/// Lags over which the correlation of the residual is summed.
-const MOST_LAGS: usize = 300;
+/// Stretches of time that are left out in turn for the standard errors.
+const BLOCKS: usize = 20;
+/// Columns that are more alike than this do not tell their parameters apart \[1\].
+const MOST_ALIKE: f64 = 1.0 - 1e-9;
 
 /// A parameter found off line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,54 +19,24 @@ pub struct Estimate {
 
 /// Least squares over rows of one regression; `None` where they do not
 /// determine both parameters.
-///
-/// The covariance is that of Newey and West (Econometrica 55, 1987):
-/// R⁻¹ S R⁻¹, S the long-run covariance of φ e.
 #[must_use]
 pub fn off_line(rows: &[Row]) -> Option<[Estimate; 2]> {
-    let phi = |row: &Row| Vector2::new(row.phi[0], row.phi[1]);
-    // Columns of unit size, since k_1 and k_2 are ten powers of ten apart.
-    let size = rows
-        .iter()
-        .fold(Vector2::zeros(), |sum: Vector2<f64>, row| {
-            sum + phi(row).component_mul(&phi(row))
+    let column = |k: usize| -> Vec<f64> { rows.iter().map(|row| row.phi[k]).collect() };
+    let (first, second) = (column(0), column(1));
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let alike =
+        product(&first, &second).powi(2) / (product(&first, &first) * product(&second, &second));
+    // Where a column is zero, their likeness is no number.
+    if alike.is_nan() || alike >= MOST_ALIKE {
+        return None;
+    }
+    let measured: Vec<f64> = rows.iter().map(|row| row.measured).collect();
+    let found = by_blocks(&[&first, &second], &measured, BLOCKS)?;
+    let estimate = |k: usize| {
+        Some(Estimate {
+            value: *found.values.get(k)?,
+            std_error: *found.errors.get(k)?,
         })
-        .map(f64::sqrt);
-    if rows.len() < 10 || size.iter().any(|s| !(s.is_finite() && *s > 0.0)) {
-        return None;
-    }
-    let scaled = |row: &Row| phi(row).component_div(&size);
-    let (mut information, mut right) = (Matrix2::zeros(), Vector2::zeros());
-    for row in rows {
-        information += scaled(row) * scaled(row).transpose();
-        right += scaled(row) * row.measured;
-    }
-    if information.determinant() < 1e-9 {
-        return None;
-    }
-    let inverse: Matrix2<f64> = information.try_inverse()?;
-    let theta = inverse * right;
-    let moments: Vec<Vector2<f64>> = rows
-        .iter()
-        .map(|row| scaled(row) * (row.measured - scaled(row).dot(&theta)))
-        .collect();
-    let lags = MOST_LAGS.min(rows.len() / 10);
-    let mut long_run = Matrix2::zeros();
-    for lag in 0..=lags {
-        let product = moments[lag..]
-            .iter()
-            .zip(&moments)
-            .fold(Matrix2::zeros(), |sum, (a, b)| sum + a * b.transpose());
-        let weight = 1.0 - lag as f64 / (lags + 1) as f64;
-        long_run += if lag == 0 {
-            product
-        } else {
-            (product + product.transpose()) * weight
-        };
-    }
-    let covariance = inverse * long_run * inverse;
-    Some([0, 1].map(|i| Estimate {
-        value: theta[i] / size[i],
-        std_error: covariance[(i, i)].max(0.0).sqrt() / size[i],
-    }))
+    };
+    Some([estimate(0)?, estimate(1)?])
 }

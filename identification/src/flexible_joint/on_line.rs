@@ -12,11 +12,8 @@ const CONVERGED: f64 = 0.10;
 /// How the two parameters of one regression went on line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OnLine {
-    /// Estimates after each row: time \[s\], values, standard errors.
+    /// Estimates after each row.
     pub track: Vec<Track>,
-    /// Largest standard deviation that the estimator gave either parameter,
-    /// over that at the start; above 1 it has wound up \[1\].
-    pub wind_up: f64,
 }
 
 /// Estimates at one time.
@@ -28,6 +25,9 @@ pub struct Track {
     pub values: [f64; 2],
     /// Their standard errors.
     pub std_errors: [f64; 2],
+    /// Standard deviations by the covariance alone, over those at the start:
+    /// above 1 the estimator has wound up \[1\].
+    pub uncertainty: [f64; 2],
 }
 
 /// Runs recursive least squares over rows, from zero; `scales` are the priors'
@@ -45,25 +45,32 @@ pub fn on_line(
     let priors = scales.map(|scale| Prior::unbounded(0.0, scale));
     let mut estimator = RecursiveLeastSquares::new(&priors, noise, forgetting)?;
     let mut track = Vec::with_capacity(rows.len());
-    let mut wind_up = 0.0_f64;
     for row in rows {
         if let Update::Refused = estimator.update(&row.phi, row.measured) {
             continue;
         }
         let std_errors = [0, 1].map(|i| estimator.std_error(i));
-        for i in 0..2 {
-            wind_up = wind_up.max(estimator.uncertainty(i));
-        }
         track.push(Track {
             time: row.time,
             values: [0, 1].map(|i| estimator.estimate().get(i).copied().unwrap_or(0.0)),
             std_errors,
+            uncertainty: [0, 1].map(|i| estimator.uncertainty(i)),
         });
     }
-    Ok(OnLine { track, wind_up })
+    Ok(OnLine { track })
 }
 
 impl OnLine {
+    /// Largest standard deviation that the covariance gave parameter `index`
+    /// after time `from` \[s\], over that at the start; above 1 the estimator
+    /// has wound up \[1\].
+    #[must_use]
+    pub fn wind_up(&self, index: usize, from: f64) -> f64 {
+        let all = self.track.iter().filter(|track| track.time >= from);
+        all.filter_map(|track| track.uncertainty.get(index).copied())
+            .fold(0.0, f64::max)
+    }
+
     /// Time \[s\] from which parameter `index` stays within a tenth of its
     /// off-line value, but for moments that add up to less than a hundredth of
     /// the rest; `None` if it never does.

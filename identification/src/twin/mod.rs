@@ -28,7 +28,7 @@ use crate::data::{Dataset, ModelSpec, Session};
 use crate::design::Design;
 use crate::diagnose::{Diagnosis, diagnose};
 use crate::error::PrepareError;
-use crate::fit::fit;
+use crate::fit::{Fit, fit};
 use crate::setup::Setup;
 
 use change::ChangeLog;
@@ -182,6 +182,7 @@ pub struct Twin {
     estimator: RecursiveLeastSquares,
     names: Vec<(String, String)>,
     off_line: Vec<f64>,
+    off_line_errors: Vec<f64>,
     band: f64,
     /// Mean square above which the residual has left its band \[Nm²\].
     limit: f64,
@@ -192,6 +193,8 @@ pub struct Twin {
     kept_samples: usize,
     last: Option<TwinSample>,
     sensors: Sensors,
+    /// Whether a sensor was stuck at the last sample.
+    stuck: bool,
     mean_square: f64,
     rows: Vec<TwinRow>,
     settled_rows: f64,
@@ -245,7 +248,7 @@ impl Twin {
             least: 0.95,
         };
         let joint = dataset.joint;
-        let names = setup
+        let names: Vec<(String, String)> = setup
             .terms
             .iter()
             .flat_map(|term| term.effect.description().coefficients.clone())
@@ -257,6 +260,7 @@ impl Twin {
             period,
             stream: Stream::new(&setup, period, &off_line),
             estimator: RecursiveLeastSquares::new(&priors, band, forgetting)?,
+            off_line_errors: errors_of(&fitted, &names),
             names,
             off_line,
             band,
@@ -267,6 +271,7 @@ impl Twin {
             kept_samples: 0,
             last: None,
             sensors: Sensors::new(torque, setup.facts.travel()),
+            stuck: false,
             mean_square: 0.0,
             rows: Vec::new(),
             settled_rows: 0.0,
@@ -296,11 +301,16 @@ impl Twin {
             self.kept.push(self.session(sample));
         }
         self.last = Some(*sample);
-        self.keep(sample);
         if matches!(flag, Some(Flag::PositionStuck | Flag::JointTorqueStuck)) {
             self.stream.restart();
+            self.stuck = true;
             return flag;
         }
+        if std::mem::take(&mut self.stuck) {
+            // What a stuck sensor said is not for the lab.
+            self.kept.push(self.session(sample));
+        }
+        self.keep(sample);
         let mut rows = std::mem::take(&mut self.rows);
         self.stream.push(sample, &mut rows);
         for row in rows.drain(..) {
@@ -357,8 +367,12 @@ impl Twin {
     #[must_use]
     pub fn change(&self) -> Option<Change> {
         let names: Vec<String> = self.names.iter().map(|(name, _)| name.clone()).collect();
-        let std_errors: Vec<f64> = (0..names.len())
-            .map(|i| self.estimator.std_error(i))
+        // Both ends of the way are uncertain.
+        let std_errors: Vec<f64> = self
+            .off_line_errors
+            .iter()
+            .enumerate()
+            .map(|(i, off_line)| off_line.hypot(self.estimator.std_error(i)))
             .collect();
         self.changes.find(
             &names,
@@ -463,6 +477,15 @@ impl Twin {
             self.kept_samples -= self.kept.remove(0).len();
         }
     }
+}
+
+/// Standard errors of the coefficients off line; zero where none could be told.
+fn errors_of(fitted: &Fit, names: &[(String, String)]) -> Vec<f64> {
+    let error = |(name, _): &(String, String)| {
+        let parameter = fitted.parameters.get(name);
+        parameter.and_then(|own| own.std_error).unwrap_or(0.0)
+    };
+    names.iter().map(error).collect()
 }
 
 /// When the sample after the last is due \[s\].

@@ -4,7 +4,7 @@
 //! ([`Signals`](crate::signals::Signals)): both are short and without phase, so
 //! that a row is ready a fixed time after its sample.
 
-use crate::effects::{Exact, MOST_COLUMNS, Memory, Point};
+use crate::effects::{Exact, ExactSignal, MOST_COLUMNS, Memory, Point};
 use crate::filter::Kernel;
 use crate::setup::{BoundTerm, Setup};
 use crate::signals::{Filters, Sliding};
@@ -217,9 +217,25 @@ impl Stream {
         self.state.stuck.push(f64::from(u8::from(stuck)));
     }
 
+    /// A channel that passes the column filter as it is, at working sample `at`.
+    fn exact(&self, channel: Exact, at: usize) -> f64 {
+        let [position, _, joint_torque, _] = &self.state.working;
+        let parts = channel
+            .parts(self.inertia)
+            .filter_map(|(signal, order, factor)| {
+                let history = match signal {
+                    ExactSignal::Position => position,
+                    ExactSignal::JointTorque => joint_torque,
+                };
+                let kernel = self.kernels.column.get(usize::from(order))?;
+                Some(factor * history.filtered(kernel, at))
+            });
+        channel.constant() + parts.sum::<f64>()
+    }
+
     fn row(&self, at: usize) -> TwinRow {
         let [position, motor_torque, joint_torque, temperature] = &self.state.working;
-        let [smooth, slope, curvature] = &self.kernels.column;
+        let [smooth, _, curvature] = &self.kernels.column;
         let load = if self.has_sensor {
             joint_torque.filtered(smooth, at)
         } else {
@@ -233,13 +249,7 @@ impl Stream {
             let exact = term.effect.exact();
             for k in 0..term.effect.columns().min(MOST_COLUMNS) {
                 phi.push(match exact.get(k) {
-                    Some(Exact::One) => 1.0,
-                    Some(Exact::Position) => position.filtered(smooth, at),
-                    Some(Exact::Velocity) => position.filtered(slope, at),
-                    Some(Exact::Acceleration) => acceleration,
-                    Some(Exact::JointTorque) => load,
-                    Some(Exact::JointTorqueRate) => joint_torque.filtered(slope, at),
-                    Some(Exact::Driven) => driven,
+                    Some(channel) => self.exact(*channel, at),
                     None => self
                         .state
                         .columns

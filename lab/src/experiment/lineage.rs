@@ -19,7 +19,11 @@ pub struct Lineage {
     /// The experiment file that this one came out of, relative to this one.
     pub parent: String,
     /// Id or name of the effect that was added.
-    pub effect: String,
+    #[serde(default)]
+    pub effect: Option<String>,
+    /// Whether it goes on with what the parent's twin saw: the recordings are others then.
+    #[serde(default)]
+    pub from_twin: bool,
     /// SHA-256 over the content of the recordings, fitted ones first,
     /// hexadecimal.
     pub data_sha256: String,
@@ -29,7 +33,7 @@ pub struct Lineage {
     pub held_out_after: f64,
     /// Unit of both errors.
     pub unit: String,
-    /// The fitted parameters by name.
+    /// The parameters by name: fitted, or as the twin found them.
     #[serde(default)]
     pub parameters: BTreeMap<String, FittedParameter>,
 }
@@ -54,7 +58,7 @@ pub struct HistoryStep {
     pub experiment: PathBuf,
     /// Names of the effects in its model.
     pub effects: Vec<String>,
-    /// The effect that was added to get here; `None` for the first.
+    /// The effect that was added to get here; `None` for the first, and where only the recordings are others.
     pub added: Option<String>,
     /// Error on data not fitted; `None` for a first one that nothing was added to.
     pub held_out: Option<f64>,
@@ -103,12 +107,13 @@ pub fn history(path: &Path, data_folder: &Path) -> Result<Vec<HistoryStep>, Expe
             first.unit = Some(lineage.unit.clone());
         }
         let hash = lineage.as_ref().map(|lineage| lineage.data_sha256.clone());
-        let other_data = matches!((&data, &hash), (Some(before), Some(now)) if before != now);
+        let other_data = matches!((&data, &hash), (Some(before), Some(now)) if before != now)
+            || lineage.as_ref().is_some_and(|lineage| lineage.from_twin);
         data = hash.or(data);
         steps.push(HistoryStep {
             experiment: path,
             effects,
-            added: lineage.as_ref().map(|lineage| lineage.effect.clone()),
+            added: lineage.as_ref().and_then(|lineage| lineage.effect.clone()),
             held_out: lineage.as_ref().map(|lineage| lineage.held_out_after),
             unit: lineage.as_ref().map(|lineage| lineage.unit.clone()),
             other_data,

@@ -68,7 +68,7 @@ pub use contact::Contour;
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
 pub use own::RECORD;
-pub use write::{AddedEffect, write_child};
+pub use write::{NextStep, write_child};
 
 /// What stands for the folder of shared recordings in a path.
 pub const DATA_VARIABLE: &str = "${FERNTAST_DATA}";

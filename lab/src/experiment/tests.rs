@@ -89,7 +89,7 @@ fn what_is_wrong_is_named() {
     }
 }
 
-fn added(effect: Term, before: f64, after: f64) -> AddedEffect {
+fn added(effect: Term, before: f64, after: f64) -> NextStep {
     let b0 = FittedParameter {
         value: 11.5,
         std_error: Some(0.2),
@@ -100,8 +100,9 @@ fn added(effect: Term, before: f64, after: f64) -> AddedEffect {
         std_error: None,
         unit: "N".to_owned(),
     };
-    AddedEffect {
-        effect,
+    NextStep {
+        effect: Some(effect),
+        twin_recording: None,
         held_out_before: before,
         held_out_after: after,
         unit: "N".to_owned(),

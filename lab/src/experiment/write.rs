@@ -1,4 +1,4 @@
-//! Writes the experiment that comes out of another one by adding an effect.
+//! Writes the experiment that comes out of another one: with an effect more, or on what its twin saw.
 
 use std::{
     collections::BTreeMap,
@@ -11,33 +11,32 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value, value};
 
 use super::{DATA_VARIABLE, Experiment, FittedParameter, WriteError, data_hash, folder_of};
 
-/// What was added, and what it brought.
+/// What makes a new experiment out of its parent, and what it brought.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AddedEffect {
-    /// The effect.
-    pub effect: Term,
+pub struct NextStep {
+    /// The effect that is added.
+    pub effect: Option<Term>,
+    /// The recording that the parent's twin was recorded in: it takes the
+    /// place of the parent's recordings.
+    pub twin_recording: Option<PathBuf>,
     /// Error on data not fitted, before.
     pub held_out_before: f64,
     /// Error on data not fitted, after.
     pub held_out_after: f64,
     /// Unit of both errors.
     pub unit: String,
-    /// The fitted parameters by name, those of all effects.
+    /// The parameters by name, those of all effects: fitted, or as the twin found them.
     pub parameters: BTreeMap<String, FittedParameter>,
 }
 
-/// Writes `parent` with the effect added to `output`, with its lineage.
+/// Writes `parent` with that step done to `output`, with its lineage.
 /// Comments and order of the parent's file stay. Relative paths are turned so
 /// that they lead to the same recordings.
 ///
 /// # Errors
 ///
 /// [`WriteError`]; nothing is written then.
-pub fn write_child(
-    parent: &Experiment,
-    added: &AddedEffect,
-    output: &Path,
-) -> Result<(), WriteError> {
+pub fn write_child(parent: &Experiment, step: &NextStep, output: &Path) -> Result<(), WriteError> {
     let Some(parent_path) = &parent.path else {
         return Err(WriteError::NoParent);
     };
@@ -50,8 +49,9 @@ pub fn write_child(
             path: output.to_owned(),
         });
     }
-    let name = added.effect.name();
-    if parent.model.effects.iter().any(|term| term.name() == name) {
+    if let Some(name) = step.effect.as_ref().map(Term::name)
+        && parent.model.effects.iter().any(|term| term.name() == name)
+    {
         return Err(WriteError::Twice {
             effect: name.to_owned(),
         });
@@ -65,8 +65,23 @@ pub fn write_child(
         .parse()
         .map_err(|error: toml_edit::TomlError| again(error.to_string()))?;
     let (from, to) = (folder_of(parent_path), folder_of(output));
+    let mut recordings = [
+        &parent.recordings[..],
+        &parent.unloaded[..],
+        &parent.held_out[..],
+    ]
+    .concat();
+    if let Some(recording) = &step.twin_recording {
+        let path = turned(&recording.to_string_lossy(), Path::new("."), &to);
+        document.insert("recording", value(path));
+        document.remove("held_out");
+        document.remove("unloaded");
+        recordings = vec![recording.clone()];
+    }
     for key in ["recording", "held_out", "unloaded"] {
-        if let Some(item) = document.get_mut(key) {
+        if let Some(item) = document.get_mut(key)
+            && step.twin_recording.is_none()
+        {
             turn_paths(item, &from, &to);
         }
     }
@@ -75,17 +90,14 @@ pub fn write_child(
         .and_then(|model| model.get_mut("effects"))
         .and_then(Item::as_array_mut)
         .ok_or_else(|| again("model.effects is no list".to_owned()))?;
-    push(effects, &added.effect);
-    let all: Vec<PathBuf> = [
-        &parent.recordings[..],
-        &parent.unloaded[..],
-        &parent.held_out[..],
-    ]
-    .concat();
-    let hash = data_hash(&all).map_err(|(path, source)| WriteError::Data { path, source })?;
+    if let Some(effect) = &step.effect {
+        push(effects, effect);
+    }
+    let hash =
+        data_hash(&recordings).map_err(|(path, source)| WriteError::Data { path, source })?;
     document.insert(
         "lineage",
-        Item::Table(lineage(added, &hash, &from, &to, parent_path)),
+        Item::Table(lineage(step, &hash, &from, &to, parent_path)),
     );
     fs::write(output, document.to_string()).map_err(|source| WriteError::Write {
         path: output.to_owned(),
@@ -125,18 +137,23 @@ fn push(effects: &mut Array, effect: &Term) {
     effects.push_formatted(new);
 }
 
-fn lineage(added: &AddedEffect, hash: &str, from: &Path, to: &Path, parent_path: &Path) -> Table {
+fn lineage(step: &NextStep, hash: &str, from: &Path, to: &Path, parent_path: &Path) -> Table {
     let mut table = Table::new();
     let parent_name = parent_path.file_name().unwrap_or_default();
     let parent = turned(&parent_name.to_string_lossy(), from, to);
     table.insert("parent", value(parent));
-    table.insert("effect", value(added.effect.name()));
+    if let Some(effect) = &step.effect {
+        table.insert("effect", value(effect.name()));
+    }
+    if step.twin_recording.is_some() {
+        table.insert("from_twin", value(true));
+    }
     table.insert("data_sha256", value(hash));
-    table.insert("held_out_before", value(added.held_out_before));
-    table.insert("held_out_after", value(added.held_out_after));
-    table.insert("unit", value(added.unit.as_str()));
+    table.insert("held_out_before", value(step.held_out_before));
+    table.insert("held_out_after", value(step.held_out_after));
+    table.insert("unit", value(step.unit.as_str()));
     let mut parameters = Table::new();
-    for (name, parameter) in &added.parameters {
+    for (name, parameter) in &step.parameters {
         let mut entry = InlineTable::new();
         entry.insert("value", parameter.value.into());
         if let Some(std_error) = parameter.std_error.filter(|error| error.is_finite()) {

@@ -9,7 +9,7 @@ use ferntast_identification::{Addition, CustomEffect, Term, add, fit::Parameter}
 use serde::Serialize;
 
 use super::{Opened, WorkError};
-use crate::experiment::{AddedEffect, FittedParameter, write_child};
+use crate::experiment::{FittedParameter, NextStep, write_child};
 
 /// What one addition did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -76,6 +76,21 @@ pub fn own_effect(text: &str, bounds: &[String]) -> Result<Term, WorkError> {
     }))
 }
 
+/// Parameters as an experiment file keeps them.
+pub(super) fn fitted(
+    parameters: &BTreeMap<String, Parameter>,
+) -> BTreeMap<String, FittedParameter> {
+    let each = parameters.iter().map(|(name, own)| {
+        let parameter = FittedParameter {
+            value: own.value,
+            std_error: own.std_error,
+            unit: own.unit.clone(),
+        };
+        (name.clone(), parameter)
+    });
+    each.collect()
+}
+
 impl Opened {
     /// Adds `effect`, fits anew, and writes the new experiment to `output`.
     ///
@@ -85,26 +100,15 @@ impl Opened {
     pub fn add(&self, effect: &Term, output: &Path) -> Result<Added, WorkError> {
         let addition: Addition = add(&self.dataset, &self.experiment.model, effect)
             .map_err(|error| self.refuse(error))?;
-        let parameters = addition
-            .parameters
-            .iter()
-            .map(|(name, own)| {
-                let parameter = FittedParameter {
-                    value: own.value,
-                    std_error: own.std_error,
-                    unit: own.unit.clone(),
-                };
-                (name.clone(), parameter)
-            })
-            .collect();
-        let added = AddedEffect {
-            effect: effect.clone(),
+        let step = NextStep {
+            effect: Some(effect.clone()),
+            twin_recording: None,
             held_out_before: addition.held_out_before,
             held_out_after: addition.held_out_after,
             unit: self.torque_unit().to_owned(),
-            parameters,
+            parameters: fitted(&addition.parameters),
         };
-        write_child(&self.experiment, &added, output)?;
+        write_child(&self.experiment, &step, output)?;
         Ok(Added {
             effect: addition.effect,
             held_out_before: addition.held_out_before,

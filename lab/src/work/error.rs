@@ -52,6 +52,30 @@ pub enum WorkError {
         /// The recording.
         path: PathBuf,
     },
+    /// The recording says nothing of a twin.
+    #[error(
+        "{path}: nothing of a twin in it: record a session that runs with --twin EXPERIMENT.toml"
+    )]
+    NoTwin {
+        /// The recording.
+        path: PathBuf,
+    },
+    /// The twin in the recording is not that of the experiment.
+    #[error("{path}: {reason}; name the experiment that the twin was started with")]
+    OtherModel {
+        /// The recording.
+        path: PathBuf,
+        /// What does not go together.
+        reason: String,
+    },
+    /// What the twin said cannot be read.
+    #[error("{path}: {reason}")]
+    Twin {
+        /// The recording.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// An effect of one's own is not told as it has to be.
     #[error("{0}")]
     OwnEffect(String),

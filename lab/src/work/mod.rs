@@ -5,6 +5,7 @@ mod add;
 mod error;
 mod paths;
 mod start;
+mod twin;
 
 use std::path::Path;
 
@@ -19,6 +20,7 @@ pub use add::{Added, beside, own_effect};
 pub use error::WorkError;
 pub use paths::{Offered, offered};
 pub use start::{Beginning, start};
+pub use twin::{FromTwin, from_twin};
 
 /// An experiment with its recordings read.
 #[derive(Clone, Debug, PartialEq)]

@@ -168,6 +168,26 @@ impl Friction {
         }
     }
 
+    /// Names of the parameters in the order of the regressor's columns.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.terms.iter().flat_map(|term| {
+            let parameters = term.effect.description().parameters;
+            parameters.iter().take(term.count).map(|own| own.name)
+        })
+    }
+
+    /// Takes other values, in the order of the regressor's columns; fewer are
+    /// taken as far as they go. Allocates nothing, checks nothing.
+    pub fn set_values(&mut self, values: &[f64]) {
+        let own = self
+            .terms
+            .iter_mut()
+            .flat_map(|term| term.values.iter_mut().take(term.count));
+        for (to, from) in own.zip(values) {
+            *to = *from;
+        }
+    }
+
     /// Moves the memory of effects that have one on by `dt` \[s\].
     pub fn advance(&mut self, state: &FrictionState, dt: f64) {
         for term in &mut self.terms {
@@ -321,6 +341,12 @@ mod tests {
         let sum: f64 = row.iter().zip(values).map(|(a, b)| a * b).sum();
         assert!((sum - friction.torque(&state).torque).abs() < 1e-12);
         assert_eq!(values, [7.573, 0.127, 168.388, -544.193, 516.421]);
+        let names: Vec<_> = friction.names().collect();
+        assert_eq!(names, ["b_0", "b_0T", "b_1", "b_2", "b_3"]);
+        let mut other = preset("on_ground");
+        other.set_values(&values.map(|value| 2.0 * value));
+        let doubled = other.torque(&state).torque;
+        assert!((doubled - 2.0 * friction.torque(&state).torque).abs() < 1e-12);
     }
 
     #[test]

@@ -53,6 +53,7 @@ texts! {
     "crtk_msgs/msg/StringStamped": "standard/crtk_msgs/msg/StringStamped.msg";
     "ferntast_msgs/msg/Authority": "msg/Authority.msg";
     "ferntast_msgs/msg/ContactState": "msg/ContactState.msg";
+    "ferntast_msgs/msg/FrictionStatus": "msg/FrictionStatus.msg";
     "ferntast_msgs/msg/LinkCommand": "msg/LinkCommand.msg";
     "ferntast_msgs/msg/LinkStatus": "msg/LinkStatus.msg";
     "ferntast_msgs/msg/RecorderCommand": "msg/RecorderCommand.msg";

@@ -1,6 +1,10 @@
 //! What the checks and conversions of several samples share.
 
+use super::JOINT_NAMES;
 use crate::{InvalidMessage, Time};
+
+/// Every joint, for error texts.
+pub(super) const KNOWN_JOINTS: &str = "joint_1, joint_2";
 
 /// Refuses a stamp of zero and one that ROS 2 cannot hold.
 pub(super) fn stamp(stamp: Time) -> Result<(), InvalidMessage> {
@@ -67,6 +71,14 @@ pub(super) fn code(
         Some(_) => Ok(()),
         None => Err(unknown(field, code, known)),
     }
+}
+
+/// The joint of that name, from 0.
+pub(super) fn joint(name: &str) -> Result<u8, InvalidMessage> {
+    let joint = JOINT_NAMES.iter().position(|known| *known == name);
+    joint
+        .and_then(|index| u8::try_from(index).ok())
+        .ok_or_else(|| unknown("joint", name, KNOWN_JOINTS))
 }
 
 /// The error for a word or code that is not among `known`.

@@ -52,11 +52,13 @@ pub enum Fault {
     ResidualOutOfBand,
     /// The lab finds an effect missing in the twin's model.
     ModelIncomplete,
+    /// What the twin found was not taken over into the servo's feed-forward.
+    TakeOverRefused,
 }
 
 impl Fault {
     /// Every fault.
-    pub const ALL: [Fault; 24] = [
+    pub const ALL: [Fault; 25] = [
         Fault::CommandSilent,
         Fault::MeasurementSilent,
         Fault::CommandInvalid,
@@ -81,6 +83,7 @@ impl Fault {
         Fault::TorqueStuck,
         Fault::ResidualOutOfBand,
         Fault::ModelIncomplete,
+        Fault::TakeOverRefused,
     ];
 
     /// Every name, for error texts.
@@ -91,7 +94,7 @@ impl Fault {
         deadline missed, no realtime priority, recording lost, \
         recording failed, state command refused, joint limit, joint overspeed, \
         contact ambiguous, torque sensor stuck, residual out of its band, \
-        model incomplete";
+        model incomplete, take-over refused";
 
     /// The fault in words, as on the wire.
     pub const fn name(self) -> &'static str {
@@ -120,6 +123,7 @@ impl Fault {
             Fault::TorqueStuck => "torque sensor stuck",
             Fault::ResidualOutOfBand => "residual out of its band",
             Fault::ModelIncomplete => "model incomplete",
+            Fault::TakeOverRefused => "take-over refused",
         }
     }
 

@@ -5,13 +5,10 @@ use crate::{
     ros::{ferntast_msgs::TwinParameters, std_msgs::Header},
 };
 
-use super::{JOINT_NAMES, checks};
-
-/// The most parameters that a twin's message has room for.
-pub const MOST_PARAMETERS: usize = 16;
-
-/// Room for a number of each parameter; those after `count` are zero.
-type Numbers = [f64; MOST_PARAMETERS];
+use super::{
+    JOINT_NAMES, checks,
+    lists::{self, MOST_PARAMETERS, Numbers},
+};
 
 /// What the lab says of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -203,16 +200,11 @@ unsafe impl Message for TwinParametersSample {
     }
 
     fn from_ros(ros: &TwinParameters) -> Result<TwinParametersSample, InvalidMessage> {
-        let joint = JOINT_NAMES.iter().position(|name| *name == ros.joint);
-        let joint = joint
-            .and_then(|index| u8::try_from(index).ok())
-            .ok_or_else(|| checks::unknown("joint", &ros.joint, KNOWN_JOINTS))?;
+        let joint = checks::joint(&ros.joint)?;
         let verdict = TwinVerdict::from_name(&ros.verdict)
             .ok_or_else(|| checks::unknown("verdict", &ros.verdict, TwinVerdict::KNOWN))?;
         let count = ros.names.len();
-        if count > MOST_PARAMETERS {
-            return Err(length("names", count, MOST_PARAMETERS));
-        }
+        lists::count(count)?;
         let mut names = [Text::EMPTY; MOST_PARAMETERS];
         for (place, name) in names.iter_mut().zip(&ros.names) {
             *place = Text::new(name);
@@ -220,10 +212,10 @@ unsafe impl Message for TwinParametersSample {
         let sample = TwinParametersSample {
             stamp: ros.header.time(),
             names,
-            values: numbers("values", &ros.values, count)?,
-            off_line: numbers("off_line", &ros.off_line, count)?,
-            std_errors: numbers("std_errors", &ros.std_errors, count)?,
-            excitation: numbers("excitation", &ros.excitation, count)?,
+            values: lists::numbers("values", &ros.values, count)?,
+            off_line: lists::numbers("off_line", &ros.off_line, count)?,
+            std_errors: lists::numbers("std_errors", &ros.std_errors, count)?,
+            excitation: lists::numbers("excitation", &ros.excitation, count)?,
             residual_rms: ros.residual_rms,
             band: ros.band,
             change_before: ros.change_before,
@@ -247,9 +239,7 @@ unsafe impl Message for TwinParametersSample {
     fn check(&self) -> Result<(), InvalidMessage> {
         checks::stamp(self.stamp)?;
         let count = self.count as usize;
-        if count > MOST_PARAMETERS {
-            return Err(length("names", count, MOST_PARAMETERS));
-        }
+        lists::count(count)?;
         for (field, numbers) in self.lists() {
             checks::finite(field, &numbers[..count])?;
         }
@@ -264,7 +254,7 @@ unsafe impl Message for TwinParametersSample {
             checks::finite(field, &[value])?;
         }
         checks::flag("out_of_band", self.out_of_band)?;
-        checks::code("joint", self.joint_name(), self.joint, KNOWN_JOINTS)?;
+        checks::code("joint", self.joint_name(), self.joint, checks::KNOWN_JOINTS)?;
         checks::code(
             "verdict",
             self.verdict.name(),
@@ -272,27 +262,4 @@ unsafe impl Message for TwinParametersSample {
             TwinVerdict::KNOWN,
         )
     }
-}
-
-/// Every joint, for error texts.
-const KNOWN_JOINTS: &str = "joint_1, joint_2";
-
-fn length(field: &'static str, found: usize, expected: usize) -> InvalidMessage {
-    InvalidMessage::WrongLength {
-        field,
-        found,
-        expected,
-    }
-}
-
-/// A list that has to be as long as that of the names.
-fn numbers(field: &'static str, list: &[f64], expected: usize) -> Result<Numbers, InvalidMessage> {
-    if list.len() != expected {
-        return Err(length(field, list.len(), expected));
-    }
-    let mut numbers = [0.0; MOST_PARAMETERS];
-    for (place, value) in numbers.iter_mut().zip(list) {
-        *place = *value;
-    }
-    Ok(numbers)
 }

@@ -81,6 +81,7 @@ fn every_struct_has_the_fields_of_its_definition() {
         crtk_msgs::StringStamped,
         own::Authority,
         own::ContactState,
+        own::FrictionStatus,
         own::LinkCommand,
         own::LinkStatus,
         own::RecorderCommand,

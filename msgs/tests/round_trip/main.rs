@@ -88,6 +88,8 @@ macro_rules! properties {
 properties! {
     authority: AuthoritySample;
     contact_state: ContactStateSample;
+    friction_command: FrictionCommandSample;
+    friction_status: FrictionStatusSample;
     health: HealthSample;
     joint: JointSample;
     law_command: LawCommandSample;

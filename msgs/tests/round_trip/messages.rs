@@ -7,15 +7,18 @@ use ferntast_msgs::{
         crtk_msgs,
         diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue},
         ferntast_msgs::{
-            Authority, ContactState, LinkCommand, LinkStatus, RecorderCommand, RecorderStatus,
-            TwinParameters,
+            Authority, ContactState, FrictionStatus, LinkCommand, LinkStatus, RecorderCommand,
+            RecorderStatus, TwinParameters,
         },
         geometry_msgs::{Pose, PoseStamped, Transform, TransformStamped, Wrench, WrenchStamped},
         sensor_msgs::{JointState, Temperature},
         std_msgs::{self, Header},
         tf2_msgs::TFMessage,
     },
-    sample::{Edge, Fault, LinkEnd, OperatingState, StateCommand, TwinVerdict},
+    sample::{
+        Edge, Fault, FrictionCommand, FrictionSource, LinkEnd, OperatingState, StateCommand,
+        TwinVerdict,
+    },
 };
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
@@ -221,6 +224,52 @@ pub fn link_status() -> impl Strategy<Value = LinkStatus> {
                 ..LinkStatus::default()
             },
         )
+}
+
+/// Commands to the friction feed-forward, also unknown ones.
+pub fn friction_command() -> impl Strategy<Value = crtk_msgs::StringStamped> {
+    let commands = FrictionCommand::ALL
+        .into_iter()
+        .flat_map(FrictionCommand::name);
+    (header(), word(commands.collect()))
+        .prop_map(|(header, string)| crtk_msgs::StringStamped { header, string })
+}
+
+/// Friction fed forward with lists of any lengths, mostly the same.
+pub fn friction_status() -> impl Strategy<Value = FrictionStatus> {
+    let lists = (0..20_usize).prop_flat_map(|length| {
+        let numbers = || vec(number(), length);
+        (
+            vec(any::<String>(), length),
+            numbers(),
+            numbers(),
+            vec(number(), 0..20),
+        )
+    });
+    let sources = FrictionSource::ALL
+        .into_iter()
+        .flat_map(FrictionSource::name);
+    let words = (
+        word(vec!["joint_1", "joint_2"]),
+        word(sources.collect()),
+        any::<String>(),
+    );
+    (header(), words, lists, any::<u64>(), 0..3).prop_map(
+        |(header, (joint, source, refused), lists, commands, uneven)| {
+            let (names, configured, values, other) = lists;
+            FrictionStatus {
+                header,
+                joint,
+                source,
+                names,
+                targets: if uneven == 0 { other } else { values.clone() },
+                configured,
+                values,
+                commands,
+                refused,
+            }
+        },
+    )
 }
 
 /// Twins with lists of any lengths, mostly the same.

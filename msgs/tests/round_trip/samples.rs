@@ -154,6 +154,39 @@ pub fn state_command() -> impl Strategy<Value = StateCommandSample> {
     (time(), command).prop_map(|(stamp, command)| StateCommandSample::new(stamp, command))
 }
 
+/// Commands to the friction feed-forward.
+pub fn friction_command() -> impl Strategy<Value = FrictionCommandSample> {
+    let command = prop::sample::select(FrictionCommand::ALL.as_slice());
+    (time(), command).prop_map(|(stamp, command)| FrictionCommandSample::new(stamp, command))
+}
+
+/// Friction fed forward, with any number of parameters.
+pub fn friction_status() -> impl Strategy<Value = FrictionStatusSample> {
+    let source = prop::sample::select(FrictionSource::ALL.as_slice());
+    let lists = prop::collection::vec(
+        (text(), [finite(), finite(), finite()]),
+        0..=MOST_PARAMETERS,
+    );
+    (time(), 0..2u8, source, lists, any::<u64>(), text()).prop_map(
+        |(stamp, joint, source, lists, commands, refused)| {
+            let mut sample = FrictionStatusSample {
+                source,
+                commands,
+                refused,
+                count: lists.len() as u32,
+                ..FrictionStatusSample::nothing(stamp, joint)
+            };
+            for (i, (name, [configured, value, target])) in lists.into_iter().enumerate() {
+                sample.names[i] = name;
+                sample.configured[i] = configured;
+                sample.values[i] = value;
+                sample.targets[i] = target;
+            }
+            sample
+        },
+    )
+}
+
 /// Law commands.
 pub fn law_command() -> impl Strategy<Value = LawCommandSample> {
     (time(), "[a-z_]{1,24}").prop_map(|(stamp, law)| LawCommandSample {

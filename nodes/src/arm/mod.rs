@@ -78,8 +78,11 @@ impl Node for ArmNode {
             }
             None => [0.0; 2],
         };
+        // The current is held from one step to the next: what is measured of it belongs to the middle.
+        let mut middle = now;
         if let Some(last) = self.last {
             let elapsed = now.seconds_since(last).clamp(0.0, LONGEST_STEP);
+            middle = now.plus_seconds(-0.5 * elapsed);
             let flags = self.arm.advance(torque, elapsed);
             if flags.limited.contains(&true) {
                 output.health.raise(Fault::EffortLimited, Level::OK);
@@ -93,13 +96,13 @@ impl Node for ArmNode {
         if measured.torque_saturated.contains(&true) {
             output.health.raise(Fault::TorqueSaturated, Level::WARN);
         }
-        self.publish(now, &measured, output);
+        self.publish(now, middle, &measured, output);
         output.description = self.description.take();
     }
 }
 
 impl ArmNode {
-    fn publish(&mut self, now: Time, measured: &Measurement, output: &mut ArmOutput) {
+    fn publish(&mut self, now: Time, middle: Time, measured: &Measurement, output: &mut ArmOutput) {
         let sample = JointSample {
             stamp: now,
             position: measured.motor_position,
@@ -110,6 +113,7 @@ impl ArmNode {
         };
         output.measured_js = Some(sample);
         output.motor_js = Some(JointSample {
+            stamp: middle,
             effort: measured.motor_torque_from_current,
             ..sample
         });

@@ -3,6 +3,7 @@
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
 use ferntast_control::delay::Law;
+use ferntast_msgs::sample::FrictionCommand;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -10,6 +11,7 @@ use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
 use crate::{
     config::UnknownLaw,
     lockstep::LockstepSession,
+    servo::FrictionSummary,
     session::{ContactSummary, LeaderSummary, LinkSummary, StateSummary},
     twin::{self, TwinSummary},
 };
@@ -41,6 +43,14 @@ pub struct Arguments {
     #[arg(long, value_name = "EXPERIMENT.toml")]
     twin: Option<PathBuf>,
 
+    /// Have the servo take over the friction that the twin found, so many seconds after the start.
+    #[arg(long, value_name = "SECONDS", requires = "twin")]
+    take_over: Option<f64>,
+
+    /// Have it feed the configured friction forward again, so many seconds after the start.
+    #[arg(long, value_name = "SECONDS", requires = "twin")]
+    give_back: Option<f64>,
+
     /// Record into this folder (a rosbag2 directory; must not exist yet).
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -57,6 +67,7 @@ struct Result {
     contact: ContactSummary,
     leader: LeaderSummary,
     twin: Option<TwinSummary>,
+    friction: Vec<FrictionSummary>,
     states: std::collections::BTreeMap<String, StateSummary>,
     recording: Option<String>,
 }
@@ -88,6 +99,30 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
             .switch_law_at(seconds, law)
             .map_err(Failure::refused)?;
     }
+    for (flag, seconds, command) in [
+        (
+            "--take-over",
+            arguments.take_over,
+            FrictionCommand::TAKE_OVER,
+        ),
+        (
+            "--give-back",
+            arguments.give_back,
+            FrictionCommand::GIVE_BACK,
+        ),
+    ] {
+        let Some(seconds) = seconds else {
+            continue;
+        };
+        if !(seconds.is_finite() && seconds >= 0.0) {
+            return Err(Failure::refused(format!(
+                "{flag} {seconds}: give a number of seconds after the start"
+            )));
+        }
+        session
+            .command_friction_at(seconds, command)
+            .map_err(Failure::refused)?;
+    }
     let bar = ProgressBar::new(duration.ceil() as u64);
     if let Ok(style) =
         ProgressStyle::with_template("{bar:30} {pos}/{len} s of virtual time, {eta} left")
@@ -115,6 +150,7 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
         contact: monitor.contact(),
         leader: monitor.leader(),
         twin: monitor.twin(),
+        friction: monitor.friction(),
         states: monitor.states(),
         recording: arguments
             .record
@@ -138,6 +174,7 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
         );
         if let Some(twin) = &result.twin {
             println!("{twin}");
+            result.friction.iter().for_each(|own| println!("{own}"));
         }
     }
     Ok(ExitCode::SUCCESS)

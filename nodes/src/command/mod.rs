@@ -19,6 +19,7 @@ mod scenario_options;
 mod session;
 mod state;
 mod sweep;
+mod twin;
 
 use std::process::ExitCode;
 
@@ -77,6 +78,8 @@ enum Command {
     State(state::Arguments),
     /// Tell how the link does, or change its delay law.
     Link(link::Arguments),
+    /// Use what the twin of a joint found: in the servo's friction feed-forward, or in the lab.
+    Twin(twin::Arguments),
     /// Say what this machine offers and lacks, and how to mend it.
     Doctor(doctor::Arguments),
     /// List the topics' interfaces: type, RIHS01 hash, schema.
@@ -121,6 +124,7 @@ pub fn main() -> ExitCode {
         Command::Bag(arguments) => bag::run(arguments, json),
         Command::State(arguments) => state::run(arguments, json),
         Command::Link(arguments) => link::run(arguments, json),
+        Command::Twin(arguments) => twin::run(arguments, json),
         Command::Doctor(arguments) => doctor::run(arguments, json),
         Command::Interfaces(arguments) => interfaces::run(arguments, json),
     };

@@ -10,12 +10,14 @@
 //! * [`program`]: the motions,
 //! * [`bench`]: arm, servo and recorder in virtual time,
 //! * [`identify`]: what a recording says,
-//! * [`campaign`]: the same on many dates.
+//! * [`campaign`]: the same on many dates,
+//! * [`flexible_joint`]: the second paper's joint, on a bench of its own.
 
 pub mod bench;
 pub mod campaign;
 mod conditions;
 mod error;
+pub mod flexible_joint;
 pub mod identify;
 pub mod parallel;
 mod plan;

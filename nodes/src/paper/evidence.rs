@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use ferntast_identification::{damping::Sample, stiffness::Stiffness};
+use ferntast_identification::{damping::Sample, flexible_joint::Row, stiffness::Stiffness};
 use ferntast_model::contour::Surface;
 use ferntast_sim::arm::ArmConfig;
 
+use super::flexible_joint::{self, FlexibleJointEvidence, FlexibleJointJob};
 use crate::{
     config::{self, ConfigError},
     experiment::{
@@ -101,6 +102,8 @@ pub struct Evidence {
     pub contact: (Contact, f64),
     /// The campaign.
     pub campaign: Vec<RunResult>,
+    /// The second paper's joint: in motion, and with a long rest.
+    pub flexible_joint: FlexibleJointEvidence,
 }
 
 /// One experiment apart from the campaign.
@@ -114,6 +117,7 @@ struct Single {
 enum Job {
     Single(Single),
     Campaign(Run),
+    FlexibleJoint(FlexibleJointJob),
 }
 
 enum Done {
@@ -121,6 +125,7 @@ enum Done {
     Stiffness(Stiffness),
     Contact(Contact),
     Campaign(Box<RunResult>),
+    FlexibleJoint([Vec<Row>; 3]),
 }
 
 const FIG_16_FORCE: f64 = 20.0;
@@ -254,6 +259,7 @@ fn jobs(mission: &Mission) -> Vec<Job> {
     let singles = singles().into_iter().map(Job::Single);
     singles
         .chain(mission.runs().into_iter().map(Job::Campaign))
+        .chain(flexible_joint::jobs().map(Job::FlexibleJoint))
         .collect()
 }
 
@@ -274,6 +280,9 @@ pub fn duration() -> Result<f64, PaperError> {
     for one in singles() {
         sum += one.plan.program(&arm)?.duration();
     }
+    sum += flexible_joint::jobs()
+        .map(|one| one.duration())
+        .sum::<f64>();
     Ok(sum)
 }
 
@@ -306,16 +315,22 @@ pub fn collect(
                 let result = campaign::run_and_identify(&arm, one, &folder, &progress)?;
                 Ok(Done::Campaign(Box::new(result)))
             }
+            Job::FlexibleJoint(one) => {
+                let rows = one.run(folder, seed)?;
+                progress(one.duration());
+                Ok(Done::FlexibleJoint(rows))
+            }
         }
     })?;
-    let (mut joints, mut stiffnesses, mut contacts, mut campaign) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut joints, mut stiffnesses, mut contacts, mut campaign, mut rows) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for one in done {
         match one {
             Done::Joint(one) => joints.push(*one),
             Done::Stiffness(one) => stiffnesses.push(one),
             Done::Contact(one) => contacts.push(one),
             Done::Campaign(one) => campaign.push(*one),
+            Done::FlexibleJoint(one) => rows.push(one),
         }
     }
     let missing = || {
@@ -326,6 +341,7 @@ pub fn collect(
     };
     let mut joints = joints.into_iter();
     let mut joint = || joints.next().ok_or_else(missing);
+    let mut rows = rows.into_iter();
     let mut stiffnesses = stiffnesses.into_iter();
     let mut stiffness = || stiffnesses.next().ok_or_else(missing);
     Ok(Evidence {
@@ -340,5 +356,9 @@ pub fn collect(
             FIG_16_FORCE,
         ),
         campaign,
+        flexible_joint: FlexibleJointEvidence {
+            motion: rows.next().ok_or_else(missing)?,
+            rest: rows.next().ok_or_else(missing)?,
+        },
     })
 }

@@ -1,5 +1,7 @@
 //! What is told of one number or statement of the paper.
 
+use std::fmt;
+
 use serde::Serialize;
 
 /// One number or statement.
@@ -19,6 +21,57 @@ pub struct Item {
     pub holds: bool,
     /// What is asked for.
     pub criterion: String,
+    /// How it settled, where it is identified on line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on_line: Option<OnLineItem>,
+}
+
+/// How a parameter settled on line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct OnLineItem {
+    /// Value by batch least squares, in the item's unit.
+    pub off_line: f64,
+    /// Its standard error.
+    pub off_line_std_error: f64,
+    /// With the variable forgetting factor.
+    pub variable: Settling,
+    /// With a fixed forgetting factor: plain exponential forgetting.
+    pub fixed: Settling,
+}
+
+/// How an estimate settled under one rule of forgetting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Settling {
+    /// From when on it stays within a tenth of the value off line \[s\]; `null` if it never does.
+    pub convergence_time_s: Option<f64>,
+    /// Mean in the steady state over the value off line, less 1 \[1\].
+    pub steady_state_deviation: Option<f64>,
+    /// Standard deviation in the steady state over the value off line \[1\].
+    pub fluctuation: Option<f64>,
+    /// Largest standard deviation by the covariance over that at the start, in
+    /// a run with ten minutes of rest: above 1 the estimator has wound up \[1\].
+    pub wind_up_at_rest: f64,
+    /// Largest distance from the value off line in the first seconds after that
+    /// rest, as a share of it \[1\].
+    pub burst_after_rest: Option<f64>,
+}
+
+impl fmt::Display for Settling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.convergence_time_s {
+            Some(time) => write!(f, "from {time:.2} s")?,
+            None => write!(f, "never there")?,
+        }
+        let percent = |share: Option<f64>| 100.0 * share.unwrap_or(f64::NAN);
+        write!(
+            f,
+            ", deviation {:+.2} %, fluctuation {:.2} %; uncertainty at rest up to {:.2e} of the first, then off by up to {:.1} %",
+            percent(self.steady_state_deviation),
+            percent(self.fluctuation),
+            self.wind_up_at_rest,
+            percent(self.burst_after_rest)
+        )
+    }
 }
 
 impl Item {
@@ -41,6 +94,7 @@ impl Item {
             unit,
             holds: here.is_some_and(|here| (here - paper).abs() <= bound),
             criterion: format!("within {} {unit} or 3 standard errors", short(tolerance)),
+            on_line: None,
         }
     }
 
@@ -68,6 +122,7 @@ impl Item {
             criterion: format!("{statement}: {bounds} {unit}")
                 .trim_end()
                 .to_owned(),
+            on_line: None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Every system of the paper held against this one, table by table and figure
 //! by figure ("Robotic Joints and Contact Dynamics Experiments: Lessons
-//! Learned from ROKVISS").
+//! Learned from ROKVISS"), and the second paper's flexible joint on line.
 //!
 //! All numbers come from recordings: the experiments run in virtual time on
 //! the simulated arm ([`evidence`]), and the lab identifies from what was
@@ -9,6 +9,7 @@
 
 mod contacts;
 pub mod evidence;
+mod flexible_joint;
 mod item;
 mod joints;
 mod page;
@@ -18,10 +19,10 @@ mod temperature;
 mod time;
 
 pub use evidence::{Evidence, PaperError, collect, duration};
-pub use item::{Chart, Curve, Item, Section};
+pub use item::{Chart, Curve, Item, OnLineItem, Section, Settling};
 pub use page::render;
 
-/// Judges what was recorded: table 1 and Figs. 4 to 17.
+/// Judges what was recorded: table 1, Figs. 4 to 17, and the second paper.
 pub fn judge(evidence: &Evidence) -> Vec<Section> {
     let mut sections = vec![table1::section(evidence)];
     sections.extend(joints::linear_and_cubic(evidence));
@@ -32,5 +33,6 @@ pub fn judge(evidence: &Evidence) -> Vec<Section> {
     sections.extend(temperature::sections(evidence));
     sections.push(stiffness::section(evidence));
     sections.extend(contacts::sections(evidence));
+    sections.push(flexible_joint::section(evidence));
     sections
 }

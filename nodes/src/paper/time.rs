@@ -87,9 +87,9 @@ fn ground(evidence: &Evidence, joint: usize) -> Option<(f64, &JointResult)> {
         })
 }
 
-/// Days and dampings of `dates`, the temperature's part taken off.
-fn at_center(dates: &[Date]) -> Vec<(f64, f64)> {
-    let slope = trend(dates).map_or(0.0, |found| found.values[1]);
+/// Days and dampings of `dates`, the temperature's part by their `trend` taken off.
+fn at_center(dates: &[Date], trend: Option<&Coefficients>) -> Vec<(f64, f64)> {
+    let slope = trend.map_or(0.0, |found| found.values[1]);
     dates
         .iter()
         .map(|date| (date.0, date.2 - slope * (date.1 - CENTER)))
@@ -157,10 +157,11 @@ pub fn at_low_speed(evidence: &Evidence) -> Vec<Section> {
             .into_iter()
             .map(|(day, one)| (day, one.temperature, low(&one.friction)))
             .collect();
-        growths.push(growth(trend(&dates).as_ref()));
+        let found = trend(&dates);
+        growths.push(growth(found.as_ref()));
         let mut curves = vec![
             Curve::dots("identified", dates.iter().map(|date| (date.0, date.2))),
-            Curve::dots("at 10 °C", at_center(&dates)),
+            Curve::dots("at 10 °C", at_center(&dates, found.as_ref())),
         ];
         if let Some((day, one)) = ground(evidence, joint) {
             curves.push(Curve::dots("on ground", [(day, low(&one.friction))]));
@@ -338,9 +339,11 @@ mod tests {
         }
         assert!((growth(Some(&found)).0.unwrap() - 0.15).abs() < 1e-9);
         assert!(
-            at_center(&dates)
-                .iter()
-                .all(|(day, d)| (d - 20.0 - 3.0 * (day - 345.0) / 365.25).abs() < 1e-9)
+            at_center(&dates, Some(&found)).iter().all(|(day, d)| (d
+                - 20.0
+                - 3.0 * (day - 345.0) / 365.25)
+                .abs()
+                < 1e-9)
         );
     }
 

@@ -1,5 +1,12 @@
 //! The follower's joint servo as a node.
 
+mod friction;
+mod summary;
+#[cfg(test)]
+mod tests;
+
+pub use summary::{FrictionParameter, FrictionSummary};
+
 use ferntast_control::{
     operating,
     servo::{
@@ -11,10 +18,12 @@ use ferntast_model::{ArmModel, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, JointFields, JointSample, Level, OperatingStateSample, PoseSample,
-        StateCommandSample,
+        Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointSample, Level,
+        OperatingStateSample, PoseSample, StateCommandSample, TwinParametersSample,
     },
 };
+
+use friction::FrictionKeeper;
 
 use crate::{
     node::{Node, ports},
@@ -30,12 +39,16 @@ ports! {
         servo_cp: Newest<PoseSample> = FOLLOWER_SERVO_CP,
         servo_jp: Newest<JointSample> = FOLLOWER_SERVO_JP,
         state_command: Batch<StateCommandSample> = FOLLOWER_STATE_COMMAND,
+        friction_command: Batch<FrictionCommandSample> = FOLLOWER_FRICTION_COMMAND,
+        twin: Newest<TwinParametersSample> = TWIN_PARAMETERS,
     }
     /// What the servo gives.
     output ServoOutput {
         torque: JointSample = FOLLOWER_SERVO_JF,
         setpoint_js: JointSample = FOLLOWER_SETPOINT_JS,
         operating_state: OperatingStateSample = FOLLOWER_OPERATING_STATE,
+        friction_1: FrictionStatusSample = FOLLOWER_JOINT_1_FRICTION,
+        friction_2: FrictionStatusSample = FOLLOWER_JOINT_2_FRICTION,
     }
 }
 
@@ -43,6 +56,7 @@ ports! {
 pub struct ServoNode {
     servo: Servo,
     states: StatePublisher,
+    friction: FrictionKeeper,
     message: Text<96>,
 }
 
@@ -56,6 +70,7 @@ impl ServoNode {
         Ok(ServoNode {
             servo: Servo::new(&model.arm, &model.joint, config)?,
             states: StatePublisher::default(),
+            friction: FrictionKeeper::default(),
             message: Text::EMPTY,
         })
     }
@@ -102,6 +117,7 @@ impl Node for ServoNode {
                 .last()
                 .and_then(|sample| law_command(sample.command)),
         };
+        self.feed_forward(now, input, output);
         let law = self.servo.step(now.nanos(), &law_input);
         self.report(&law, output);
         output.torque = Some(JointSample {
@@ -123,6 +139,23 @@ impl Node for ServoNode {
 }
 
 impl ServoNode {
+    fn feed_forward(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
+        let twin = input.twin.message.as_ref();
+        for command in input.friction_command.iter() {
+            match self.friction.follow(now, command, twin, &mut self.servo) {
+                Ok(words) => self.message = words,
+                Err(refusal) => {
+                    output.health.raise(Fault::TakeOverRefused, Level::WARN);
+                    self.message = Text::display(refusal);
+                }
+            }
+        }
+        if let Some([first, second]) = self.friction.tell(now, &self.servo) {
+            output.friction_1 = Some(first);
+            output.friction_2 = Some(second);
+        }
+    }
+
     fn report(&mut self, law: &LawOutput, output: &mut ServoOutput) {
         let health = &mut output.health;
         health.input_age = law.measurement_age;

@@ -6,13 +6,13 @@ use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
 use ferntast_msgs::{
     Message, Time,
     sample::{
-        AuthoritySample, ContactStateSample, Edge, Faults, HealthSample, LinkStatusSample,
-        OperatingState, OperatingStateSample, TwinParametersSample, WrenchSample,
+        AuthoritySample, ContactStateSample, Edge, Faults, FrictionStatusSample, HealthSample,
+        LinkStatusSample, OperatingState, OperatingStateSample, TwinParametersSample, WrenchSample,
     },
     topics::{self, Topic},
 };
 
-use crate::{node_name::NodeName, twin::TwinSummary};
+use crate::{node_name::NodeName, servo::FrictionSummary, twin::TwinSummary};
 
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
@@ -64,6 +64,7 @@ pub struct Monitor {
     states: [(&'static str, Subscriber<OperatingStateSample>); 2],
     authority: Subscriber<AuthoritySample>,
     twin_parameters: Subscriber<TwinParametersSample>,
+    friction: [Subscriber<FrictionStatusSample>; 2],
     /// The nodes that were heard of.
     pub nodes: BTreeMap<String, NodeView>,
     /// The link's last word.
@@ -82,6 +83,7 @@ pub struct Monitor {
     peak_hand_force: f64,
     refused_masters: u64,
     twin: Option<TwinParametersSample>,
+    fed_forward: [Option<FrictionStatusSample>; 2],
     servo_rates: (f64, u64),
 }
 
@@ -125,6 +127,10 @@ impl Monitor {
             ],
             authority: watch(bus, topics::LEADER_AUTHORITY)?,
             twin_parameters: bus.subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?,
+            friction: [
+                bus.subscriber(topics::FOLLOWER_JOINT_1_FRICTION, Depth::Newest)?,
+                bus.subscriber(topics::FOLLOWER_JOINT_2_FRICTION, Depth::Newest)?,
+            ],
             nodes: BTreeMap::new(),
             link_status: None,
             contact_state: None,
@@ -138,6 +144,7 @@ impl Monitor {
             peak_hand_force: 0.0,
             refused_masters: 0,
             twin: None,
+            fed_forward: [None; 2],
             servo_rates: (0.0, 0),
         })
     }
@@ -192,6 +199,11 @@ impl Monitor {
         }
         if let Some(received) = self.twin_parameters.newest(now) {
             self.twin = Some(received.message);
+        }
+        for (told, joint) in self.fed_forward.iter_mut().zip(&mut self.friction) {
+            if let Some(received) = joint.newest(now) {
+                *told = Some(received.message);
+            }
         }
     }
 
@@ -279,6 +291,12 @@ impl Monitor {
     /// The twin, if there is one.
     pub fn twin(&self) -> Option<TwinSummary> {
         self.twin.as_ref().map(TwinSummary::of)
+    }
+
+    /// The friction that the servo feeds forward.
+    pub fn friction(&self) -> Vec<FrictionSummary> {
+        let told = self.fed_forward.iter().flatten();
+        told.map(FrictionSummary::of).collect()
     }
 
     /// The operating states.

@@ -25,6 +25,8 @@ pub(super) struct GoesWith {
     rows: f64,
     residual: f64,
     squared: f64,
+    position: f64,
+    temperature: f64,
     shapes: [Means; SHAPES.len()],
 }
 
@@ -42,15 +44,20 @@ impl GoesWith {
         let share = 1.0 / self.rows.min(ROWS);
         let residual = row.measured - row.predicted;
         let direction = row.velocity.signum();
+        // From their means, or direction alone would be in them.
+        self.position += share * (row.position - self.position);
+        self.temperature += share * (row.temperature - self.temperature);
+        let position = row.position - self.position;
+        let temperature = row.temperature - self.temperature;
         let values = [
             direction,
             row.velocity,
             row.velocity * row.velocity.abs(),
             row.joint_torque,
             row.joint_torque.abs() * direction,
-            row.position,
-            row.position * direction,
-            row.temperature * direction,
+            position,
+            position * direction,
+            temperature * direction,
         ];
         self.residual += share * (residual - self.residual);
         self.squared += share * (residual * residual - self.squared);
@@ -91,14 +98,15 @@ mod tests {
         let mut own = GoesWith::default();
         for i in 0..400 {
             let t = f64::from(i) * 0.05;
-            let (velocity, load, position) = ((0.7 * t).cos(), (1.9 * t).sin(), (0.7 * t).sin());
+            let (velocity, load, turn) = ((0.7 * t).cos(), (1.9 * t).sin(), (0.7 * t).sin());
             own.note(&TwinOutput {
                 time: t,
-                position,
+                // Around a place that is not zero.
+                position: 3.0 + turn,
                 velocity,
                 joint_torque: load,
                 temperature: 20.0,
-                measured: 5.0 + residual(velocity, load, position),
+                measured: 5.0 + residual(velocity, load, turn),
                 predicted: 5.0,
                 followed: 5.0,
                 slides: true,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use ferntast_identification::twin::{Change, ChangeKind, Twin};
+use ferntast_identification::twin::{Change, ChangeKind, Twin, TwinParameter};
 use ferntast_msgs::{
     Text, Time,
     sample::{JOINT_NAMES, MOST_PARAMETERS, TwinParametersSample, TwinVerdict},
@@ -61,6 +61,7 @@ pub(super) fn of(
         sample: &sample,
         change: change.as_ref(),
         unit,
+        at_bound: parameters.iter().find(|own| own.at_bound),
     };
     let words = Text::display(&words);
     (sample, words)
@@ -70,11 +71,15 @@ struct Words<'a> {
     sample: &'a TwinParametersSample,
     change: Option<&'a Change>,
     unit: &'a str,
+    at_bound: Option<&'a TwinParameter>,
 }
 
 impl fmt::Display for Words<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let sample = self.sample;
+        if let Some(own) = self.at_bound {
+            write!(f, "{} is held at {:.3}; ", own.name, own.value)?;
+        }
         let missing = sample.verdict == TwinVerdict::MISSING;
         let unexplained = sample.verdict == TwinVerdict::UNEXPLAINED;
         if sample.out_of_band == 1 || missing || unexplained {

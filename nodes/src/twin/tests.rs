@@ -1,5 +1,8 @@
 //! The node's step, on a joint whose torque is written down here.
 
+mod changes;
+mod faults;
+
 use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
 use ferntast_msgs::sample::Faults;
 
@@ -8,17 +11,30 @@ use crate::node::{Batch, Newest, Output};
 
 const PERIOD: f64 = 0.01;
 
-/// Position, and motor torque with that much viscous friction, at `t` \[s\].
-fn joint(t: f64, viscous: f64, noise: f64) -> (f64, f64) {
-    let (mut q, mut qd, mut qdd) = (0.0, 0.0, 0.0);
+/// Position, velocity, acceleration at `t` \[s\].
+fn motion(t: f64) -> [f64; 3] {
+    let mut motion = [0.0; 3];
     for (amplitude, rate) in [(0.25, 0.5), (0.08, 1.7), (0.02, 5.3)] {
         let (sine, cosine) = (rate * t).sin_cos();
-        q += amplitude * sine;
-        qd += amplitude * rate * cosine;
-        qdd -= amplitude * rate * rate * sine;
+        motion[0] += amplitude * sine;
+        motion[1] += amplitude * rate * cosine;
+        motion[2] -= amplitude * rate * rate * sine;
     }
-    let friction = 6.0 * qd.signum() + viscous * qd;
-    (q + 1e-6 * noise, 1.2 * qdd + friction + 0.1 * noise)
+    motion
+}
+
+/// Motor torque in that motion with that much viscous friction.
+fn torque([_, qd, qdd]: [f64; 3], viscous: f64) -> f64 {
+    1.2 * qdd + 6.0 * qd.signum() + viscous * qd
+}
+
+/// Position, and motor torque with that much viscous friction, at `t` \[s\].
+fn joint(t: f64, viscous: f64, noise: f64) -> (f64, f64) {
+    let motion = motion(t);
+    (
+        motion[0] + 1e-6 * noise,
+        torque(motion, viscous) + 0.1 * noise,
+    )
 }
 
 /// Near ±1, without a pattern.
@@ -31,17 +47,33 @@ fn noise(k: u64) -> f64 {
 }
 
 fn model() -> TwinModel {
+    let coulomb_viscous = ["coulomb", "viscous"];
+    model_of(&coulomb_viscous, Inertia::Given(1.2), true, |_, own| {
+        torque(own, 13.0)
+    })
+}
+
+/// A twin with those effects, fitted to a joint with that motor torque at the
+/// time \[s\] and in the motion that it is told.
+fn model_of(
+    effects: &[&str],
+    inertia: Inertia,
+    joint_torque: bool,
+    torque: impl Fn(f64, [f64; 3]) -> f64,
+) -> TwinModel {
     let sessions = (0..3).map(|k| {
         let rows = (0..6000).map(|i| {
             let t = f64::from(i) * PERIOD + 500.0 * f64::from(k);
-            joint(t, 13.0, noise(u64::from(i as u32) + 100_000 * k as u64))
+            let noise = noise(u64::from(i as u32) + 100_000 * k as u64);
+            let motion = motion(t);
+            (motion[0] + 1e-6 * noise, torque(t, motion) + 0.1 * noise)
         });
         let (position, motor_torque): (Vec<f64>, Vec<f64>) = rows.unzip();
         Session {
             name: format!("session {k}"),
             start: 500.0 * f64::from(k),
             period: PERIOD,
-            joint_torque: Some(vec![0.0; position.len()]),
+            joint_torque: joint_torque.then(|| vec![0.0; position.len()]),
             position,
             motor_torque,
             ..Session::default()
@@ -52,21 +84,69 @@ fn model() -> TwinModel {
         ..Dataset::default()
     };
     let spec = ModelSpec {
-        inertia: Inertia::Given(1.2),
+        inertia,
         gear_ratio: None,
-        effects: ["coulomb", "viscous"]
-            .map(|id| Term::Catalogue(id.to_owned()))
-            .to_vec(),
+        effects: effects
+            .iter()
+            .map(|id| Term::Catalogue((*id).to_owned()))
+            .collect(),
     };
     TwinModel {
         twin: Twin::new(&dataset, &spec, 20.0).unwrap(),
         joint: 1,
-        joint_torque: true,
+        joint_torque,
         temperature: false,
     }
 }
 
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
+
+/// The samples of a moment: position of the joint, its torque free of load,
+/// motor torque.
+fn samples(stamp: Time, position: f64, torque: f64, k: u64) -> (JointSample, JointSample) {
+    let sample = |effort: f64| JointSample {
+        position: [9.0, position],
+        effort: [9.0, effort],
+        fields: JointFields::POSITION.with(JointFields::EFFORT),
+        ..JointSample::zero(stamp)
+    };
+    // A torque sensor that is free of load still makes noise.
+    (sample(1e-6 * noise(k)), sample(torque))
+}
+
+/// Feeds the samples that `each` gives for every hundredth of a second `times`
+/// after the start, one step each; whatever is published has to be valid.
+fn feed(
+    node: &mut TwinNode,
+    times: std::ops::Range<f64>,
+    each: impl Fn(f64, u64, Time) -> (JointSample, JointSample),
+) -> Published {
+    use ferntast_msgs::Message;
+    let mut published = Published::default();
+    let mut output = TwinNodeOutput::default();
+    for k in (times.start / PERIOD).round() as u64..(times.end / PERIOD).round() as u64 {
+        let now = START.plus_nanos(k as i64 * 10_000_000);
+        let (measured, motor) = each(k as f64 * PERIOD, k, now);
+        let mut input = TwinInput::default();
+        input.measured_js.push(measured);
+        input.motor_js.push(motor);
+        output.clear();
+        node.step(now, &input, &mut output);
+        assert!(output.predicted.is_none_or(|own| own.check().is_ok()));
+        assert!(output.residual.is_none_or(|own| own.check().is_ok()));
+        assert!(output.parameters.is_none_or(|own| own.check().is_ok()));
+        published.take(&output);
+    }
+    published
+}
+
+/// The joint as it should be, with that much viscous friction.
+fn moving(viscous: f64) -> impl Fn(f64, u64, Time) -> (JointSample, JointSample) {
+    move |t, k, stamp| {
+        let (q, torque) = joint(t, viscous, noise(k + 17));
+        samples(stamp, q, torque, k)
+    }
+}
 
 /// Everything that the node published.
 #[derive(Default)]
@@ -78,15 +158,31 @@ struct Published {
     words: Vec<Text<96>>,
 }
 
+impl Published {
+    fn take(&mut self, output: &TwinNodeOutput) {
+        self.predicted.extend(output.predicted);
+        self.residual.extend(output.residual);
+        self.parameters.extend(output.parameters);
+        self.faults.0 |= output.health.faults.0;
+        let words = output.health.message;
+        if !words.is_empty() && self.words.last() != Some(&words) {
+            self.words.push(words);
+        }
+    }
+
+    fn last(&self) -> &TwinParametersSample {
+        self.parameters.last().expect("parameters")
+    }
+
+    fn said(&self, words: &str) -> bool {
+        self.words.iter().any(|own| own.as_str().contains(words))
+    }
+}
+
 /// Steps at 1 kHz; every tenth has samples. `viscous` is that of the joint.
 fn run(node: &mut TwinNode, seconds: f64, viscous: impl Fn(f64) -> f64) -> Published {
     let mut published = Published::default();
     let mut output = TwinNodeOutput::default();
-    let sample = |stamp, value: f64, effort: f64| JointSample {
-        position: [9.0, value],
-        effort: [9.0, effort],
-        ..JointSample::zero(stamp)
-    };
     for step in 0..(seconds * 1000.0) as i64 {
         let now = START.plus_nanos(step * 1_000_000);
         let mut input = TwinInput {
@@ -98,22 +194,13 @@ fn run(node: &mut TwinNode, seconds: f64, viscous: impl Fn(f64) -> f64) -> Publi
         if step % 10 == 0 {
             let t = step as f64 * 1e-3;
             let (q, torque) = joint(t, viscous(t), noise(step as u64 + 17));
-            // A torque sensor that is free of load still makes noise.
-            let load = 1e-6 * noise(step as u64);
-            input.measured_js.push(sample(now, q, load));
-            input.motor_js.push(sample(now, q, torque));
+            let (measured, motor) = samples(now, q, torque, step as u64);
+            input.measured_js.push(measured);
+            input.motor_js.push(motor);
         }
         output.clear();
         node.step(now, &input, &mut output);
-        published.predicted.extend(output.predicted);
-        published.residual.extend(output.residual);
-        published.parameters.extend(output.parameters);
-        published.faults.0 |= output.health.faults.0;
-        if !output.health.message.is_empty()
-            && published.words.last() != Some(&output.health.message)
-        {
-            published.words.push(output.health.message);
-        }
+        published.take(&output);
     }
     published
 }

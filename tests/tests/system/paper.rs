@@ -60,8 +60,30 @@ fn the_paper_holds_item_by_item_from_recordings() {
             "{prefix}"
         );
     }
+    for symbol in ["k1", "k2", "b_in", "b_inD", "b_out", "b_outC"] {
+        let item = items[format!("seed2/{symbol}").as_str()];
+        assert_eq!(item["paper"], Value::Null, "{item:#}");
+        let on_line = &item["on_line"];
+        let share = number_of(item, "here") / number_of(on_line, "off_line");
+        assert!((0.9..1.1).contains(&share), "{item:#}");
+        for rule in ["variable", "fixed"] {
+            let settling = &on_line[rule];
+            assert!(number_of(settling, "fluctuation") > 0.0, "{item:#}");
+            assert!(number_of(settling, "wind_up_at_rest") > 0.0, "{item:#}");
+        }
+        let settling = &on_line["variable"];
+        assert!(
+            number_of(settling, "convergence_time_s") < 200.0,
+            "{item:#}"
+        );
+    }
     let page = fs::read_to_string(session.folder().join("paper/paper.html")).expect("the page");
-    assert!(page.contains("Fig. 17") && !page.contains("src=\"http") && !page.contains("@DATA@"));
+    assert!(
+        page.contains("Fig. 17")
+            && page.contains("seed2/k1")
+            && !page.contains("src=\"http")
+            && !page.contains("@DATA@")
+    );
     let recording = session
         .folder()
         .join("paper/recordings/2005-03-24_spring_joint_2");

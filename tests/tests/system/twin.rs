@@ -121,6 +121,157 @@ fn played_into_a_live_twin_it_answers_too() {
     assert!(number(&played, "twin.residual_rms_Nm") > 0.0);
 }
 
+/// Take-over, the way back and the refusals are in the recording, and come out
+/// the same when it is fed again, with a twin of its own and without one.
+#[test]
+fn a_take_over_is_recorded_and_replayed_byte_for_byte() {
+    let session = Session::new();
+    experiment(&session);
+    let arguments = [
+        "lockstep",
+        "--twin",
+        "joint.toml",
+        "--duration",
+        "70",
+        "--take-over",
+        "50",
+        "--give-back",
+        "60",
+        "--record",
+        "taken",
+        "--json",
+    ];
+    let told = run(&session, &arguments).success().json();
+    let second = &told["friction"][1];
+    assert_eq!(second["joint"], "joint_2", "{told:#}");
+    assert_eq!(second["source"], "configured", "{second:#}");
+    assert_eq!(second["refused"], serde_json::Value::Null, "{second:#}");
+
+    let taken = session.folder().join("taken");
+    let commands = messages(&taken, topics::FOLLOWER_FRICTION_COMMAND);
+    assert_eq!(commands.len(), 2);
+    let friction = messages(&taken, topics::FOLLOWER_JOINT_2_FRICTION);
+    let by_the_twin = |own: &&ferntast_bus::Received<_>| {
+        let own: &ferntast_msgs::sample::FrictionStatusSample = &own.message;
+        own.source == ferntast_msgs::sample::FrictionSource::TWIN
+    };
+    let last = friction.iter().rfind(by_the_twin);
+    let last = last.expect("taken over").message;
+    // Close to what was configured, since it is the same arm; but not it.
+    for i in 0..last.len() {
+        let share = last.values[i] / last.configured[i];
+        assert!((0.9..1.1).contains(&share), "{last:?}");
+    }
+    assert_ne!(last.values[0], last.configured[0]);
+    assert_eq!(last.values, last.targets);
+
+    for arguments in [
+        &["replay", "taken", "--json"][..],
+        &["replay", "taken", "--twin", "joint.toml", "--json"],
+    ] {
+        let replay = run(&session, arguments).success().json();
+        assert_eq!(replay["equal"], true, "{replay:#}");
+    }
+}
+
+#[test]
+fn the_lab_goes_on_with_what_the_twin_found() {
+    let session = Session::new();
+    experiment(&session);
+    let arguments = ["lockstep", "--twin", "joint.toml", "--duration", "60"];
+    let arguments = [&arguments[..], &["--seed", "9", "--record", "second"]].concat();
+    run(&session, &arguments).success();
+    let arguments = [
+        "twin",
+        "experiment",
+        "second",
+        "--model",
+        "joint.toml",
+        "-o",
+        "found.toml",
+        "--json",
+    ];
+    let told = run(&session, &arguments).success().json();
+    let found = number(&told, "parameters.b0.value");
+    assert!((found - 12.372).abs() < 0.5, "{told:#}");
+    assert!(number(&told, "held_out_before") > 0.0 && number(&told, "held_out_after") > 0.0);
+
+    let compared = run(&session, &["lab", "compare", "found.toml", "--json"]);
+    let compared = compared.success().json();
+    let fitted = number(&compared, "parameters.b0.value");
+    assert!((fitted - found).abs() < 0.3, "{compared:#}");
+    let history = run(&session, &["lab", "history", "found.toml", "--json"]);
+    let history = history.success().json();
+    let steps = history.as_array().expect("steps");
+    assert_eq!(steps.len(), 2, "{history:#}");
+    assert_eq!(steps[1]["other_data"], true);
+    assert_eq!(number(&steps[1], "parameters.b0.value"), found);
+
+    // Not over a file; not with another model; not without a twin.
+    refused(&session, &arguments, &["found.toml", "exists already"]);
+    let other = JOINT_2.replace("[1]", "[0]").replace("joint_2", "joint_1");
+    fs::write(session.folder().join("other.toml"), other).expect("scratch folder");
+    for (recording, model, words) in [
+        ("second", "other.toml", "joint_2"),
+        ("first", "joint.toml", "nothing of a twin"),
+    ] {
+        let arguments = [
+            "twin",
+            "experiment",
+            recording,
+            "--model",
+            model,
+            "-o",
+            "new.toml",
+        ];
+        refused(&session, &arguments, &[words]);
+    }
+}
+
+#[test]
+fn in_a_session_the_servo_is_told_and_tells_back() {
+    attempts(|| {
+        let session = Session::new();
+        experiment(&session);
+        let mut process = start(&session, &["--twin", "joint.toml", "--duration", "30"]);
+        await_enabled(&session, &mut process);
+        let twin = |what: &str| {
+            let arguments = ["twin", what, "--session", session.name(), "--json"];
+            run(&session, &arguments)
+        };
+        let told = twin("friction").success().json();
+        assert_eq!(told[1]["source"], "configured", "{told:#}");
+        // Until the twin has seen enough it is refused.
+        let taken = ferntast_tests::wait_for(PATIENCE, || {
+            let ended = twin("take-over");
+            match ended.status.code() {
+                Some(0) => Some(ended.json()),
+                code => {
+                    assert_eq!(code, Some(2), "{ended:#?}");
+                    assert!(ended.stderr.contains("refused"), "{ended:#?}");
+                    None
+                }
+            }
+        });
+        let taken = taken.expect("certain after half a minute");
+        assert_eq!(taken[1]["source"], "twin", "{taken:#}");
+        let told = twin("give-back").success().json();
+        assert_eq!(told[1]["source"], "configured", "{told:#}");
+        process.wait(PATIENCE).success();
+    });
+}
+
+#[test]
+fn take_over_asks_for_a_session() {
+    let session = Session::new();
+    let arguments = ["twin", "take-over", "--session", session.name()];
+    let ended = run(&session, &arguments);
+    assert_eq!(ended.status.code(), Some(1), "{ended:#?}");
+    assert!(ended.stderr.contains("does not answer"), "{ended:#?}");
+    let arguments = ["lockstep", "--take-over", "3"];
+    refused(&session, &arguments, &["--twin"]);
+}
+
 #[test]
 fn an_experiment_that_is_not_of_a_session_is_refused() {
     let session = Session::new();

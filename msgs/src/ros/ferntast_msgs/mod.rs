@@ -2,6 +2,7 @@
 
 mod authority;
 mod contact_state;
+mod friction_status;
 mod link_command;
 mod link_status;
 mod recorder_command;
@@ -10,6 +11,7 @@ mod twin_parameters;
 
 pub use authority::Authority;
 pub use contact_state::ContactState;
+pub use friction_status::FrictionStatus;
 pub use link_command::LinkCommand;
 pub use link_status::LinkStatus;
 pub use recorder_command::RecorderCommand;

@@ -1,0 +1,66 @@
+//! The friction that is fed forward, in the result of a command.
+
+use std::fmt;
+
+use ferntast_msgs::sample::FrictionStatusSample;
+use serde::Serialize;
+
+/// The friction that is fed forward at one joint.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrictionSummary {
+    /// `joint_1` or `joint_2`.
+    pub joint: String,
+    /// `configured` or `twin`.
+    pub source: String,
+    /// Why the last command was refused; `null` where it was not.
+    pub refused: Option<String>,
+    /// The parameters.
+    pub parameters: Vec<FrictionParameter>,
+}
+
+/// A parameter of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrictionParameter {
+    /// Name in the arm's file.
+    pub name: String,
+    /// By the arm's file.
+    pub configured: f64,
+    /// In use now.
+    pub value: f64,
+    /// What the value is, or is on its way to.
+    pub target: f64,
+}
+
+impl FrictionSummary {
+    /// Of a message on `/follower/joint_1/friction` or that of the other joint.
+    pub fn of(sample: &FrictionStatusSample) -> Self {
+        let parameters = (0..sample.len()).map(|i| FrictionParameter {
+            name: sample.names[i].to_string(),
+            configured: sample.configured[i],
+            value: sample.values[i],
+            target: sample.targets[i],
+        });
+        Self {
+            joint: sample.joint_name().unwrap_or_default().to_owned(),
+            source: sample.source.name().unwrap_or_default().to_owned(),
+            refused: (!sample.refused.is_empty()).then(|| sample.refused.to_string()),
+            parameters: parameters.collect(),
+        }
+    }
+}
+
+impl fmt::Display for FrictionSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "friction  {}: {}", self.joint, self.source)?;
+        for own in &self.parameters {
+            write!(f, ", {} {:.4}", own.name, own.target)?;
+            if own.target != own.configured {
+                write!(f, " (configured {:.4})", own.configured)?;
+            }
+        }
+        match &self.refused {
+            Some(reason) => write!(f, "; last command refused: {reason}"),
+            None => Ok(()),
+        }
+    }
+}
