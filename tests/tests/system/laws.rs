@@ -4,11 +4,12 @@ use ferntast_msgs::{
     sample::{LinkStatusSample, WrenchSample},
     topics::{self, Topic},
 };
-use ferntast_tests::{Process, Session};
+use ferntast_tests::Session;
 use serde_json::Value;
 
 use crate::support::{
-    PATIENCE, attempts, await_enabled, messages, number, recording, refused, run, start,
+    PATIENCE, attempts, await_enabled, messages, number, recording, refused, run, set_parameter,
+    start,
 };
 
 /// The laws that the link ran, in order.
@@ -120,12 +121,8 @@ fn switch(session: &Session, law: &str) -> Value {
     run(session, &arguments).success().json()
 }
 
-fn set_parameter(session: &Session, value: &str) -> Value {
-    let arguments = ["--node", "/link", "--name", "law", "--value", value];
-    Process::spawn(session.peer("set_parameter.py", &arguments))
-        .wait(PATIENCE)
-        .success()
-        .json()
+fn set_law(session: &Session, value: &str) -> Value {
+    set_parameter(session, ["/link", "law", value])
 }
 
 #[test]
@@ -138,13 +135,13 @@ fn switched_from_the_command_line_and_as_a_ros_parameter() {
         let told = run(&session, &["link", "law", "--session", session.name()]).success();
         assert_eq!(told.stdout.trim(), "model_mediated");
 
-        let set = set_parameter(&session, "position_position");
+        let set = set_law(&session, "position_position");
         assert_eq!(set["before"], "model_mediated", "{set:#}");
         assert_eq!(set["successful"], true, "{set:#}");
         assert_eq!(set["after"], "position_position", "{set:#}");
         let listed = set["listed"].as_array().expect("a list");
         assert!(listed.iter().any(|name| name == "law"), "{set:#}");
-        let set = set_parameter(&session, "nonsense");
+        let set = set_law(&session, "nonsense");
         assert_eq!(set["successful"], false, "{set:#}");
         let reason = set["reason"].as_str().expect("a reason");
         assert!(reason.contains("wave"), "{set:#}");

@@ -95,6 +95,15 @@ pub fn hand(name: &str) -> String {
     path.to_str().expect("a path in UTF-8").to_owned()
 }
 
+/// Sets a ROS 2 parameter (node, name, value) of the session as `ros2 param set` does.
+pub fn set_parameter(session: &Session, [node, name, value]: [&str; 3]) -> serde_json::Value {
+    let arguments = ["--node", node, "--name", name, "--value", value];
+    Process::spawn(session.peer("set_parameter.py", &arguments))
+        .wait(PATIENCE)
+        .success()
+        .json()
+}
+
 /// Runs `ferntast` with these arguments; it has to refuse its input: exit
 /// code 2, nothing on stdout, one line on stderr with all of these words.
 pub fn refused(session: &Session, arguments: &[&str], words: &[&str]) {

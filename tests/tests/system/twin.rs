@@ -6,7 +6,8 @@ use ferntast_msgs::topics;
 use ferntast_tests::Session;
 
 use crate::support::{
-    PATIENCE, attempts, await_enabled, messages, number, recording, refused, run, start,
+    PATIENCE, attempts, await_enabled, messages, number, recording, refused, run, set_parameter,
+    start,
 };
 
 /// The second joint of a session, by the model that its servo believes in.
@@ -233,7 +234,7 @@ fn in_a_session_the_servo_is_told_and_tells_back() {
     attempts(|| {
         let session = Session::new();
         experiment(&session);
-        let mut process = start(&session, &["--twin", "joint.toml", "--duration", "30"]);
+        let mut process = start(&session, &["--twin", "joint.toml", "--duration", "60"]);
         await_enabled(&session, &mut process);
         let twin = |what: &str| {
             let arguments = ["twin", what, "--session", session.name(), "--json"];
@@ -257,6 +258,12 @@ fn in_a_session_the_servo_is_told_and_tells_back() {
         assert_eq!(taken[1]["source"], "twin", "{taken:#}");
         let told = twin("give-back").success().json();
         assert_eq!(told[1]["source"], "configured", "{told:#}");
+        let set = set_parameter(&session, ["/servo", "friction", "twin"]);
+        assert_eq!(set["before"], "configured", "{set:#}");
+        assert_eq!(set["after"], "twin", "{set:#}");
+        let told = twin("friction").success().json();
+        assert_eq!(told[1]["source"], "twin", "{told:#}");
+        process.interrupt();
         process.wait(PATIENCE).success();
     });
 }
