@@ -258,5 +258,5 @@ fn the_catalogue_describes_every_effect_once() {
             assert!(all.iter().any(|e| &e.id == other), "{other}");
         }
     }
-    assert_eq!(all.len(), 25);
+    assert_eq!(all.len(), 31);
 }

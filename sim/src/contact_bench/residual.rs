@@ -13,9 +13,15 @@ const REST: f64 = 2e-4;
 const TOUCHES: f64 = 2.0;
 
 impl ContactRecording {
-    /// F_T less what the believed model says of it, low-pass at 8 Hz \[N\], and
-    /// whether the tip slides.
-    fn residual(&self, place: &[f64], tangential: &[f64], normal: &[f64]) -> Vec<(f64, bool)> {
+    /// `tangential` less what the believed model says of F_T under `normal`,
+    /// low-pass at 8 Hz \[N\], and whether the tip slides. Where it does, and which
+    /// way, is taken from the truth: noise shows in forces alone.
+    fn residual(
+        &self,
+        session: &ContactSession,
+        tangential: &[f64],
+        normal: &[f64],
+    ) -> Vec<(f64, bool)> {
         let value = |id: &str, name: &str| match self.believed.contains(&id) {
             true => self.edge_parameter(name),
             false => 0.0,
@@ -24,27 +30,27 @@ impl ContactRecording {
             value("contact_coulomb", "b0T"),
             value("contact_viscous", "film"),
         );
-        let (velocity, normal) = (differentiate(&smooth(place)), smooth(normal));
+        let velocity = differentiate(&session.truth.place);
         let believed: Vec<f64> = velocity
             .iter()
-            .zip(&normal)
+            .zip(normal)
             .map(|(&v, &n)| b0t * n * v.signum() + film * v)
             .collect();
         // Friction is filtered like the rest, so that its step is no spike.
         let (measured, believed) = (smooth(tangential), smooth(&believed));
-        let slides = velocity.iter().zip(&normal);
+        let slides = velocity.iter().zip(&session.truth.normal);
         let slides = slides.map(|(v, n)| v.abs() > REST && *n > TOUCHES);
         let left = measured.iter().zip(&believed).map(|(m, b)| m - b);
         left.zip(slides).collect()
     }
 
     fn logged(&self, session: &ContactSession) -> Vec<(f64, bool)> {
-        self.residual(&session.place, &session.tangential, &session.normal)
+        self.residual(session, &session.tangential, &session.normal)
     }
 
     fn exact(&self, session: &ContactSession) -> Vec<(f64, bool)> {
         let truth = &session.truth;
-        self.residual(&truth.place, &truth.tangential, &truth.normal)
+        self.residual(session, &truth.tangential, &truth.normal)
     }
 
     fn rms_of(&self, part: impl Fn(&ContactSession) -> Vec<(f64, bool)>) -> f64 {
