@@ -43,7 +43,7 @@ use crate::bench::{BenchError, Conditions, MILLISECONDS_A_LOG, SECONDS_A_DAY, St
 
 /// What a recording of a contact is to be like.
 ///
-/// At strength 1 effects stand out from the filtered noise by 3 to 20
+/// At strength 1 effects stand out from the filtered noise by 4 to 40
 /// ([`ContactRecording::visibility`]). Between sessions friction differs by 2 %.
 pub type ContactConfig = crate::bench::BenchConfig<HiddenEffect, Motion>;
 

@@ -9,6 +9,9 @@ use crate::bench::{differentiate, rms, smooth};
 
 /// Slower than this, the sign of the velocity is not known \[m/s\].
 const REST: f64 = 2e-4;
+/// Entries on either side of rest that do not count either: the low-pass reaches
+/// so far, and spreads the step of F_T at a turn over them.
+const AROUND_REST: usize = 4;
 /// F_N below which the tip may not touch \[N\].
 const TOUCHES: f64 = 2.0;
 
@@ -38,8 +41,18 @@ impl ContactRecording {
             .collect();
         // Friction is filtered like the rest, so that its step is no spike.
         let (measured, believed) = (smooth(tangential), smooth(&believed));
-        let slides = velocity.iter().zip(&session.truth.normal);
-        let slides = slides.map(|(v, n)| v.abs() > REST && *n > TOUCHES);
+        let is_sliding: Vec<bool> = velocity
+            .iter()
+            .zip(&session.truth.normal)
+            .map(|(v, n)| v.abs() > REST && *n > TOUCHES)
+            .collect();
+        let slides = (0..is_sliding.len()).map(|index| {
+            let from = index.saturating_sub(AROUND_REST);
+            let mut near = is_sliding[from..]
+                .iter()
+                .take(index + AROUND_REST + 1 - from);
+            near.all(|slides| *slides)
+        });
         let left = measured.iter().zip(&believed).map(|(m, b)| m - b);
         left.zip(slides).collect()
     }
