@@ -12,8 +12,9 @@ use ferntast_msgs::{
         FrictionCommandSample, FrictionSource, FrictionStatusSample, HealthSample, JointFields,
         JointSample, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
         OperatingState, OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
-        RecorderStatusSample, RefusedFrames, StateCommand, StateCommandSample, TemperatureSample,
-        TwinParametersSample, TwinVerdict, WrenchSample,
+        RecorderStatusSample, RefusedFrames, RobotDescriptionSample, StateCommand,
+        StateCommandSample, TemperatureSample, TransformsSample, TwinParametersSample, TwinVerdict,
+        WrenchSample,
     },
     topics::{self, Topic, Visitor},
 };
@@ -54,6 +55,8 @@ pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
         .or_else(|| pick(link_command(x, stamp)))
         .or_else(|| pick(recorder_command(stamp)))
         .or_else(|| pick(recorder_status(k, stamp)))
+        .or_else(|| pick(transforms(x, stamp)))
+        .or_else(|| pick(robot_description(k)))
 }
 
 fn pick<M: Message, T: Message>(value: T) -> Option<M> {
@@ -79,6 +82,21 @@ fn pose(x: f64, stamp: Time) -> PoseSample {
         source: 0,
         frame: Frame::FOLLOWER_BASE,
         reserved: 0,
+    }
+}
+
+fn transforms(x: f64, stamp: Time) -> TransformsSample {
+    let about_z = |angle: f64| [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()];
+    TransformsSample {
+        stamp,
+        translations: [[x, 0.0, 0.0], [0.25, x, 0.0], [0.25, 0.0, x]],
+        rotations: [about_z(x), about_z(0.5 * x), about_z(0.1)],
+    }
+}
+
+fn robot_description(k: u32) -> RobotDescriptionSample {
+    RobotDescriptionSample {
+        urdf: Text::new(&format!("<robot name=\"arm {k}\"/>")),
     }
 }
 
