@@ -1,4 +1,4 @@
-//! What the page costs: `cargo bench -p ferntast-tests --bench page`.
+//! What the page costs: `cargo bench --workspace --bench page`.
 //!
 //! Processor time of headless Chromium (all its processes, software rendering)
 //! and of the console's process over ten seconds of a session, first paint, and

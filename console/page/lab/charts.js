@@ -5,7 +5,7 @@ import { colours, onTheme } from "../common/theme.js";
 let loading = null;
 const drawn = new Map();
 
-/** plotly.js, loaded when the first chart is drawn. */
+/** plotly.js, loaded once. */
 function plotly() {
   loading ??= new Promise((resolve, reject) => {
     const script = document.createElement("script");
@@ -15,6 +15,12 @@ function plotly() {
     document.head.append(script);
   });
   return loading;
+}
+
+/** Loads plotly.js once the page has nothing else to do: the first chart need not wait for it. */
+export function prepare() {
+  // Where it fails, the first chart says so.
+  setTimeout(() => plotly().catch(() => {}), 100);
 }
 
 const CONFIG = { responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };

@@ -2,6 +2,7 @@
 
 import { byId, fill, make, toast } from "../common/dom.js";
 import { getJson, work } from "../common/server.js";
+import { prepare } from "./charts.js";
 import * as files from "./files.js";
 import * as findings from "./findings.js";
 import * as mapping from "./mapping.js";
@@ -151,6 +152,7 @@ const actions = {
 
 /** Starts the lab. */
 export async function start() {
+  prepare();
   place = make("div", { className: "work" });
   side = make("aside", { className: "files panel", "aria-label": "Files" });
   fill(byId("lab"), side, place);
