@@ -1,6 +1,6 @@
 //! Publishing to Foxglove.
 
-use std::{fmt, marker::PhantomData, sync::Arc};
+use std::{fmt, sync::Arc};
 
 use ferntast_msgs::{
     Message, RosMessage, Time, interface,
@@ -20,7 +20,6 @@ pub struct FoxglovePublisher<M: Message> {
     topic: Topic<M>,
     channel: Arc<RawChannel>,
     bytes: Vec<u8>,
-    message: PhantomData<fn(M)>,
 }
 
 impl<M: Message> FoxglovePublisher<M> {
@@ -47,7 +46,6 @@ impl<M: Message> FoxglovePublisher<M> {
             topic,
             channel,
             bytes: Vec::new(),
-            message: PhantomData,
         })
     }
 

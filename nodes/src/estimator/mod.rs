@@ -119,10 +119,14 @@ impl Node for EstimatorNode {
     }
 }
 
+/// A turn about z by `angle` \[rad\] as quaternion x, y, z, w.
+fn about_z(angle: f64) -> [f64; 4] {
+    [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()]
+}
+
 /// The arm's frames at the link-side joint positions \[rad\], for links of
 /// those lengths \[m\].
 fn transforms(stamp: Time, position: [f64; 2], lengths: [f64; 2]) -> TransformsSample {
-    let about_z = |angle: f64| [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()];
     TransformsSample {
         stamp,
         translations: [[0.0; 3], [lengths[0], 0.0, 0.0], [lengths[1], 0.0, 0.0]],
@@ -168,9 +172,8 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
 
 fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput) {
     let [x, y] = estimate.tip;
-    let half_angle = 0.5 * (estimate.position[0] + estimate.position[1]);
     output.measured_cp = Some(PoseSample {
-        orientation: [0.0, 0.0, half_angle.sin(), half_angle.cos()],
+        orientation: about_z(estimate.position[0] + estimate.position[1]),
         ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, [x, y, 0.0])
     });
     let [fx, fy] = estimate.force;
