@@ -23,6 +23,8 @@ pub struct Candidate {
     pub left_out: f64,
     /// Whether sign and size of its coefficients make sense.
     pub plausible: bool,
+    /// Shapes of it that were tried.
+    pub variants: usize,
 }
 
 impl Candidate {
@@ -41,6 +43,30 @@ pub struct Trial {
     pub variants: usize,
     /// Of these, such as show between sessions.
     pub variants_between: usize,
+}
+
+impl Trial {
+    /// p-value of one of its candidates, corrected for all that was tried
+    /// (weighted Bonferroni): half of the chance of a false alarm is shared out
+    /// among effects, half among shapes, so that an effect of one shape does not
+    /// pay for the thousand periods that a ripple may have. What shows between
+    /// sessions is counted apart: there are few of these.
+    #[must_use]
+    pub fn corrected(&self, candidate: &Candidate) -> f64 {
+        let between = candidate.effect.between_sessions();
+        let p_value = candidate.score.p_value;
+        let factor = match between {
+            true => self.variants_between as f64,
+            false => {
+                let effects = self.candidates.iter();
+                let effects = effects.filter(|c| !c.effect.between_sessions()).count();
+                let by_effect = 1.0 / (effects * candidate.variants).max(1) as f64;
+                let by_shape = 1.0 / self.variants.max(1) as f64;
+                2.0 / (by_effect + by_shape)
+            }
+        };
+        (p_value * factor.max(1.0)).min(1.0)
+    }
 }
 
 /// Effects that the model may lack: those that it has not, and that are not a
@@ -133,10 +159,10 @@ pub fn try_all(setup: &Setup, design: &Design, progress: &mut dyn FnMut(f64)) ->
             );
             searched = periodic::tried(setup);
         }
-        if effect.between_sessions() {
-            trial.variants_between += shapes.len();
-        } else {
-            trial.variants += shapes.len() + searched;
+        let variants = shapes.len() + searched;
+        match effect.between_sessions() {
+            true => trial.variants_between += variants,
+            false => trial.variants += variants,
         }
         let best = shapes
             .into_iter()
@@ -158,6 +184,7 @@ pub fn try_all(setup: &Setup, design: &Design, progress: &mut dyn FnMut(f64)) ->
             shape,
             score,
             plausible,
+            variants,
         });
         progress((done as f64 + 1.0) / count);
     }

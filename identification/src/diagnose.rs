@@ -8,6 +8,7 @@ use crate::candidates::{Candidate, Trial, try_all};
 use crate::data::{Dataset, ModelSpec};
 use crate::dependence::{self, Dependence};
 use crate::design::Design;
+use crate::encompass;
 use crate::error::PrepareError;
 use crate::family;
 use crate::fit::{Fit, Parameter, fit};
@@ -149,10 +150,11 @@ pub fn diagnose(
     let base = fit(&setup, &design);
     let noise = noise_floor::find(&setup, &design, base.held_out * base.held_out);
     let mut passing = passing(&trial);
+    encompass::without_idle_terms(&setup, &design, &mut passing);
     family::order(&design, &mut passing);
     reversal::settle(&setup, &mut passing, &trial.candidates);
     sensor_zero::settle(&setup, &mut passing);
-    family::encompass(&setup, &design, &mut passing);
+    encompass::settle(&setup, &design, &mut passing);
     turns::settle(&setup, &design, &mut passing);
     let maps = maps(&setup, &design);
     if passing.is_empty() {
@@ -208,7 +210,7 @@ fn passes(candidate: &Candidate, trial: &Trial) -> bool {
     candidate.plausible
         && candidate.score.share() > LEAST_SHARE
         && (candidate.score.certainty > LEAST_CERTAINTY || candidate.effect.between_sessions())
-        && corrected(candidate, trial)
+        && trial.corrected(candidate)
             < match candidate.effect.between_sessions() {
                 true => SIGNIFICANCE_BETWEEN,
                 false => SIGNIFICANCE,
@@ -239,16 +241,6 @@ fn suspected(trial: &Trial) -> Vec<Suspect> {
             next_experiment: family::proposal(candidate, &[]),
         })
         .collect()
-}
-
-/// p-value times the number of variants of its kind.
-fn corrected(candidate: &Candidate, trial: &Trial) -> f64 {
-    let tried = if candidate.effect.between_sessions() {
-        trial.variants_between
-    } else {
-        trial.variants
-    };
-    (candidate.score.p_value * tried.max(1) as f64).min(1.0)
 }
 
 fn maps(setup: &Setup, design: &Design) -> Vec<Dependence> {
@@ -343,7 +335,7 @@ fn describe(
         effect: id.to_owned(),
         held_out_before: before,
         held_out_after: after.held_out,
-        p_value: corrected(candidate, trial),
+        p_value: trial.corrected(candidate),
         share: candidate.score.share(),
         parameters: after
             .parameters

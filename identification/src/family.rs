@@ -1,9 +1,9 @@
 //! Effects that these data cannot tell apart.
 
-use crate::candidates::{Candidate, score};
+use crate::candidates::Candidate;
 use crate::design::{Design, columns};
 use crate::proposal::Proposal;
-use crate::setup::{BoundTerm, Setup};
+use crate::setup::Setup;
 use crate::statistics::mean_error;
 
 /// Below this many standard errors two gains do not differ.
@@ -12,11 +12,6 @@ const SAME: f64 = 2.0;
 const LEAST_RATIO: f64 = 0.85;
 /// … and leaves at most this many times the mean square.
 const MOST_LEFT: f64 = 1.05;
-
-/// What adds to a rival does so with this chance by scatter at most …
-const ADDS: f64 = 1e-4;
-/// … and what adds nothing with this at least.
-const ADDS_NOTHING: f64 = 0.01;
 /// A suspect explains this share of the mean square at least …
 const SUSPECT_SHARE: f64 = 0.2;
 /// … and scatter does as much with this chance at most.
@@ -112,61 +107,6 @@ fn may_be(design: &Design, best: &Candidate, other: &Candidate) -> bool {
     best.effect.between_sessions()
         && other.score.gain > SUSPECT_RATIO * best.score.gain
         && difference(design, best, other).abs() < SUSPECT_SAME
-}
-
-/// Leaves those out of `passing` that are as good as the first on the whole, but
-/// are not enough: beside such a rival the first still explains something, while
-/// beside the first the rival explains nothing (Davidson and MacKinnon's
-/// encompassing test of models that are not nested). The other way round the
-/// rival takes the first place. Needs the signals twice; for within sessions.
-pub fn encompass(setup: &Setup, design: &Design, passing: &mut Vec<Candidate>) {
-    let Some(first) = passing.first().cloned() else {
-        return;
-    };
-    if first.effect.between_sessions() {
-        return;
-    }
-    let rivals: Vec<Candidate> = passing
-        .iter()
-        .skip(1)
-        .filter(|other| !other.effect.between_sessions() && as_good(design, &first, other))
-        .filter(|other| !contains(&first, other) && !contains(other, &first))
-        .cloned()
-        .collect();
-    let with = |candidate: &Candidate| {
-        let extended = setup.extended(BoundTerm {
-            effect: candidate.effect.clone(),
-            shape: candidate.shape.clone(),
-        });
-        let design = Design::new(&extended);
-        (extended, design)
-    };
-    let beside = |(setup, design): &(Setup, Design), candidate: &Candidate| {
-        let (score, _) = score(setup, design, &candidate.effect, &candidate.shape);
-        score.p_value
-    };
-    let beside_first = with(&first);
-    let mut better = None;
-    for rival in rivals {
-        let (first_adds, rival_adds) =
-            (beside(&with(&rival), &first), beside(&beside_first, &rival));
-        if first_adds < ADDS && rival_adds > ADDS_NOTHING {
-            passing.retain(|c| c.id() != rival.id());
-        } else if rival_adds < ADDS && first_adds > ADDS_NOTHING && better.is_none() {
-            better = Some(rival.id().to_owned());
-        }
-    }
-    if let Some(at) = better.and_then(|id| passing.iter().position(|c| c.id() == id)) {
-        let better = passing.remove(at);
-        if let Some(first) = passing.first_mut() {
-            *first = better;
-        }
-    }
-}
-
-/// Whether `whole` has `part`'s columns among its own.
-fn contains(whole: &Candidate, part: &Candidate) -> bool {
-    whole.id() == "nonlinear_viscous" && ["quadratic_viscous", "cubic_viscous"].contains(&part.id())
 }
 
 /// The candidates that explain these data as well as `candidate` does.

@@ -150,12 +150,23 @@ impl Gram {
         }
     }
 
-    /// Coefficients by which the first `base` columns explain all others and y.
+    /// Coefficients by which the first columns explain all others and y.
+    /// Those of y lie around `around`, one for each of the first columns, and
+    /// `hold` \[square of y over square of the coefficient\] holds all of them:
+    /// nothing where it is 0.
     #[must_use]
-    pub fn explain(&self, base: usize) -> DMatrix<f64> {
+    pub fn explain(&self, around: &DVector<f64>, hold: &DVector<f64>) -> DMatrix<f64> {
+        let base = around.len();
         let rest = self.products.nrows() - base;
-        let (inverse, _) = pseudo_inverse(&self.products.view((0, 0), (base, base)).into_owned());
-        inverse * self.products.view((0, base), (base, rest))
+        let own = self.products.view((0, 0), (base, base));
+        let mut sides = self.products.view((0, base), (base, rest)).into_owned();
+        let mut measured = sides.column_mut(rest - 1);
+        measured -= own * around;
+        let (inverse, _) = pseudo_inverse(&(own + DMatrix::from_diagonal(hold)));
+        let mut coefficients = inverse * sides;
+        let mut measured = coefficients.column_mut(rest - 1);
+        measured += around;
+        coefficients
     }
 }
 
@@ -254,7 +265,7 @@ mod tests {
         let base = Gram::of(&[&ones], &y, 0, 50);
         let joint = base.with(&[&ones, &y], &[&x], 0, 50);
         assert_eq!(joint, Gram::of(&[&ones, &x], &y, 0, 50));
-        let reduced = joint.reduce(1, &joint.explain(1));
+        let reduced = joint.reduce(1, &joint.explain(&DVector::zeros(1), &DVector::zeros(1)));
         assert!((reduced.solve()[0] - joint.solve()[1]).abs() < 1e-9);
     }
 
@@ -264,5 +275,22 @@ mod tests {
         let gram = Gram::of(&[&ones, &x, &x], &y, 0, 50);
         let c = gram.solve();
         assert!((c[1] - c[2]).abs() < 1e-6 && (c[1] + c[2] + 2.0).abs() < 0.01);
+    }
+
+    /// y = 3 + 2 x, seen where x hardly varies: held to (1, 4), the level is found
+    /// for the slope that is held, free of it both are.
+    #[test]
+    fn what_is_not_excited_stays_where_it_is_held() {
+        let x: Vec<f64> = (0..50).map(|i| 1.0 + 1e-3 * f64::from(i % 2)).collect();
+        let y: Vec<f64> = x.iter().map(|x| 3.0 + 2.0 * x).collect();
+        let gram = Gram::of(&[&vec![1.0; 50], &x], &y, 0, 50);
+        let around = DVector::from_vec(vec![1.0, 4.0]);
+        let near = |found: DMatrix<f64>, wanted: [f64; 2]| {
+            let apart = (found[(0, 0)] - wanted[0]).hypot(found[(1, 0)] - wanted[1]);
+            assert!(apart < 0.01, "{found}");
+        };
+        near(gram.explain(&around, &DVector::zeros(2)), [3.0, 2.0]);
+        let hold = DVector::from_vec(vec![0.0, 1.0]);
+        near(gram.explain(&around, &hold), [1.0, 4.0]);
     }
 }

@@ -23,6 +23,7 @@ pub mod dependence;
 pub mod design;
 pub mod diagnose;
 pub mod effects;
+pub mod encompass;
 pub mod error;
 pub mod expression;
 pub mod extrapolation;

@@ -41,7 +41,7 @@ use Proposal::{
 };
 
 /// Which effects a motion tells from each other, the most telling motion first.
-const TELLS_APART: [(Proposal, &[&str]); 12] = [
+const TELLS_APART: [(Proposal, &[&str]); 14] = [
     (
         TemperatureSweep,
         &["temperature_coulomb", "temperature_viscous", "wear_drift"],
@@ -76,6 +76,15 @@ const TELLS_APART: [(Proposal, &[&str]); 12] = [
             "load_coulomb",
             "inertia",
         ],
+    ),
+    // Free of load, what goes with position is still there, at any speed.
+    (
+        FastUnloaded,
+        &["motor_constant", "torque_sensor_gain", "cable_spring"],
+    ),
+    (
+        FastUnloaded,
+        &["motor_constant", "torque_sensor_gain", "gravity"],
     ),
     (
         WidePosition,
@@ -201,11 +210,17 @@ impl Proposal {
     /// recording can; `alone` is what shows `own` by itself.
     #[must_use]
     pub fn between(own: &str, rivals: &[&str], alone: Self) -> Self {
-        let tells =
-            |effects: &[&str], rival: &str| effects.contains(&own) && effects.contains(&rival);
+        let told = |by: Self| {
+            let tells = |rival: &str| {
+                TELLS_APART.iter().any(|(proposal, effects)| {
+                    *proposal == by && effects.contains(&own) && effects.contains(&rival)
+                })
+            };
+            rivals.iter().filter(|rival| tells(rival)).count()
+        };
         let mut best = (alone, 0);
-        for (proposal, effects) in TELLS_APART {
-            let told = rivals.iter().filter(|rival| tells(effects, rival)).count();
+        for (proposal, _) in TELLS_APART {
+            let told = told(proposal);
             if told > best.1 {
                 best = (proposal, told);
             }
@@ -241,6 +256,13 @@ mod tests {
             SlowReversals
         );
         assert_eq!(between("inertia", &["channel_delay"]), Accelerations);
+        assert_eq!(
+            between(
+                "torque_sensor_gain",
+                &["cable_spring", "gravity", "motor_constant"]
+            ),
+            FastUnloaded
+        );
         // One rival each way: the first.
         assert_eq!(
             between("load_coulomb", &["motor_constant", "cable_spring"]),

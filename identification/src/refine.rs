@@ -1,5 +1,7 @@
 //! Search for the shape of an effect: a grid, then golden sections.
 
+use nalgebra::DVector;
+
 use crate::design::{BlockGrams, Design};
 use crate::effects::EffectHandle;
 use crate::gram::Gram;
@@ -11,14 +13,14 @@ const GRID: usize = 12;
 /// Grams of all sessions with each session's own base taken out: what is left
 /// of the extra columns and y.
 #[must_use]
-pub fn within(grams: &BlockGrams, base: usize) -> Gram {
+pub fn within(design: &Design, grams: &BlockGrams) -> Gram {
     let mut sum: Option<Gram> = None;
     for session in grams {
         let Some(first) = session.first() else {
             continue;
         };
         let total = Gram::sum(session, first.columns());
-        let reduced = total.reduce(base, &total.explain(base));
+        let reduced = total.reduce(design.base, &design.explain(&total));
         match &mut sum {
             None => sum = Some(reduced),
             Some(sum) => sum.add(&reduced),
@@ -37,9 +39,10 @@ pub fn error_of(setup: &Setup, design: &Design, effect: &EffectHandle, shape: &[
             return f64::INFINITY;
         };
         let total = Gram::sum(&flat, first.columns());
-        total.reduce(design.base, &total.explain(design.base))
+        let free = DVector::zeros(design.base);
+        total.reduce(design.base, &total.explain(&free, &free))
     } else {
-        within(&grams, design.base)
+        within(design, &grams)
     };
     let coefficients = reduced.solve();
     let error = reduced.squared_error(&coefficients);

@@ -119,5 +119,6 @@ fn held(whole: &Setup, design: &Design, effect: EffectHandle) -> Option<Candidat
         shape,
         score,
         plausible,
+        variants: 1,
     })
 }

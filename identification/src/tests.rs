@@ -93,6 +93,39 @@ fn two_names_of_one_column_are_one_family() {
     }
 }
 
+/// A cable's pull is a line over position, a constant among them: whether it is
+/// a rival is decided by its slope.
+#[test]
+fn a_term_that_adds_nothing_makes_no_rival() {
+    let others = |torque: fn(&State) -> f64| {
+        let first = ask(torque).candidates.swap_remove(0);
+        assert!(!first.indistinguishable_from.contains(&first.effect));
+        (first.effect, first.indistinguishable_from)
+    };
+    let (_, constant) = others(|s| plain(s) + 0.7);
+    assert!(!constant.contains(&"cable_spring".into()), "{constant:?}");
+    let (effect, line) = others(|s| plain(s) + 0.7 + 4.0 * (s.q - 0.2));
+    assert!(["cable_spring", "gravity"].contains(&effect.as_str()));
+    assert!(!line.contains(&"asymmetric_coulomb".into()), "{line:?}");
+}
+
+#[test]
+fn a_late_torque_sensor_brings_the_friction_by_load_with_it() {
+    let mut data = recording(8, |s| plain(s) + 0.3 * s.tau.abs() * s.qd.signum());
+    for session in &mut data.sessions {
+        if let Some(torque) = &mut session.joint_torque {
+            // Three samples late: 30 ms.
+            torque.rotate_right(3);
+        }
+    }
+    let believed = model(&["coulomb", "viscous", "load_coulomb"]);
+    let diagnosis = diagnose(&data, &believed, &mut |_| ()).unwrap();
+    assert_eq!(named(&diagnosis), "channel_delay");
+    let parameters = &diagnosis.candidates[0].parameters;
+    let (delay, channel) = (parameters["delay"].value, parameters["channel"].value);
+    assert!((0.027..0.033).contains(&delay) && channel == 1.0, "{delay}");
+}
+
 #[test]
 fn what_the_catalogue_lacks_has_signals_and_no_name() {
     let diagnosis = ask(|s| plain(s) + 0.5 * (s.temperature - 11.0) * (s.q - 0.2));

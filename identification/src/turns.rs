@@ -54,6 +54,7 @@ pub fn settle(setup: &Setup, design: &Design, passing: &mut Vec<Candidate>) {
             shape,
             score: own,
             plausible: true,
+            variants: 1,
         },
     );
 }

@@ -95,16 +95,16 @@ impl Score {
     }
 }
 
-/// Scores extra columns within sessions.
-#[must_use]
-pub fn within(design: &Design, grams: &BlockGrams) -> Score {
-    let reduced: Vec<Vec<Gram>> = grams
+/// Grams of the extra columns, block by block, less what each session's own
+/// parameters of the model explain of them; and their sum.
+fn reduced(design: &Design, grams: &BlockGrams) -> (BlockGrams, Gram) {
+    let reduced: BlockGrams = grams
         .iter()
         .map(|session| {
             let Some(first) = session.first() else {
                 return Vec::new();
             };
-            let own = Gram::sum(session, first.columns()).explain(design.base);
+            let own = design.explain(&Gram::sum(session, first.columns()));
             session
                 .iter()
                 .map(|gram| gram.reduce(design.base, &own))
@@ -113,6 +113,34 @@ pub fn within(design: &Design, grams: &BlockGrams) -> Score {
         .collect();
     let columns = reduced.iter().flatten().next().map_or(0, Gram::columns);
     let total = Gram::sum(reduced.iter().flatten(), columns);
+    (reduced, total)
+}
+
+/// Estimates with one block left out each: a block's own scatter around its
+/// session is independent of the others'.
+fn without_each(reduced: &BlockGrams, total: &Gram) -> Vec<DVector<f64>> {
+    let blocks = reduced.iter().flatten();
+    blocks.map(|gram| total.without(gram).solve()).collect()
+}
+
+/// p-value of the extra columns from number `first` on, beside those before
+/// them: all of them shared, the model's own parameters each session's own.
+#[must_use]
+pub fn beside(design: &Design, grams: &BlockGrams, first: usize) -> f64 {
+    let (reduced, total) = reduced(design, grams);
+    let later = |all: DVector<f64>| all.rows(first, all.len() - first).into_owned();
+    let without: Vec<DVector<f64>> = without_each(&reduced, &total)
+        .into_iter()
+        .map(later)
+        .collect();
+    jackknife_wald(&later(total.solve()), &without)
+}
+
+/// Scores extra columns within sessions.
+#[must_use]
+pub fn within(design: &Design, grams: &BlockGrams) -> Score {
+    let (reduced, total) = reduced(design, grams);
+    let columns = total.columns();
     let (mut gains, mut slope) = (Vec::new(), Slope::default());
     for fold in &design.folds {
         let left_out: Vec<&Gram> = fold
@@ -129,13 +157,7 @@ pub fn within(design: &Design, grams: &BlockGrams) -> Score {
         }
     }
     let estimate = total.solve();
-    // A block's own scatter around its session is independent of the others'.
-    let without: Vec<DVector<f64>> = reduced
-        .iter()
-        .flatten()
-        .map(|gram| total.without(gram).solve())
-        .collect();
-    let p_value = jackknife_wald(&estimate, &without);
+    let p_value = jackknife_wald(&estimate, &without_each(&reduced, &total));
     Score::new(
         &estimate,
         gains,
@@ -230,7 +252,7 @@ pub fn disagreement(design: &Design, grams: &BlockGrams) -> f64 {
         .iter()
         .map(|session| {
             let own = Gram::sum(session, columns);
-            own.reduce(design.base, &own.explain(design.base))
+            own.reduce(design.base, &design.explain(&own))
         })
         .collect();
     let inside = Gram::sum(&reduced, 1);

@@ -2,10 +2,13 @@
 
 pub mod columns;
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::effects::EffectHandle;
 use crate::gram::Gram;
 use crate::setup::Setup;
 use crate::signals::Signals;
+use crate::statistics::jackknife_covariance;
 
 /// Blocks of time in all, at least; a session is one or more of them.
 const FEWEST_BLOCKS: usize = 12;
@@ -23,6 +26,12 @@ pub struct SessionDesign {
     pub grams: Vec<Gram>,
 }
 
+/// How far a session's own parameters may lie from those of all sessions, as a
+/// share of these …
+const SCATTER: f64 = 0.5;
+/// … and in their standard errors by sessions left out.
+const SCATTER_ERRORS: f64 = 2.0;
+
 /// Rows of all sessions that are fitted.
 #[derive(Clone, Debug)]
 pub struct Design {
@@ -32,6 +41,12 @@ pub struct Design {
     pub base: usize,
     /// Which (session, block) are left out together.
     pub folds: Vec<Vec<(usize, usize)>>,
+    /// Parameters of all sessions together.
+    shared: DVector<f64>,
+    /// What holds a session's own parameters to them: mean square of what is left
+    /// \[Nm²\] over the square of how far they may lie apart. A session that does
+    /// not excite a parameter (friction by load, free of load) has none of its own.
+    hold: DVector<f64>,
 }
 
 /// Grams of base, candidate columns and y, by session and block.
@@ -61,11 +76,48 @@ impl Design {
                 folds.extend(blocks.into_iter().map(|b| vec![b]));
             }
         }
-        Self {
+        let mut design = Self {
             sessions,
             base,
             folds,
-        }
+            shared: DVector::zeros(base),
+            hold: DVector::zeros(base),
+        };
+        (design.shared, design.hold) = design.scatter();
+        design
+    }
+
+    fn scatter(&self) -> (DVector<f64>, DVector<f64>) {
+        let total = self.total();
+        let shared = total.solve();
+        let own = self.own();
+        let without: Vec<DVector<f64>> = self
+            .folds
+            .iter()
+            .map(|fold| {
+                let out = fold.iter().filter_map(|(s, b)| own.get(*s)?.get(*b));
+                total.without(&Gram::sum(out, self.base)).solve()
+            })
+            .collect();
+        let covariance = jackknife_covariance(&shared, &without);
+        let left = total.squared_error(&shared) / total.rows.max(1) as f64;
+        let hold = DVector::from_fn(self.base, |k, _| {
+            let error = covariance[(k, k)].max(0.0).sqrt();
+            let apart = SCATTER * shared[k].abs() + SCATTER_ERRORS * error;
+            if apart > 0.0 {
+                left / (apart * apart)
+            } else {
+                0.0
+            }
+        });
+        (shared, hold)
+    }
+
+    /// Coefficients by which a session's own parameters, which lie around those
+    /// of all sessions, explain the extra columns and y of its Gram `own`.
+    #[must_use]
+    pub fn explain(&self, own: &Gram) -> DMatrix<f64> {
+        own.explain(&self.shared, &self.hold)
     }
 
     /// Gram of all rows.

@@ -47,7 +47,13 @@ impl Effect for ChannelDelay {
         };
         Some(vec![match channel.round() as i64 {
             0 => late(&|p| p.motor_predicted, *delay),
-            1 => late(&|p| p.load, -delay),
+            // Friction that grows with the load is late with it.
+            1 => late(&|p| p.load, -delay)
+                .into_iter()
+                .zip(late(&|p| p.load.abs(), -delay))
+                .zip(points)
+                .map(|((load, size), p)| load + p.load_slope * size * p.sign())
+                .collect(),
             2 => late(&|p| p.motor_predicted - p.load, -delay),
             // The load is modelled from the position, and late with it.
             _ => late(&|p| p.motor_predicted, -delay),

@@ -226,6 +226,8 @@ impl Bench {
         session.motion = Some(motion);
 
         let mut cursor = 0;
+        // Command and motor torque of the millisecond before.
+        let mut before = (0.0, 0.0);
         for millisecond in 0..=milliseconds {
             let time = millisecond as f64 * 1e-3;
             let share = time / programme.duration();
@@ -246,19 +248,23 @@ impl Bench {
             let motor_torque = effects
                 .iter()
                 .fold(command, |torque, effect| effect.motor_torque(torque));
-            // The state that a log entry shows is the one that this torque acts on.
+            // A torque is held for a millisecond. The state that a log entry shows
+            // lies between what was held before and what is held from there on.
+            let middle = |before: f64, now: f64| 0.5 * (before + now);
+            let command_there = middle(before.0, command);
             let (position, velocity) = plant.measured();
             let state = *plant.state();
             let work = plant.millisecond(motor_torque, &effects);
             let mut reading = Reading {
                 position,
-                motor_torque,
+                motor_torque: middle(before.1, motor_torque),
                 joint_torque: state.load,
             };
             for effect in &mut effects {
                 effect.tick(work);
-                effect.read(command, &mut reading);
+                effect.read(command_there, &mut reading);
             }
+            before = (command, motor_torque);
             if millisecond % MILLISECONDS_A_LOG == 0 {
                 let (logged, temperature) = sensors.log(&reading, state.temperature);
                 session.push(time, &logged, temperature);
