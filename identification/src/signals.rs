@@ -232,7 +232,7 @@ impl Signals {
         let reach = Kernel::reach(filters.column);
         let last = points.len().saturating_sub(reach);
         let all_rows: Vec<usize> = match &filters.stated {
-            Some(filter) => filter.rows(points.len()),
+            Some(filter) => filter.rows(points.iter().map(|point| point.velocity)),
             None => (reach..last).step_by(filters.stride.max(1)).collect(),
         };
         let mut sliding = Sliding::default();

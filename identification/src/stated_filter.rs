@@ -4,7 +4,7 @@
 //! it on the EMPS: position through a Butterworth low-pass forwards and
 //! backwards, velocity and acceleration by central differences, every column
 //! and the torque through the Chebyshev low-pass of a decimation, forwards and
-//! backwards; no row is left out for its speed.
+//! backwards; no row is left out for its speed, unless a least speed is stated.
 //!
 //! A filter run forwards and backwards has no phase: it is a symmetric finite
 //! impulse response with the square of the filter's gain, known in closed form
@@ -36,6 +36,10 @@ pub struct StatedFilter {
     pub butterworth_hz: f64,
     /// Every so many samples give a row.
     pub decimation: usize,
+    /// Slower rows \[rad/s, of a prismatic joint m/s\] are left out: friction near
+    /// rest has no value of its own.
+    #[serde(default)]
+    pub least_speed: f64,
 }
 
 impl StatedFilter {
@@ -75,11 +79,15 @@ impl StatedFilter {
         Kernel::of_taps(taps(gain, ((60.0 * every) as usize).min(POINTS / 4)))
     }
 
-    /// Samples that are rows, of `count`.
+    /// Samples that are rows, of those with these velocities \[rad/s\].
     #[must_use]
-    pub fn rows(&self, count: usize) -> Vec<usize> {
-        let last = count.saturating_sub(LEFT_OUT);
-        (LEFT_OUT..last).step_by(self.decimation.max(1)).collect()
+    pub fn rows(&self, velocities: impl ExactSizeIterator<Item = f64>) -> Vec<usize> {
+        let last = velocities.len().saturating_sub(LEFT_OUT);
+        let samples = velocities.enumerate().take(last).skip(LEFT_OUT);
+        let rows = samples.step_by(self.decimation.max(1));
+        rows.filter(|(_, velocity)| velocity.abs() >= self.least_speed)
+            .map(|(at, _)| at)
+            .collect()
     }
 }
 
@@ -128,6 +136,7 @@ mod tests {
     const FILTER: StatedFilter = StatedFilter {
         butterworth_hz: 100.0,
         decimation: 10,
+        least_speed: 0.0,
     };
 
     /// Gain of a symmetric kernel at `hertz`, sampled at 1 kHz.
@@ -162,5 +171,20 @@ mod tests {
             .collect();
         assert!((velocity.at(&signal, 500) - 5.0).abs() < 1e-6);
         assert!((acceleration.at(&signal, 500) - 6.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn rows_are_every_tenth_sample_that_is_fast_enough() {
+        let velocity = |at: usize| if at < 500 { 0.1 } else { -0.3 };
+        let rows = |least_speed: f64| {
+            let filter = StatedFilter {
+                least_speed,
+                ..FILTER
+            };
+            filter.rows((0..1000).map(velocity))
+        };
+        let all: Vec<usize> = (100..900).step_by(10).collect();
+        assert_eq!(rows(0.0), all);
+        assert_eq!(rows(0.2), all[40..]);
     }
 }

@@ -28,7 +28,7 @@ pub struct SessionDesign {
 
 /// How far a session's own parameters may lie from those of all sessions, as a
 /// share of these …
-const SCATTER: f64 = 0.5;
+const SCATTER: f64 = 1.0;
 /// … and in their standard errors by sessions left out.
 const SCATTER_ERRORS: f64 = 2.0;
 

@@ -71,6 +71,7 @@ pub(super) struct SignalsTable {
     pub(super) tangential_force: Option<String>,
     pub(super) normal_force: Option<String>,
     pub(super) temperature: Option<String>,
+    pub(super) valid: Option<String>,
     pub(super) time: Option<String>,
     #[serde(default)]
     pub(super) extra: BTreeMap<String, String>,

@@ -11,11 +11,13 @@
 //! motor_torque = "/motor.effort[0]"           # Nm
 //! joint_torque = "/joint_states.effort[0]"    # Nm, optional
 //! temperature = "/temperature.temperature"    # degC, optional
+//! valid = "/drive.enabled"                    # optional: what counts, where it is above 0.5
 //! time = "t_s"                  # CSV only: the column that is time [s]
 //! extra.supply = "/power.voltage"             # anything else
 //! [filter]                      # optional: as published, else chosen from the noise
 //! butterworth_hz = 100          # position, order 4, forwards and backwards
 //! decimation = 10               # of every column, after its Chebyshev low-pass
+//! least_speed = 0.1             # rad/s, optional: slower rows are left out
 //! [model]
 //! inertia = 1.1                 # kg m², or { fit = true }
 //! gear_ratio = 160              # optional
@@ -116,6 +118,8 @@ pub struct Signals {
     pub joint_torque: Option<String>,
     /// \[degC\].
     pub temperature: Option<String>,
+    /// Samples count where it is above 0.5, as while a drive is enabled.
+    pub valid: Option<String>,
     /// In CSV the column that is time \[s\].
     pub time: Option<String>,
     /// Anything else by name.
@@ -244,6 +248,10 @@ fn filter(
             let reason = format!("{} is outside 1 … 100", filter.decimation);
             return Err(refuse("filter.decimation", reason));
         }
+        if !(0.0..=1e3).contains(&filter.least_speed) {
+            let reason = format!("{} is outside 0 … 1000", filter.least_speed);
+            return Err(refuse("filter.least_speed", reason));
+        }
     }
     Ok(stated)
 }
@@ -321,6 +329,7 @@ fn signals(
         normal_force,
         joint_torque: table.joint_torque,
         temperature: table.temperature,
+        valid: table.valid,
         time: table.time,
         extra: table.extra,
     })

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{LoadError, Series};
+use super::{LoadError, Series, VALID};
 
 /// An interval more than that many periods long is a gap.
 const GAP: i64 = 10;
@@ -37,7 +37,8 @@ struct Timed<'a> {
     at: usize,
 }
 
-/// Cuts the series of one file (the position first) into pieces.
+/// Cuts the series of one file (the position first) into pieces; what is not
+/// valid is in none of them.
 /// Returns them with the number of samples left out in short ones.
 pub(super) fn align(file: &Path, all: &[Series]) -> Result<(Vec<Piece>, usize), LoadError> {
     let Some(position) = all.first() else {
@@ -75,6 +76,8 @@ pub(super) fn align(file: &Path, all: &[Series]) -> Result<(Vec<Piece>, usize), 
         left_out: 0,
         longest: 0,
     };
+    let valid = all.iter().position(|series| series.signal == VALID);
+    let is_valid = |row: &[f64]| valid.and_then(|at| row.get(at)).is_none_or(|v| *v > 0.5);
     let mut row = vec![0.0; all.len()];
     for (&time, &value) in position.times.iter().zip(&position.values) {
         let mut complete = true;
@@ -86,7 +89,7 @@ pub(super) fn align(file: &Path, all: &[Series]) -> Result<(Vec<Piece>, usize), 
                 None => complete = false,
             }
         }
-        match complete {
+        match complete && is_valid(&row) {
             true => cut.push(time, &row),
             false => cut.close(),
         }
@@ -294,6 +297,26 @@ mod tests {
             let pairs = piece.channels[0].iter().zip(&piece.channels[1]);
             assert!(pairs.into_iter().all(|(q, tau)| (q - tau).abs() < 1e-12));
         }
+    }
+
+    #[test]
+    fn what_is_not_valid_is_cut_out() {
+        let times: Vec<i64> = (0..300).map(|n| n * 10_000_000).collect();
+        let position = series("position", times.clone());
+        let mut valid = series(VALID, times);
+        for (n, value) in valid.values.iter_mut().enumerate() {
+            *value = f64::from(u8::from(!(100..200).contains(&n)));
+        }
+        let mut all = [position, valid];
+        let (pieces, _) = align(Path::new("a"), &all).unwrap();
+        let starts: Vec<i64> = pieces.iter().map(|p| p.start / 10_000_000).collect();
+        assert_eq!(starts, [0, 200]);
+        assert!(pieces.iter().all(|piece| piece.channels[0].len() == 100));
+        all[1].values.fill(0.0);
+        assert!(matches!(
+            align(Path::new("a"), &all),
+            Err(LoadError::TooShort { samples: 0, .. })
+        ));
     }
 
     proptest! {

@@ -194,7 +194,7 @@ pub enum LoadError {
         recordings: String,
     },
     /// Too little is left.
-    #[error("{}: {samples} samples without a gap are too few, {needed} are needed; record longer, or see that all signals are there at the same time", file.display())]
+    #[error("{}: {samples} samples without a gap are too few, {needed} are needed; record longer, or see that all signals are there (and valid) at the same time", file.display())]
     TooShort {
         /// The recording.
         file: PathBuf,

@@ -7,8 +7,8 @@
 //! * Time is the message's header stamp where it has a `std_msgs/Header` at
 //!   `header`, else the log time; a stamp of zero says that the message is not
 //!   valid. In CSV it is a column \[s\].
-//! * A session ends where the position, or another signal, has a gap, and with
-//!   the file. Stretches of fewer than 50 samples are left out.
+//! * A session ends where the position, or another signal, has a gap, where
+//!   `valid` is not above 0.5, and with the file. Stretches of fewer than 50 samples are left out.
 //! * Unevenly sampled sessions are interpolated onto their mean period.
 //! * Sessions keep the time between them where files carry a date; files whose
 //!   clock begins anew are put one behind the other.
@@ -25,6 +25,9 @@ use crate::{csv, experiment::Experiment};
 
 pub(crate) use bag::numbers_of;
 pub use error::LoadError;
+
+/// The signal that says which samples count.
+const VALID: &str = "valid";
 
 /// The tip's coordinates as signals.
 const TIP_X: &str = "tip[0]";
@@ -165,6 +168,7 @@ fn wanted(experiment: &Experiment) -> Vec<Wanted> {
         ("joint_torque", &signals.joint_torque),
         ("normal_force", &signals.normal_force),
         ("temperature", &signals.temperature),
+        (VALID, &signals.valid),
     ];
     let mut wanted = vec![
         (position.to_owned(), signals.position.clone()),
@@ -243,6 +247,8 @@ fn read_file(
                 "normal_force" => session.normal_force = Some(values),
                 "joint_torque" => session.joint_torque = Some(values),
                 "temperature" => session.temperature = Some(values),
+                // What is not valid has been cut out.
+                VALID => {}
                 other => {
                     let name = other.strip_prefix("extra.").unwrap_or(other);
                     session.extra.insert(name.to_owned(), values);

@@ -22,7 +22,7 @@ pub struct Beginning {
     #[serde(default)]
     pub joint: JointType,
     /// Signals by name: position, motor_torque, and what else there is of
-    /// joint_torque, temperature, time; of a contact position, tangential_force,
+    /// joint_torque, temperature, valid, time; of a contact position, tangential_force,
     /// normal_force; anything else is an extra signal.
     pub signals: std::collections::BTreeMap<String, String>,
     /// J; a contact has none.
@@ -35,13 +35,14 @@ pub struct Beginning {
 }
 
 /// Signals that are not extra ones.
-const NAMED: [&str; 7] = [
+const NAMED: [&str; 8] = [
     "position",
     "motor_torque",
     "tangential_force",
     "normal_force",
     "joint_torque",
     "temperature",
+    "valid",
     "time",
 ];
 
