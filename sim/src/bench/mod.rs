@@ -4,6 +4,7 @@
 mod conditions;
 mod config;
 mod error;
+mod exchange;
 mod hidden;
 mod parameter;
 mod programme;
@@ -16,6 +17,7 @@ pub use hidden::Hideable;
 pub use parameter::TrueParameter;
 
 pub(crate) use conditions::{Conditions, SECONDS_A_DAY};
+pub(crate) use exchange::exchange;
 pub(crate) use hidden::hidden_effects;
 pub(crate) use programme::Programme;
 pub(crate) use smooth::{differentiate, rms, smooth};

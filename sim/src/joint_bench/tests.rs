@@ -1,4 +1,5 @@
 mod signatures;
+mod without_hidden;
 
 use super::*;
 
