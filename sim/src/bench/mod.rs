@@ -6,6 +6,7 @@ mod config;
 mod error;
 mod exchange;
 mod hidden;
+mod named;
 mod parameter;
 mod programme;
 mod smooth;
@@ -18,7 +19,7 @@ pub use parameter::TrueParameter;
 
 pub(crate) use conditions::{Conditions, SECONDS_A_DAY};
 pub(crate) use exchange::exchange;
-pub(crate) use hidden::hidden_effects;
+pub(crate) use named::named;
 pub(crate) use programme::Programme;
 pub(crate) use smooth::{differentiate, rms, smooth};
 pub(crate) use streams::{Stream, about, either_sign, random};

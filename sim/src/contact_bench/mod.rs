@@ -67,14 +67,8 @@ impl ContactBench {
     pub fn new(config: &ContactConfig) -> Result<Self, BenchError> {
         config.validate()?;
         let drawn = EdgeParameters::draw(&mut random(config.seed, Stream::Subject, 0));
-        let effects: Vec<Box<dyn Effect>> = config
-            .hidden
-            .iter()
-            .map(|&hidden| {
-                let mut random = random(config.seed, Stream::Effect, hidden as usize);
-                effect::draw(hidden, &drawn, config.strength, &mut random)
-            })
-            .collect();
+        let effects = config
+            .draw_hidden(|hidden, random| effect::draw(hidden, &drawn, config.strength, random));
         let mut edge = drawn;
         for effect in &effects {
             effect.prepare(&mut edge);
@@ -148,21 +142,9 @@ impl ContactBench {
 
     /// True parameters before they scatter: the edge's, then each hidden effect's.
     fn parameters(&self) -> Vec<TrueParameter> {
-        let own = self.edge.named().map(|parameter| (None, parameter));
         let hidden = self.config.hidden.iter().zip(&self.effects);
-        let hidden = hidden.flat_map(|(&hidden, effect)| {
-            let named = effect.parameters().into_iter();
-            named.map(move |parameter| (Some(hidden), parameter))
-        });
-        own.into_iter()
-            .chain(hidden)
-            .map(|(effect, (name, value, unit))| TrueParameter {
-                effect,
-                name,
-                value,
-                unit,
-            })
-            .collect()
+        let hidden = hidden.map(|(&hidden, effect)| (hidden, effect.parameters()));
+        TrueParameter::list(self.edge.named(), hidden)
     }
 
     fn session(&self, index: usize, motion: Motion, conditions: &Conditions) -> ContactSession {

@@ -84,7 +84,7 @@ fn more_sessions_come_later() {
     let bench = ContactBench::new(&ContactConfig::default()).unwrap();
     let recorded = bench.record();
     let last = recorded.sessions.last().unwrap().start;
-    for motion in Motion::ALL {
+    for &motion in Motion::ALL {
         let more = bench.follow_up(&recorded, motion, 2);
         assert!(
             more.iter()

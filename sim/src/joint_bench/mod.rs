@@ -82,14 +82,8 @@ impl Bench {
     pub fn new(config: &BenchConfig) -> Result<Self, BenchError> {
         config.validate()?;
         let drawn = JointParameters::draw(&mut random(config.seed, Stream::Subject, 0));
-        let effects: Vec<Box<dyn Effect>> = config
-            .hidden
-            .iter()
-            .map(|&hidden| {
-                let mut random = random(config.seed, Stream::Effect, hidden as usize);
-                effect::draw(hidden, &drawn, config.strength, &mut random)
-            })
-            .collect();
+        let effects = config
+            .draw_hidden(|hidden, random| effect::draw(hidden, &drawn, config.strength, random));
         let mut joint = drawn.clone();
         for effect in &effects {
             effect.prepare(&mut joint);
@@ -149,28 +143,9 @@ impl Bench {
             ("spring", joint.spring, "Nm/rad"),
             ("spring_start", joint.spring_start, "rad"),
         ];
-        let hidden = self
-            .config
-            .hidden
-            .iter()
-            .zip(&self.effects)
-            .flat_map(|(&hidden, effect)| {
-                let named = effect.parameters().into_iter();
-                named.map(move |parameter| (Some(hidden), parameter))
-            });
-        joint
-            .named()
-            .into_iter()
-            .chain(own)
-            .map(|parameter| (None, parameter))
-            .chain(hidden)
-            .map(|(effect, (name, value, unit))| TrueParameter {
-                effect,
-                name,
-                value,
-                unit,
-            })
-            .collect()
+        let hidden = self.config.hidden.iter().zip(&self.effects);
+        let hidden = hidden.map(|(&hidden, effect)| (hidden, effect.parameters()));
+        TrueParameter::list(joint.named().into_iter().chain(own), hidden)
     }
 
     /// Runs `sessions` more with the same joint, a month after `recorded`: what
