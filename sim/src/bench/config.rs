@@ -1,6 +1,7 @@
 //! What a recording is to be like.
 
-use super::{BenchError, Hideable};
+use super::{BenchError, Hideable, Stream, random};
+use crate::random::Random;
 
 /// What a recording is to be like. The same configuration gives the same bytes.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,5 +81,18 @@ impl<Hidden: Hideable, Motion> BenchConfig<Hidden, Motion> {
             }
         }
         Ok(())
+    }
+
+    /// Draws every hidden effect, each as if it were alone.
+    pub(crate) fn draw_hidden<Effect>(
+        &self,
+        draw: impl Fn(Hidden, &mut Random) -> Effect,
+    ) -> Vec<Effect> {
+        let each = self.hidden.iter();
+        each.map(|&hidden| {
+            let mut random = random(self.seed, Stream::Effect, hidden.index());
+            draw(hidden, &mut random)
+        })
+        .collect()
     }
 }

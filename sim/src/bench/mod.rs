@@ -4,7 +4,9 @@
 mod conditions;
 mod config;
 mod error;
+mod exchange;
 mod hidden;
+mod named;
 mod parameter;
 mod programme;
 mod smooth;
@@ -16,7 +18,8 @@ pub use hidden::Hideable;
 pub use parameter::TrueParameter;
 
 pub(crate) use conditions::{Conditions, SECONDS_A_DAY};
-pub(crate) use hidden::hidden_effects;
+pub(crate) use exchange::exchange;
+pub(crate) use named::named;
 pub(crate) use programme::Programme;
 pub(crate) use smooth::{differentiate, rms, smooth};
 pub(crate) use streams::{Stream, about, either_sign, random};

@@ -1,14 +1,14 @@
 //! Names of what a recording can hide, and what the experimenter still believes.
 
-use crate::bench::{Hideable, hidden_effects};
+use crate::bench::{Hideable, named};
 
-hidden_effects! {
+named! {
     /// An effect that is in the truth of a contact's recording and not in the
     /// model that the experimenter believes in.
     ///
     /// The first six are the contact effects of the catalogue; those whose id
     /// begins with `unknown_` are in no catalogue.
-    pub enum HiddenEffect {
+    pub enum HiddenEffect or UnknownEffect {
         /// b_0T |F_N| sign(ṙ).
         ContactCoulomb = "contact_coulomb",
         /// c ṙ.
@@ -41,13 +41,10 @@ const BASE: [HiddenEffect; 2] = [HiddenEffect::ContactCoulomb, HiddenEffect::Con
 
 impl Hideable for HiddenEffect {
     const ALL: &'static [Self] = HiddenEffect::ALL;
+    const IDS: &'static [&'static str] = HiddenEffect::IDS;
 
     fn id(self) -> &'static str {
         self.id()
-    }
-
-    fn accepted(self) -> &'static [&'static str] {
-        self.own_id()
     }
 
     fn overlap(self, other: Self) -> Option<&'static str> {

@@ -12,7 +12,8 @@
 //!
 //! The experimenter believes in Coulomb and viscous friction without what is
 //! hidden ([`ContactRecording::believed`]). What that leaves unexplained is
-//! known here: [`ContactRecording::visibility`].
+//! known here ([`ContactRecording::visibility`]), as is what would have been logged
+//! on the same way with nothing hidden ([`ContactRecording::without_hidden`]).
 //!
 //! Nothing is shared with the models that the lab fits, nor with the simulated
 //! arm. Pure: same configuration, same bytes.
@@ -52,6 +53,8 @@ pub struct ContactBench {
     config: ContactConfig,
     /// With what hidden effects change in it.
     edge: EdgeParameters,
+    /// The same with nothing hidden beyond Coulomb and viscous friction.
+    plain: EdgeParameters,
     effects: Vec<Box<dyn Effect>>,
 }
 
@@ -63,21 +66,20 @@ impl ContactBench {
     /// A value is out of bounds, or the hidden effects do not go together.
     pub fn new(config: &ContactConfig) -> Result<Self, BenchError> {
         config.validate()?;
-        let plain = EdgeParameters::draw(&mut random(config.seed, Stream::Subject, 0));
-        let effects: Vec<Box<dyn Effect>> = config
-            .hidden
-            .iter()
-            .map(|&hidden| {
-                let mut random = random(config.seed, Stream::Effect, hidden as usize);
-                effect::draw(hidden, &plain, config.strength, &mut random)
-            })
-            .collect();
-        let mut edge = plain;
+        let drawn = EdgeParameters::draw(&mut random(config.seed, Stream::Subject, 0));
+        let effects = config
+            .draw_hidden(|hidden, random| effect::draw(hidden, &drawn, config.strength, random));
+        let mut edge = drawn;
         for effect in &effects {
             effect.prepare(&mut edge);
         }
         Ok(ContactBench {
             config: config.clone(),
+            plain: EdgeParameters {
+                b0t: edge.b0t,
+                film: edge.film,
+                ..drawn
+            },
             edge,
             effects,
         })
@@ -140,21 +142,9 @@ impl ContactBench {
 
     /// True parameters before they scatter: the edge's, then each hidden effect's.
     fn parameters(&self) -> Vec<TrueParameter> {
-        let own = self.edge.named().map(|parameter| (None, parameter));
         let hidden = self.config.hidden.iter().zip(&self.effects);
-        let hidden = hidden.flat_map(|(&hidden, effect)| {
-            let named = effect.parameters().into_iter();
-            named.map(move |parameter| (Some(hidden), parameter))
-        });
-        own.into_iter()
-            .chain(hidden)
-            .map(|(effect, (name, value, unit))| TrueParameter {
-                effect,
-                name,
-                value,
-                unit,
-            })
-            .collect()
+        let hidden = hidden.map(|(&hidden, effect)| (hidden, effect.parameters()));
+        TrueParameter::list(self.edge.named(), hidden)
     }
 
     fn session(&self, index: usize, motion: Motion, conditions: &Conditions) -> ContactSession {
@@ -164,10 +154,12 @@ impl ContactBench {
         let factor = 1.0 + 0.02 * config.scatter * scatter.normal().clamp(-3.0, 3.0);
         let mut normal = NormalForce::new(scatter);
         let mut sensors = Sensors::new(config.noise, random(config.seed, Stream::Noise, index));
-        // The same tip twice: as it is, and without this session's scatter.
+        // The same tip three times: as it is, without this session's scatter, and
+        // without that and what is hidden.
         let start = course.path.at(0.0, &mut 0)[0];
         let mut edge = Edge::new(self.edge, start);
         let mut nominal = Edge::new(self.edge, start);
+        let mut plain = Edge::new(self.plain, start);
         let milliseconds = (course.path.duration() * 1000.0) as usize;
         let mut session = ContactSession::with_capacity(milliseconds / MILLISECONDS_A_LOG + 1);
         session.start = conditions.start;
@@ -187,6 +179,8 @@ impl ContactBench {
             };
             let tangential = edge.millisecond(&at, &self.effects, factor);
             let unscattered = nominal.millisecond(&at, &self.effects, 1.0);
+            let scatter = tangential - unscattered;
+            let without = plain.millisecond(&at, &[], 1.0) + scatter;
             if millisecond % MILLISECONDS_A_LOG == 0 {
                 let exact = Reading {
                     place,
@@ -198,7 +192,12 @@ impl ContactBench {
                     &sensors.log(&exact),
                     sensors.temperature(at.temperature),
                 );
-                session.truth.push(&exact, tangential - unscattered);
+                session.truth.push(&exact, scatter);
+                let exact = Reading {
+                    tangential: without,
+                    ..exact
+                };
+                session.without_hidden.push(&exact, scatter);
             }
         }
         session

@@ -1,10 +1,8 @@
 //! Motions along the edge that the lab can ask for.
 
 use std::f64::consts::TAU;
-use std::fmt;
-use std::str::FromStr;
 
-use crate::bench::{BenchError, Programme};
+use crate::bench::{Programme, named};
 use crate::random::Random;
 
 /// Acceleration of strokes \[m/s²\].
@@ -13,23 +11,25 @@ const ACCELERATION: f64 = 0.2;
 const WAY: f64 = 0.03;
 const MILLIMETRE: f64 = 1e-3;
 
-/// A motion that a session runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Motion {
-    /// Strokes at 1.5 to 50 mm/s and the paper's sinusoid, under three normal
-    /// forces.
-    #[default]
-    Standard,
-    /// The same two speeds under many normal forces. Tells what goes with F_N.
-    ContactForces,
-    /// Constant speeds from 0.7 to 60 mm/s. Tells viscous friction and Stribeck.
-    ContactSpeeds,
-    /// Short slow strokes with many turns. Shows compliance.
-    ContactTurns,
-    /// The whole edge. Shows what goes with the place.
-    ContactSweep,
-    /// The standard motion at one temperature. Tells wear from temperature.
-    ContactDates,
+named! {
+    /// A motion that a session runs.
+    #[derive(Default)]
+    pub enum Motion or UnknownMotion {
+        /// Strokes at 1.5 to 50 mm/s and the paper's sinusoid, under three normal
+        /// forces.
+        #[default]
+        Standard = "standard",
+        /// The same two speeds under many normal forces. Tells what goes with F_N.
+        ContactForces = "contact_forces",
+        /// Constant speeds from 0.7 to 60 mm/s. Tells viscous friction and Stribeck.
+        ContactSpeeds = "contact_speeds",
+        /// Short slow strokes with many turns. Shows compliance.
+        ContactTurns = "contact_turns",
+        /// The whole edge. Shows what goes with the place.
+        ContactSweep = "contact_sweep",
+        /// The standard motion at one temperature. Tells wear from temperature.
+        ContactDates = "contact_dates",
+    }
 }
 
 /// Place over time, and the normal force that is held meanwhile.
@@ -62,28 +62,6 @@ impl Course {
 }
 
 impl Motion {
-    /// All of them.
-    pub const ALL: [Motion; 6] = [
-        Motion::Standard,
-        Motion::ContactForces,
-        Motion::ContactSpeeds,
-        Motion::ContactTurns,
-        Motion::ContactSweep,
-        Motion::ContactDates,
-    ];
-
-    /// Its name in files and on the command line.
-    pub const fn id(self) -> &'static str {
-        match self {
-            Motion::Standard => "standard",
-            Motion::ContactForces => "contact_forces",
-            Motion::ContactSpeeds => "contact_speeds",
-            Motion::ContactTurns => "contact_turns",
-            Motion::ContactSweep => "contact_sweep",
-            Motion::ContactDates => "contact_dates",
-        }
-    }
-
     /// Whether all sessions are run at about one temperature.
     pub(super) fn same_temperature(self) -> bool {
         self == Motion::ContactDates
@@ -175,25 +153,5 @@ fn sweep(course: &mut Course) {
         for speed in [8.0, 20.0, 40.0] {
             course.stroke(0.0, 45.0 * MILLIMETRE, speed * MILLIMETRE);
         }
-    }
-}
-
-impl fmt::Display for Motion {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.id())
-    }
-}
-
-impl FromStr for Motion {
-    type Err = BenchError;
-
-    fn from_str(id: &str) -> Result<Self, BenchError> {
-        Self::ALL
-            .into_iter()
-            .find(|motion| motion.id() == id)
-            .ok_or_else(|| BenchError::UnknownMotion {
-                id: id.into(),
-                known: Self::ALL.map(Motion::id).join(", "),
-            })
     }
 }

@@ -1,7 +1,9 @@
 //! What a contact bench gives out.
 
+use super::hidden::believed_effects;
 use super::sensors::Reading;
 use super::{HiddenEffect, Motion};
+use crate::bench::exchange;
 
 /// A true parameter of the edge, or of what it hides.
 pub type TrueParameter = crate::bench::TrueParameter<HiddenEffect>;
@@ -49,23 +51,28 @@ pub struct ContactSession {
     pub temperature: Vec<f64>,
     /// The truth behind it.
     pub truth: TrueForces,
+    /// What would be true on the same way, under the same F_N and with the same
+    /// scatter, with nothing hidden beyond Coulomb and viscous friction.
+    pub without_hidden: TrueForces,
 }
 
 impl ContactSession {
     pub(super) fn with_capacity(entries: usize) -> Self {
         let channel = || Vec::with_capacity(entries);
+        let forces = || TrueForces {
+            place: channel(),
+            tangential: channel(),
+            normal: channel(),
+            scatter: channel(),
+        };
         ContactSession {
             time: channel(),
             place: channel(),
             tangential: channel(),
             normal: channel(),
             temperature: channel(),
-            truth: TrueForces {
-                place: channel(),
-                tangential: channel(),
-                normal: channel(),
-                scatter: channel(),
-            },
+            truth: forces(),
+            without_hidden: forces(),
             ..ContactSession::default()
         }
     }
@@ -76,6 +83,17 @@ impl ContactSession {
         self.tangential.push(logged.tangential);
         self.normal.push(logged.normal);
         self.temperature.push(temperature);
+    }
+
+    /// The same session with nothing hidden beyond Coulomb and viscous friction:
+    /// noise stays.
+    fn cleared(&self) -> Self {
+        let (truth, other) = (&self.truth, &self.without_hidden);
+        ContactSession {
+            tangential: exchange(&self.tangential, &truth.tangential, &other.tangential),
+            truth: other.clone(),
+            ..self.clone()
+        }
     }
 }
 
@@ -95,6 +113,22 @@ pub struct ContactRecording {
 }
 
 impl ContactRecording {
+    /// The same recording with nothing hidden: Coulomb and viscous friction are
+    /// believed, and what effects beyond them add is taken out of F_T. Way, F_N,
+    /// noise and what parameters scatter by stay. The believed model, fitted to
+    /// this, reaches what the true model reaches on the recording.
+    ///
+    /// `truth` still lists the parameters of the edge that was recorded.
+    pub fn without_hidden(&self) -> Self {
+        ContactRecording {
+            hidden: Vec::new(),
+            strength: self.strength,
+            believed: believed_effects(&[]),
+            truth: self.truth.clone(),
+            sessions: self.sessions.iter().map(ContactSession::cleared).collect(),
+        }
+    }
+
     /// Value of the edge's own parameter `name`; 0 where there is none.
     pub(super) fn edge_parameter(&self, name: &str) -> f64 {
         self.truth

@@ -84,12 +84,59 @@ fn more_sessions_come_later() {
     let bench = ContactBench::new(&ContactConfig::default()).unwrap();
     let recorded = bench.record();
     let last = recorded.sessions.last().unwrap().start;
-    for motion in Motion::ALL {
+    for &motion in Motion::ALL {
         let more = bench.follow_up(&recorded, motion, 2);
         assert!(
             more.iter()
                 .all(|session| session.start > last && session.time.len() > 1000)
         );
         assert_eq!(motion.id().parse::<Motion>().unwrap(), motion);
+    }
+}
+
+/// The largest difference between two channels.
+fn apart(one: &[f64], other: &[f64]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    let pairs = one.iter().zip(other);
+    pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+}
+
+fn less(one: &[f64], other: &[f64]) -> Vec<f64> {
+    one.iter().zip(other).map(|(a, b)| a - b).collect()
+}
+
+/// The way is given, so that the same bench with nothing hidden is what is left:
+/// noise and nominal friction, and beside them the scatter of the recording.
+#[test]
+fn without_what_is_hidden_the_edge_is_the_plain_one() {
+    for &hidden in HiddenEffect::ALL {
+        let config = hiding(hidden, 0.5, 7);
+        let recording = record(&config);
+        let without = recording.without_hidden();
+        assert!(without.hidden.is_empty() && without.believed.len() == 2);
+        let nothing = match hidden {
+            // Believed again, of the size that it has.
+            HiddenEffect::ContactCoulomb | HiddenEffect::ContactViscous => recording.clone(),
+            _ => record(&ContactConfig {
+                hidden: vec![],
+                ..config
+            }),
+        };
+        let sessions = without.sessions.iter().zip(&recording.sessions);
+        for ((after, before), plain) in sessions.zip(&nothing.sessions) {
+            assert_eq!(after.truth.scatter, before.truth.scatter);
+            assert_eq!((&after.place, &after.normal), (&plain.place, &plain.normal));
+            let nominal = |own: &ContactSession| less(&own.truth.tangential, &own.truth.scatter);
+            let noise = |own: &ContactSession| less(&own.tangential, &own.truth.tangential);
+            assert!(apart(&nominal(after), &nominal(plain)) < 1e-9, "{hidden}");
+            assert!(apart(&noise(after), &noise(plain)) < 1e-9, "{hidden}");
+        }
+        let (before, after) = (&recording.sessions, &without.sessions);
+        let most = before.iter().zip(after).fold(0.0, |most, (before, after)| {
+            f64::max(most, apart(&before.tangential, &after.tangential))
+        });
+        let is_believed = recording.believed.len() < 2;
+        assert_eq!(most < 1e-9, is_believed, "{hidden}: {most}");
+        assert!(is_believed || most > 0.3, "{hidden}: {most}");
     }
 }

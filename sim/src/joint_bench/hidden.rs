@@ -1,15 +1,15 @@
 //! Names of what a recording can hide, and what the experimenter still believes.
 
 use super::config::overlap;
-use crate::bench::{Hideable, hidden_effects};
+use crate::bench::{Hideable, named};
 
-hidden_effects! {
+named! {
     /// An effect that is in the truth of a joint's recording and not in the
     /// model that the experimenter believes in.
     ///
     /// The first 24 are the joint effects of the catalogue; those whose id
     /// begins with `unknown_` are in no catalogue.
-    pub enum HiddenEffect {
+    pub enum HiddenEffect or UnknownEffect {
         /// b_0 sign(q̇).
         Coulomb = "coulomb",
         /// b_0T |τ| sign(q̇).
@@ -86,6 +86,7 @@ const BASE: [HiddenEffect; 5] = [
 
 impl Hideable for HiddenEffect {
     const ALL: &'static [Self] = HiddenEffect::ALL;
+    const IDS: &'static [&'static str] = HiddenEffect::IDS;
 
     fn id(self) -> &'static str {
         self.id()

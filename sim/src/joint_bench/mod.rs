@@ -11,7 +11,8 @@
 //! The experimenter believes in equation (4) without what is hidden
 //! ([`Believed`]). What that leaves unexplained, and what the true model would
 //! leave, is known here and nowhere else: [`BenchRecording::believed_residual`],
-//! [`BenchRecording::reference_rms`].
+//! [`BenchRecording::reference_rms`]. So is what would have been logged on the same
+//! motion with nothing hidden: [`BenchRecording::without_hidden`].
 //!
 //! Nothing is shared with the models that the lab fits. Pure: same
 //! configuration, same bytes.
@@ -33,8 +34,10 @@ mod recording;
 mod residual;
 mod sensors;
 mod servo;
+mod session;
 #[cfg(test)]
 mod tests;
+mod without_hidden;
 
 pub use crate::bench::{BenchError, Hideable, LOG_PERIOD};
 pub use config::BenchConfig;
@@ -43,16 +46,10 @@ pub use motion::Motion;
 pub use recording::{BenchRecording, BenchSession, TrueParameter, TrueSignals};
 pub use residual::Residual;
 
-use effect::{Effect, Reading};
+use effect::Effect;
 use parameters::JointParameters;
-use plant::{Plant, friction};
-use sensors::Sensors;
-use servo::Servo;
 
-use crate::bench::{Conditions, MILLISECONDS_A_LOG, SECONDS_A_DAY, Stream, random};
-
-/// Nothing on the bench turns further \[rad\].
-const FARTHEST: f64 = 10.0;
+use crate::bench::{Conditions, SECONDS_A_DAY, Stream, random};
 
 /// What the experimenter believes: the truth without what is hidden.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +67,8 @@ pub struct Bench {
     config: BenchConfig,
     /// With what hidden effects change in it.
     joint: JointParameters,
+    /// The same with nothing hidden beyond equation (4).
+    plain: JointParameters,
     effects: Vec<Box<dyn Effect>>,
     believed: Believed,
 }
@@ -82,26 +81,21 @@ impl Bench {
     /// A value is out of bounds, or the hidden effects do not go together.
     pub fn new(config: &BenchConfig) -> Result<Self, BenchError> {
         config.validate()?;
-        let plain = JointParameters::draw(&mut random(config.seed, Stream::Subject, 0));
-        let effects: Vec<Box<dyn Effect>> = config
-            .hidden
-            .iter()
-            .map(|&hidden| {
-                let mut random = random(config.seed, Stream::Effect, hidden as usize);
-                effect::draw(hidden, &plain, config.strength, &mut random)
-            })
-            .collect();
-        let mut joint = plain.clone();
+        let drawn = JointParameters::draw(&mut random(config.seed, Stream::Subject, 0));
+        let effects = config
+            .draw_hidden(|hidden, random| effect::draw(hidden, &drawn, config.strength, random));
+        let mut joint = drawn.clone();
         for effect in &effects {
             effect.prepare(&mut joint);
         }
         Ok(Bench {
             config: config.clone(),
             believed: Believed {
-                inertia: plain.inertia,
-                gear_ratio: plain.gear_ratio,
+                inertia: drawn.inertia,
+                gear_ratio: drawn.gear_ratio,
                 effects: hidden::believed_effects(&config.hidden),
             },
+            plain: joint.as_equation_4(&drawn),
             joint,
             effects,
         })
@@ -149,28 +143,9 @@ impl Bench {
             ("spring", joint.spring, "Nm/rad"),
             ("spring_start", joint.spring_start, "rad"),
         ];
-        let hidden = self
-            .config
-            .hidden
-            .iter()
-            .zip(&self.effects)
-            .flat_map(|(&hidden, effect)| {
-                let named = effect.parameters().into_iter();
-                named.map(move |parameter| (Some(hidden), parameter))
-            });
-        joint
-            .named()
-            .into_iter()
-            .chain(own)
-            .map(|parameter| (None, parameter))
-            .chain(hidden)
-            .map(|(effect, (name, value, unit))| TrueParameter {
-                effect,
-                name,
-                value,
-                unit,
-            })
-            .collect()
+        let hidden = self.config.hidden.iter().zip(&self.effects);
+        let hidden = hidden.map(|(&hidden, effect)| (hidden, effect.parameters()));
+        TrueParameter::list(joint.named().into_iter().chain(own), hidden)
     }
 
     /// Runs `sessions` more with the same joint, a month after `recorded`: what
@@ -201,81 +176,5 @@ impl Bench {
                 self.session(before + index, motion, &conditions)
             })
             .collect()
-    }
-
-    fn session(
-        &self,
-        index: usize,
-        motion: Motion,
-        conditions: &Conditions,
-    ) -> Result<BenchSession, BenchError> {
-        let config = &self.config;
-        let programme = motion.programme(&mut random(config.seed, Stream::Motion, index));
-        let mut scatter = random(config.seed, Stream::Session, index);
-        let joint = self.joint.scattered(config.scatter, &mut scatter);
-        let factor = 1.0 + 0.01 * config.scatter * scatter.normal().clamp(-3.0, 3.0);
-        let mut effects: Vec<Box<dyn Effect>> = self.effects.iter().map(|e| e.boxed()).collect();
-        effects.iter_mut().for_each(|effect| effect.reset());
-
-        let servo = Servo::new(self.believed.inertia);
-        let mut sensors = Sensors::new(config.noise, random(config.seed, Stream::Noise, index));
-        let mut plant = Plant::new(joint, motion.has_springs(), factor);
-        let milliseconds = (programme.duration() * 1000.0) as usize;
-        let mut session = BenchSession::with_capacity(milliseconds / MILLISECONDS_A_LOG + 1);
-        session.start = conditions.start;
-        session.motion = Some(motion);
-
-        let mut cursor = 0;
-        // Command and motor torque of the millisecond before.
-        let mut before = (0.0, 0.0);
-        for millisecond in 0..=milliseconds {
-            let time = millisecond as f64 * 1e-3;
-            let share = time / programme.duration();
-            plant.set_conditions(
-                time,
-                (conditions.start + time) / SECONDS_A_DAY,
-                conditions.temperature + conditions.warming * share,
-            );
-
-            let (position, velocity) = plant.motor();
-            if !(position.abs() < FARTHEST && velocity.is_finite()) {
-                return Err(BenchError::RanAway {
-                    session: index,
-                    time,
-                });
-            }
-            let command = servo.torque(programme.at(time, &mut cursor), position, velocity);
-            let motor_torque = effects
-                .iter()
-                .fold(command, |torque, effect| effect.motor_torque(torque));
-            // A torque is held for a millisecond. The state that a log entry shows
-            // lies between what was held before and what is held from there on.
-            let middle = |before: f64, now: f64| 0.5 * (before + now);
-            let command_there = middle(before.0, command);
-            let (position, velocity) = plant.measured();
-            let state = *plant.state();
-            let work = plant.millisecond(motor_torque, &effects);
-            let mut reading = Reading {
-                position,
-                motor_torque: middle(before.1, motor_torque),
-                joint_torque: state.load,
-            };
-            for effect in &mut effects {
-                effect.tick(work);
-                effect.read(command_there, &mut reading);
-            }
-            before = (command, motor_torque);
-            if millisecond % MILLISECONDS_A_LOG == 0 {
-                let (logged, temperature) = sensors.log(&reading, state.temperature);
-                session.push(time, &logged, temperature);
-                session.truth.push(&reading, velocity, state.temperature);
-                let hidden = plant::hidden(&effects, &state);
-                let nominal = friction(&self.joint, &hidden, 1.0, &state);
-                let actual = friction(plant.joint(), &hidden, factor, &state);
-                session.truth.friction.push(actual);
-                session.truth.scatter.push(actual - nominal);
-            }
-        }
-        Ok(session)
     }
 }

@@ -1,77 +1,48 @@
 //! Motions that the lab can ask for, as position over time.
 
 use std::f64::consts::PI;
-use std::fmt;
-use std::str::FromStr;
 
-use super::BenchError;
-use crate::bench::Programme;
+use crate::bench::{Programme, named};
 use crate::random::Random;
 
-/// A motion that a session runs.
-///
-/// Each one after the first shows what the standard motion leaves confounded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Motion {
-    /// The paper's: the contour's spring pulled at 1, 5, 10, 20 and 40 °/s,
-    /// then a sine, then moves to random places at random speeds.
-    #[default]
-    Standard,
-    /// No spring; strong and fast moves. Tells motor constant, torque gain and
-    /// load-dependent friction apart, shows inertia and delays.
-    FastUnloaded,
-    /// Short slow strokes with many reversals, at several loads. Shows
-    /// presliding, backlash, elasticity, Stribeck.
-    SlowReversals,
-    /// No spring; constant speeds from 0.5 to 57 °/s in both directions. Tells
-    /// the viscous terms and Stribeck apart.
-    WideSpeedRange,
-    /// No spring; slow sweeps over ±86°. Tells gravity from a cable, ripple
-    /// from one local spot.
-    WidePosition,
-    /// The same few speeds, at strokes that lie at different loads on both
-    /// springs. Tells what goes with load from what goes with position.
-    LoadSteps,
-    /// Sawtooth and sines of rising frequency under load. Tells delays from
-    /// inertia and viscous friction.
-    Accelerations,
-    /// The standard motion with all sessions on one date, spread over the whole
-    /// range of temperature and warming up by 8 K each. Tells temperature from wear.
-    TemperatureSweep,
-    /// The standard motion at one temperature, on dates far apart. Tells wear
-    /// from temperature.
-    DateSweep,
+named! {
+    /// A motion that a session runs.
+    ///
+    /// Each one after the first shows what the standard motion leaves confounded.
+    #[derive(Default)]
+    pub enum Motion or UnknownMotion {
+        /// The paper's: the contour's spring pulled at 1, 5, 10, 20 and 40 °/s,
+        /// then a sine, then moves to random places at random speeds.
+        #[default]
+        Standard = "standard",
+        /// No spring; strong and fast moves. Tells motor constant, torque gain and
+        /// load-dependent friction apart, shows inertia and delays.
+        FastUnloaded = "fast_unloaded",
+        /// Short slow strokes with many reversals, at several loads. Shows
+        /// presliding, backlash, elasticity, Stribeck.
+        SlowReversals = "slow_reversals",
+        /// No spring; constant speeds from 0.5 to 57 °/s in both directions. Tells
+        /// the viscous terms and Stribeck apart.
+        WideSpeedRange = "wide_speed_range",
+        /// No spring; slow sweeps over ±86°. Tells gravity from a cable, ripple
+        /// from one local spot.
+        WidePosition = "wide_position",
+        /// The same few speeds, at strokes that lie at different loads on both
+        /// springs. Tells what goes with load from what goes with position.
+        LoadSteps = "load_steps",
+        /// Sawtooth and sines of rising frequency under load. Tells delays from
+        /// inertia and viscous friction.
+        Accelerations = "accelerations",
+        /// The standard motion with all sessions on one date, spread over the whole
+        /// range of temperature and warming up by 8 K each. Tells temperature from wear.
+        TemperatureSweep = "temperature_sweep",
+        /// The standard motion at one temperature, on dates far apart. Tells wear
+        /// from temperature.
+        DateSweep = "date_sweep",
+    }
 }
 
 impl Motion {
-    /// All of them.
-    pub const ALL: [Motion; 9] = [
-        Motion::Standard,
-        Motion::FastUnloaded,
-        Motion::SlowReversals,
-        Motion::WideSpeedRange,
-        Motion::WidePosition,
-        Motion::LoadSteps,
-        Motion::Accelerations,
-        Motion::TemperatureSweep,
-        Motion::DateSweep,
-    ];
-
-    /// Its name in files and on the command line.
-    pub const fn id(self) -> &'static str {
-        match self {
-            Motion::Standard => "standard",
-            Motion::FastUnloaded => "fast_unloaded",
-            Motion::SlowReversals => "slow_reversals",
-            Motion::WideSpeedRange => "wide_speed_range",
-            Motion::WidePosition => "wide_position",
-            Motion::LoadSteps => "load_steps",
-            Motion::Accelerations => "accelerations",
-            Motion::TemperatureSweep => "temperature_sweep",
-            Motion::DateSweep => "date_sweep",
-        }
-    }
-
     /// True where the joint pulls the contour's springs.
     pub fn has_springs(self) -> bool {
         !matches!(
@@ -98,26 +69,6 @@ impl Motion {
         programme.to(0.0, 0.25, 2.0);
         programme.rest(0.3);
         programme
-    }
-}
-
-impl fmt::Display for Motion {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.id())
-    }
-}
-
-impl FromStr for Motion {
-    type Err = BenchError;
-
-    fn from_str(id: &str) -> Result<Self, BenchError> {
-        Self::ALL
-            .into_iter()
-            .find(|motion| motion.id() == id)
-            .ok_or_else(|| BenchError::UnknownMotion {
-                id: id.into(),
-                known: Self::ALL.map(Motion::id).join(", "),
-            })
     }
 }
 

@@ -88,6 +88,19 @@ impl JointParameters {
         ]
     }
 
+    /// With nothing hidden beyond equation (4): its terms as they are here, the
+    /// rest as in `drawn`.
+    pub(super) fn as_equation_4(&self, drawn: &Self) -> Self {
+        JointParameters {
+            b0: self.b0,
+            b0t: self.b0t,
+            b1: self.b1,
+            b2: self.b2,
+            b3: self.b3,
+            ..drawn.clone()
+        }
+    }
+
     /// The same joint in another session: friction is never quite the same.
     pub(super) fn scattered(&self, scatter: f64, random: &mut Random) -> Self {
         // Within 3 standard deviations and never below a tenth.

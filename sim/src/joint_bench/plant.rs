@@ -201,6 +201,19 @@ impl Plant {
         &self.moving.state
     }
 
+    /// Σ J q of what lies before the torque sensor \[kg m²·rad\]: its second
+    /// derivative is τ_m − τ_F − τ.
+    pub(super) fn inertia_times_angle(&self) -> f64 {
+        let position = self.moving.state.position;
+        let mean = match self.fixed.joint.transmission {
+            Transmission::Rigid | Transmission::Elastic { .. } => position,
+            Transmission::Backlash { .. } => {
+                GEAR_SHARE * position + (1.0 - GEAR_SHARE) * self.moving.other.0
+            }
+        };
+        self.fixed.joint.inertia * mean
+    }
+
     /// Tells it time \[s\], date \[days\] and temperature \[degC\].
     pub(super) fn set_conditions(&mut self, time: f64, date: f64, temperature: f64) {
         let state = &mut self.moving.state;

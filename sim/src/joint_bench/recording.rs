@@ -1,7 +1,9 @@
 //! What a bench gives out.
 
 use super::effect::Reading;
+use super::hidden::believed_effects;
 use super::{Believed, HiddenEffect, Motion};
+use crate::bench::exchange;
 
 /// A true parameter of the joint, or of what it hides.
 pub type TrueParameter = crate::bench::TrueParameter<HiddenEffect>;
@@ -34,6 +36,11 @@ impl TrueSignals {
         self.joint_torque.push(reading.joint_torque);
         self.temperature.push(temperature);
     }
+
+    pub(super) fn push_friction(&mut self, friction: f64, scatter: f64) {
+        self.friction.push(friction);
+        self.scatter.push(scatter);
+    }
 }
 
 /// One session's log: all channels one after another every
@@ -56,26 +63,31 @@ pub struct BenchSession {
     pub temperature: Vec<f64>,
     /// The truth behind it.
     pub truth: TrueSignals,
+    /// What would be true on the same motion with nothing hidden beyond
+    /// equation (4): the scatter is the same.
+    pub without_hidden: TrueSignals,
 }
 
 impl BenchSession {
     pub(super) fn with_capacity(entries: usize) -> Self {
         let channel = || Vec::with_capacity(entries);
+        let signals = || TrueSignals {
+            position: channel(),
+            velocity: channel(),
+            motor_torque: channel(),
+            joint_torque: channel(),
+            temperature: channel(),
+            friction: channel(),
+            scatter: channel(),
+        };
         BenchSession {
             time: channel(),
             position: channel(),
             motor_torque: channel(),
             joint_torque: channel(),
             temperature: channel(),
-            truth: TrueSignals {
-                position: channel(),
-                velocity: channel(),
-                motor_torque: channel(),
-                joint_torque: channel(),
-                temperature: channel(),
-                friction: channel(),
-                scatter: channel(),
-            },
+            truth: signals(),
+            without_hidden: signals(),
             ..BenchSession::default()
         }
     }
@@ -86,6 +98,18 @@ impl BenchSession {
         self.motor_torque.push(logged.motor_torque);
         self.joint_torque.push(logged.joint_torque);
         self.temperature.push(temperature);
+    }
+
+    /// The same session with nothing hidden beyond equation (4): noise stays.
+    fn cleared(&self) -> Self {
+        let (truth, other) = (&self.truth, &self.without_hidden);
+        BenchSession {
+            position: exchange(&self.position, &truth.position, &other.position),
+            motor_torque: exchange(&self.motor_torque, &truth.motor_torque, &other.motor_torque),
+            joint_torque: exchange(&self.joint_torque, &truth.joint_torque, &other.joint_torque),
+            truth: other.clone(),
+            ..self.clone()
+        }
     }
 }
 
@@ -105,6 +129,25 @@ pub struct BenchRecording {
 }
 
 impl BenchRecording {
+    /// The same recording with nothing hidden: all of equation (4) is believed,
+    /// and what effects beyond it add is taken out of what was logged. Motion,
+    /// noise and what parameters scatter by stay. The believed model, fitted to
+    /// this, reaches what the true model reaches on the recording.
+    ///
+    /// `truth` still lists the parameters of the joint that was recorded.
+    pub fn without_hidden(&self) -> Self {
+        BenchRecording {
+            hidden: Vec::new(),
+            strength: self.strength,
+            believed: Believed {
+                effects: believed_effects(&[]),
+                ..self.believed
+            },
+            truth: self.truth.clone(),
+            sessions: self.sessions.iter().map(BenchSession::cleared).collect(),
+        }
+    }
+
     /// Value of the joint's own parameter `name`; 0 where there is none.
     pub(super) fn joint_parameter(&self, name: &str) -> f64 {
         self.truth

@@ -1,4 +1,5 @@
 mod signatures;
+mod without_hidden;
 
 use super::*;
 
@@ -258,7 +259,7 @@ fn motions_are_what_they_say() {
 
 #[test]
 fn motions_are_read_by_their_ids() {
-    for motion in Motion::ALL {
+    for &motion in Motion::ALL {
         assert_eq!(motion.id().parse::<Motion>().unwrap(), motion);
     }
     let error = "spring".parse::<Motion>().unwrap_err().to_string();

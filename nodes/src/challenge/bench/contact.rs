@@ -58,6 +58,10 @@ impl TestBench for HiddenEffect {
         Ok(more.map(|(own, number)| session(own, number)).collect())
     }
 
+    fn without_hidden(recording: &ContactRecording) -> ContactRecording {
+        recording.without_hidden()
+    }
+
     fn dataset(recording: &ContactRecording) -> Dataset {
         let sessions = recording.sessions.iter().zip(1..);
         Dataset {

@@ -63,6 +63,10 @@ pub trait TestBench: Hideable + FromStr<Err = BenchError> {
         sessions: usize,
     ) -> Result<Vec<Session>, BenchError>;
 
+    /// The same recording with nothing hidden: what the believed model, fitted to
+    /// it, reaches is what the true model reaches on `recording`.
+    fn without_hidden(recording: &Self::Recording) -> Self::Recording;
+
     /// The recording's sessions.
     fn dataset(recording: &Self::Recording) -> Dataset;
 

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::{super::TestBench, Case, ask::Given};
 
-/// Within this factor of what the true model reaches, an error has fallen as
-/// far as it can.
+/// Within this factor of what the true model reaches on the same recording, an
+/// error has fallen as far as it can.
 const AS_GOOD_AS_TRUE: f64 = 1.05;
 
 /// A share, as found out of tried.
@@ -78,7 +78,7 @@ pub struct Above {
     pub strength: f64,
     /// Seed of the recording.
     pub seed: u64,
-    /// Error on data held out over what the true model reaches.
+    /// Error on data held out over what the true model reaches on the recording.
     pub over_true: f64,
 }
 
@@ -96,7 +96,7 @@ pub struct BlindTest {
     /// Effects outside the catalogue that were given no name, by strength.
     pub unknown_not_named: BTreeMap<String, Count>,
     /// Named rightly, and after adding it the error on data held out was within
-    /// 5 % of what the true model reaches, by strength.
+    /// 5 % of what the true model reaches on the same recording, by strength.
     pub as_good_as_true: BTreeMap<String, Count>,
     /// Recordings whose family held the right effect, of which it alone was
     /// named after the experiment that the lab proposed.

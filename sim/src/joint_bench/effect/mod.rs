@@ -5,7 +5,8 @@
 //!
 //! To add one: a file beside these with a `draw` function that turns seed and
 //! strength into parameters, a variant in [`super::HiddenEffect`], and a line
-//! in [`draw`].
+//! in [`draw`]. What it changes in the joint itself has to be known in
+//! `without_hidden.rs`, whose test runs over all of them.
 
 mod asymmetric_coulomb;
 mod backlash;
