@@ -7,6 +7,10 @@ use crate::effects::EffectHandle;
 use crate::gram::Gram;
 use crate::setup::Setup;
 
+/// Rounds over all parameters of a shape, at most …
+const MOST_ROUNDS: usize = 6;
+/// … and no more once a round leaves this share of the error.
+const ENOUGH: f64 = 0.995;
 /// Grid points for each searched parameter that has bounds but no grid.
 const GRID: usize = 12;
 
@@ -88,8 +92,9 @@ pub fn grid(setup: &Setup, effect: &EffectHandle) -> Vec<Vec<f64>> {
     grid
 }
 
-/// Improves a shape by golden sections, one parameter after the other, between
-/// `1/reach` and `reach` times (or the neighbouring grid points of) its value.
+/// Improves a shape by golden sections, one parameter after the other, each
+/// between the neighbouring grid points of its value; several parameters again,
+/// while that helps: one may make up for another.
 #[must_use]
 pub fn polish(setup: &Setup, design: &Design, effect: &EffectHandle, start: &[f64]) -> Vec<f64> {
     let bounds = effect.bounds(&setup.facts);
@@ -97,40 +102,64 @@ pub fn polish(setup: &Setup, design: &Design, effect: &EffectHandle, start: &[f6
     if bounds.len() != shape.len() {
         return shape;
     }
-    let spacing = spacing(&grid(setup, effect), start);
-    for at in 0..shape.len() {
-        let low = bounds[at][0].max(shape[at] - spacing[at]);
-        let high = bounds[at][1].min(shape[at] + spacing[at]);
-        if high <= low {
-            continue;
-        }
-        let (mut best, mut best_error) = (shape[at], error_of(setup, design, effect, &shape));
-        let mut try_value = |value: f64, shape: &mut Vec<f64>| {
-            shape[at] = value;
-            let error = error_of(setup, design, effect, shape);
-            if error < best_error {
-                (best, best_error) = (value, error);
-            }
-            error
-        };
-        let ratio = 0.618_034;
-        let (mut a, mut b) = (low, high);
-        let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
-        let (mut at_c, mut at_d) = (try_value(c, &mut shape), try_value(d, &mut shape));
-        for _ in 0..9 {
-            if at_c < at_d {
-                (b, d, at_d) = (d, c, at_c);
-                c = b - ratio * (b - a);
-                at_c = try_value(c, &mut shape);
-            } else {
-                (a, c, at_c) = (c, d, at_d);
-                d = a + ratio * (b - a);
-                at_d = try_value(d, &mut shape);
+    let grid = grid(setup, effect);
+    let mut error = error_of(setup, design, effect, &shape);
+    let searched = bounds.iter().filter(|[low, high]| high > low).count();
+    let rounds = if searched > 1 { MOST_ROUNDS } else { 1 };
+    for _ in 0..rounds {
+        let before = error;
+        let spacing = spacing(&grid, &shape);
+        for at in 0..shape.len() {
+            let low = bounds[at][0].max(shape[at] - spacing[at]);
+            let high = bounds[at][1].min(shape[at] + spacing[at]);
+            if high > low {
+                error = golden_section(&mut shape, at, [low, high], error, |shape| {
+                    error_of(setup, design, effect, shape)
+                });
             }
         }
-        shape[at] = best;
+        if error > ENOUGH * before {
+            break;
+        }
     }
     shape
+}
+
+/// Puts the best value between `low` and `high` at place `at` of `shape`, which
+/// leaves `error` as it is; the error that is left then.
+fn golden_section(
+    shape: &mut [f64],
+    at: usize,
+    [low, high]: [f64; 2],
+    error: f64,
+    mut error_of: impl FnMut(&[f64]) -> f64,
+) -> f64 {
+    let (mut best, mut best_error) = (shape[at], error);
+    let mut try_value = |value: f64| {
+        shape[at] = value;
+        let error = error_of(shape);
+        if error < best_error {
+            (best, best_error) = (value, error);
+        }
+        error
+    };
+    let ratio = 0.618_034;
+    let (mut a, mut b) = (low, high);
+    let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
+    let (mut at_c, mut at_d) = (try_value(c), try_value(d));
+    for _ in 0..9 {
+        if at_c < at_d {
+            (b, d, at_d) = (d, c, at_c);
+            c = b - ratio * (b - a);
+            at_c = try_value(c);
+        } else {
+            (a, c, at_c) = (c, d, at_d);
+            d = a + ratio * (b - a);
+            at_d = try_value(d);
+        }
+    }
+    shape[at] = best;
+    best_error
 }
 
 /// Distance to the farther of the neighbouring grid values, of each parameter.
@@ -172,10 +201,5 @@ pub fn search(setup: &Setup, design: &Design, effect: &EffectHandle) -> Option<V
         .into_iter()
         .map(|shape| (error_of(setup, design, effect, &shape), shape))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let polished = polish(setup, design, effect, &best.1);
-    Some(if effect.bounds(&setup.facts).len() > 1 {
-        polish(setup, design, effect, &polished)
-    } else {
-        polished
-    })
+    Some(polish(setup, design, effect, &best.1))
 }

@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use crate::check::check;
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
 use crate::design::{Design, columns};
-use crate::effects::{self, EffectHandle, Facts};
+use crate::effects::{self, EffectHandle, Facts, Point};
 use crate::error::PrepareError;
 use crate::expression::Compiled;
 use crate::refine;
@@ -293,15 +293,20 @@ impl Setup {
                 e.description().id != "inertia_fit"
             });
             let total = working(signals, terms, coefficients, |_| true);
-            let mut faster = signals.clone();
-            for point in &mut faster.points {
-                point.velocity += nudge * point.sign();
-            }
-            let faster = working(&faster, terms, coefficients, |e| {
-                e.description().id != "inertia_fit"
-            });
+            let friction_at = |velocity: fn(&Point, f64) -> f64| {
+                let mut other = signals.clone();
+                for point in &mut other.points {
+                    point.velocity = velocity(point, nudge);
+                }
+                working(&other, terms, coefficients, |e| {
+                    e.description().id != "inertia_fit"
+                })
+            };
+            let faster = friction_at(|point, nudge| point.velocity + nudge * point.sign());
+            let slowest = friction_at(|point, nudge| nudge * point.sign());
             for (at, point) in signals.points.iter_mut().enumerate() {
                 point.friction_predicted = friction[at];
+                point.friction_level = slowest[at].abs();
                 point.load_slope = load_slope;
                 point.friction_slope = if nudge > 0.0 {
                     point.sign() * (faster[at] - friction[at]) / nudge

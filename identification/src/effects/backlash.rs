@@ -24,52 +24,84 @@ const PLACE: usize = 1;
 const FREE: usize = 2;
 const BEGUN: usize = 3;
 
+/// Torque through the teeth, as a share of friction, below which nobody can say
+/// on which side they touch.
+const TOUCHES: f64 = 0.2;
+
+/// Where a session begins: what the motor gives goes through the teeth. Without
+/// any, it is taken to be in the middle of a gap of twice `half`.
+fn begin(point: &Point, half: f64) -> Memory {
+    let most = point.friction_predicted.abs();
+    let through = point.motor_torque;
+    let friction = (through - point.load).clamp(-most, most);
+    match through.abs() > TOUCHES * most {
+        true => [friction, sign(through) * half, 0.0, 1.0],
+        false => [friction, 0.0, 1.0, 1.0],
+    }
+}
+
+/// Speed \[rad/s\] at which the load pulls a gear that nothing drives: friction
+/// then takes up what it cannot hold at rest.
+fn gear_speed(point: &Point) -> f64 {
+    let most = point.friction_predicted.abs();
+    let slope = (most - point.friction_level) / point.velocity.abs();
+    let beyond = point.load.abs() - point.friction_level;
+    match slope > 0.0 {
+        true => (beyond / slope).max(0.0),
+        false => 0.0,
+    }
+}
+
 impl Effect for Backlash {
     fn description(&self) -> &EffectDescription {
         &self.0
     }
 
     // The gear stands still until the torque through its teeth, τ + F, leaves
-    // τ ± τ_F. As the motor turns back, F falls by 2 τ_F over twice the travel
-    // `bend` (teeth are no stiffer than that), rests at −τ while the motor
-    // crosses the gap, and falls on behind it. A load that friction cannot hold
-    // (|τ| > τ_F) follows the motor, and there is no gap.
+    // τ ± τ_F. As the motor turns back, F falls towards −τ_F over the travel `bend`
+    // (Dahl's law; teeth are no stiffer than that), is −τ while the motor crosses
+    // the gap, and falls on behind it. A load that friction cannot hold at rest pulls
+    // the gear behind the motor, so fast that friction holds it then: it may
+    // follow all the way, and there is no gap.
     fn evaluate(&self, shape: &[f64], point: &Point, memory: &mut Memory, columns: &mut [f64]) {
         let ([c], [gap, bend, ..]) = (columns, shape) else {
             return;
         };
+        if point.velocity == 0.0 {
+            *c = memory[FRICTION] - point.friction_predicted;
+            return;
+        }
         let half = 0.5 * gap;
         let most = point.friction_predicted.abs();
         let mut step = point.velocity * point.period;
         if memory[BEGUN] == 0.0 {
-            let friction = point.friction_predicted;
-            *memory = [friction, sign(friction + point.load) * half, 0.0, 1.0];
+            *memory = begin(point, half);
         }
-        let stiffness = most / bend.max(1e-12);
-        if memory[FREE] != 0.0 && point.load.abs() >= most {
-            memory[FREE] = 0.0;
-            memory[PLACE] = sign(point.load) * half;
-        }
+        let sliding = point.sign() * most;
+        let bent = |friction: f64, travel: f64| {
+            sliding + (friction - sliding) * (-travel.abs() / bend.max(1e-12)).exp()
+        };
+        let gear = -sign(point.load) * gear_speed(point);
         if memory[FREE] == 0.0 {
             let side = sign(memory[PLACE]);
-            let next = (memory[FRICTION] + stiffness * step).clamp(-most, most);
-            if (next + point.load) * side >= 0.0 || point.load.abs() >= most {
+            let next = bent(memory[FRICTION], step);
+            if (next + point.load) * side >= 0.0 {
                 memory[FRICTION] = next;
             } else {
                 // The tooth has come off: the rest of the step is in the gap.
-                let used = (-point.load - memory[FRICTION]) / stiffness.max(1e-12);
-                step = if used * step > 0.0 { step - used } else { step };
+                let left = (sliding + point.load) / (sliding - memory[FRICTION]);
+                let used = if left > 0.0 { -bend * left.ln() } else { 0.0 };
+                step -= used.clamp(0.0, step.abs()).copysign(step);
                 memory[FREE] = 1.0;
             }
         }
         if memory[FREE] != 0.0 {
-            let place = memory[PLACE] + step;
+            let place = memory[PLACE] + step - gear * point.period;
             memory[FRICTION] = (-point.load).clamp(-most, most);
             memory[PLACE] = place.clamp(-half, half);
             if place.abs() >= half {
                 memory[FREE] = 0.0;
-                let beyond = (place - memory[PLACE]) * stiffness;
-                memory[FRICTION] = (memory[FRICTION] + beyond).clamp(-most, most);
+                memory[FRICTION] = bent(memory[FRICTION], place - memory[PLACE]);
             }
         }
         *c = memory[FRICTION] - point.friction_predicted;
@@ -77,7 +109,7 @@ impl Effect for Backlash {
 
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
         let [gaps, bends] = [0, 1].map(|at| self.bounds(facts)[at]);
-        logarithmic(gaps[0], gaps[1], 9)
+        logarithmic(gaps[0], gaps[1], 16)
             .into_iter()
             .flat_map(|gap| {
                 logarithmic(bends[0], bends[1], 3)
@@ -102,5 +134,59 @@ impl Effect for Backlash {
     // All of the torque is missing in the gap, not a part of it.
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
         coefficients.iter().all(|c| (0.3..1.7).contains(c))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Friction \[Nm\] that reaches the motor at samples 1 mrad apart; a gap of
+    /// 20 mrad, friction of 10 Nm at rest and 100 Nm s/rad beyond.
+    fn reaches(motor_torque: f64, load: f64, velocities: impl Iterator<Item = f64>) -> Vec<f64> {
+        let effect = Backlash::default();
+        let mut memory = Memory::default();
+        velocities
+            .map(|velocity: f64| {
+                let friction = 10.0 * sign(velocity) + 100.0 * velocity;
+                let point = Point {
+                    period: 1e-3 / velocity.abs(),
+                    velocity,
+                    motor_torque,
+                    load,
+                    friction_predicted: friction,
+                    friction_level: 10.0,
+                    ..Point::default()
+                };
+                let mut column = [0.0];
+                effect.evaluate(&[0.02, 1e-4], &point, &mut memory, &mut column);
+                column[0] + friction
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_session_begins_where_the_motor_says() {
+        let forward = || std::iter::repeat_n(0.05, 30);
+        let in_the_gap = reaches(0.0, 0.0, forward());
+        assert!(in_the_gap[..9].iter().all(|f| *f == 0.0));
+        assert!(in_the_gap[11..].iter().all(|f| (f - 15.0).abs() < 0.1));
+        let driving = reaches(10.0, 0.0, forward());
+        assert!(driving[1..].iter().all(|f| (f - 15.0).abs() < 0.1));
+    }
+
+    #[test]
+    fn a_gap_is_crossed_under_the_load_alone() {
+        let there_and_back = || std::iter::repeat_n(0.05, 30).chain(std::iter::repeat_n(-0.05, 30));
+        let held = reaches(20.0, 6.0, there_and_back());
+        assert!(held[32..49].iter().all(|f| *f == -6.0), "{held:?}");
+        assert!(held[53..].iter().all(|f| (f + 15.0).abs() < 0.1));
+        // The load pulls the gear back at (14 − 10)/100 = 0.04 rad/s, hardly slower
+        // than the motor: a gap opens, and is not crossed.
+        let creeping = reaches(20.0, 14.0, there_and_back());
+        assert!(creeping[32..].iter().all(|f| *f == -14.0), "{creeping:?}");
+        // At 0.08 rad/s it follows.
+        let follows = reaches(30.0, 18.0, there_and_back());
+        assert!(follows[32..].iter().all(|f| (f + 15.0).abs() < 0.1));
     }
 }

@@ -82,6 +82,9 @@ pub struct Point {
     pub friction_predicted: f64,
     /// ∂τ_F/∂q̇ that the model predicts \[Nm s/rad\].
     pub friction_slope: f64,
+    /// Size of τ_F that the model predicts just above rest \[Nm\]: what friction
+    /// holds by itself.
+    pub friction_level: f64,
     /// ∂τ_F/∂|τ| that the model predicts for q̇ > 0 \[-\]: b_0T.
     pub load_slope: f64,
 }

@@ -1,10 +1,10 @@
 //! One recording put to the diagnosis, and what comes of its advice.
 
-use std::fmt::Display;
+use std::{collections::BTreeMap, fmt::Display};
 
 use ferntast_identification::{
-    Dataset, Diagnosis, ModelSpec, Proposal, Term, Verdict, add, design::Design, diagnose,
-    fit::fit, setup::Setup,
+    CustomEffect, Dataset, Diagnosis, ModelSpec, Proposal, Session, Term, Verdict, add,
+    design::Design, diagnose, fit::fit, setup::Setup,
 };
 use ferntast_sim::bench::BenchConfig;
 
@@ -12,6 +12,9 @@ use super::{super::TestBench, Case, tally::FollowedUp};
 
 /// Sessions of an experiment that the lab proposes.
 const MORE_SESSIONS: usize = 6;
+
+/// The signal that a true model has and nobody else.
+const HIDDEN_PART: &str = "hidden";
 
 /// What the lab said of one recording.
 pub(super) struct Given {
@@ -52,7 +55,7 @@ fn answer<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
         Some(name) => {
             let term = Term::Catalogue(name.clone());
             let added = add(&data, &believed, &term).map_err(describe)?;
-            Some(added.held_out_after / true_model_reaches::<H>(&recording)?)
+            Some(added.held_out_after / true_model_reaches::<H>(&data, &believed, &recording)?)
         }
         None => None,
     };
@@ -116,18 +119,60 @@ fn describe(error: impl Display) -> String {
 }
 
 /// Error \[Nm, of a contact N\] on data held out that the true model reaches on
-/// `recording`: what everybody believes, fitted to the same motion, noise and
-/// scatter with nothing hidden.
+/// `recording`, whose sessions are `data`.
+///
+/// Where the hidden effect acts on the driving torque or force alone, the true
+/// model is what everybody believes and that very part of it; how much of it,
+/// is found in the same sessions. Where it acts on other channels too, it is what
+/// everybody believes, fitted to the same motion, noise and scatter with nothing
+/// hidden.
 ///
 /// The rows are those of sliding, also where what was added is fitted to turns.
 /// At turns the friction of everybody's model jumps with the sign of a velocity
 /// that nobody can measure; a true model that is smooth there leaves noise and
 /// scatter, as it does in sliding.
-///
-/// The true model knows the hidden parameters. One that has to find them in
-/// sessions that scatter can be above it, though its form is right.
-fn true_model_reaches<H: TestBench>(recording: &H::Recording) -> Result<f64, String> {
-    let recording = H::without_hidden(recording);
-    let setup = Setup::new(&H::dataset(&recording), &H::model(&recording)).map_err(describe)?;
-    Ok(fit(&setup, &Design::new(&setup)).held_out)
+fn true_model_reaches<H: TestBench>(
+    data: &Dataset,
+    believed: &ModelSpec,
+    recording: &H::Recording,
+) -> Result<f64, String> {
+    let without = H::without_hidden(recording);
+    let nothing_hidden = H::dataset(&without);
+    let reaches = |data: &Dataset, model: &ModelSpec| {
+        let setup = Setup::new(data, model).map_err(describe)?;
+        Ok(fit(&setup, &Design::new(&setup)).held_out)
+    };
+    match with_hidden_part(data, &nothing_hidden) {
+        Some(data) => {
+            let mut model = believed.clone();
+            model.effects.push(Term::Custom(CustomEffect {
+                name: HIDDEN_PART.to_owned(),
+                expression: format!("share*{HIDDEN_PART}"),
+                bounds: BTreeMap::new(),
+            }));
+            reaches(&data, &model)
+        }
+        None => reaches(&nothing_hidden, &H::model(&without)),
+    }
+}
+
+/// `data` with the hidden part of the driving torque or force as a signal; `None`
+/// where there is none of it, or `nothing_hidden` differs in other channels too.
+fn with_hidden_part(data: &Dataset, nothing_hidden: &Dataset) -> Option<Dataset> {
+    let mut with = data.clone();
+    let mut is_there = false;
+    for (session, plain) in with.sessions.iter_mut().zip(&nothing_hidden.sessions) {
+        let same_otherwise = Session {
+            motor_torque: session.motor_torque.clone(),
+            ..plain.clone()
+        };
+        if *session != same_otherwise {
+            return None;
+        }
+        let torques = session.motor_torque.iter().zip(&plain.motor_torque);
+        let hidden: Vec<f64> = torques.map(|(all, plain)| all - plain).collect();
+        is_there |= hidden.iter().any(|torque| torque.abs() > 1e-9);
+        session.extra.insert(HIDDEN_PART.to_owned(), hidden);
+    }
+    is_there.then_some(with)
 }
