@@ -138,7 +138,7 @@ pub(crate) fn compare_setup(dataset: &Dataset, setup: &Setup, most: usize) -> Co
             }
         })
         .collect();
-    let torque = torque_rms(setup, &setup.sessions);
+    let torque = torque_rms(&setup.sessions);
     Comparison {
         samples: dataset.sessions.iter().map(crate::data::Session::len).sum(),
         used: design.total().rows,
@@ -147,7 +147,7 @@ pub(crate) fn compare_setup(dataset: &Dataset, setup: &Setup, most: usize) -> Co
             held_out: fitted.held_out,
         },
         relative_error: fitted.train / torque,
-        relative_error_held_out: fitted.held_out / torque_rms(setup, shown),
+        relative_error_held_out: fitted.held_out / torque_rms(shown),
         held_out_by: if !setup.held_out.is_empty() {
             HeldOutBy::Recordings
         } else if design.folds.len() == setup.sessions.len() {
@@ -194,10 +194,10 @@ fn difference(rows: &SessionDesign, coefficients: &nalgebra::DVector<f64>) -> Ve
 }
 
 /// RMS of the filtered motor torque on the rows of the regression.
-fn torque_rms(setup: &Setup, sessions: &[Signals]) -> f64 {
+fn torque_rms(sessions: &[Signals]) -> f64 {
     let (mut square, mut count) = (0.0, 0_usize);
     for signals in sessions {
-        let smooth = setup.filters.column_kernel(signals.period);
+        let smooth = &signals.column;
         for value in smooth.at_samples(&signals.raw.motor_torque, &signals.rows) {
             square += value * value;
             count += 1;
@@ -219,7 +219,7 @@ fn series(
     let rows: Vec<usize> = (first..end).step_by(step).collect();
     let design = SessionDesign::new(setup, signals, &rows, 1);
     let residual = difference(&design, coefficients);
-    let smooth = setup.filters.column_kernel(signals.period);
+    let smooth = &signals.column;
     let measured = smooth.at_samples(&signals.raw.motor_torque, &rows);
     Series {
         session: signals.name.clone(),

@@ -53,6 +53,8 @@ pub struct Signals {
     pub name: String,
     /// Working period \[s\].
     pub period: f64,
+    /// Smoothing of a column that is not differentiated.
+    pub column: Kernel,
     /// States at the working rate, lightly smoothed.
     pub points: Vec<Point>,
     /// Extra signals at the working rate.
@@ -173,8 +175,7 @@ impl Filters {
     }
 
     /// Smoothing of a column that is not differentiated.
-    #[must_use]
-    pub fn column_kernel(&self, period: f64) -> Kernel {
+    fn column_kernel(&self, period: f64) -> Kernel {
         match &self.stated {
             Some(filter) => filter.column(),
             None => Kernel::gaussian(self.column, 0, period),
@@ -256,6 +257,7 @@ impl Signals {
         Self {
             name: session.name.clone(),
             period,
+            column: filters.column_kernel(period),
             points,
             extra: session
                 .extra

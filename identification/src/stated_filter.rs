@@ -97,14 +97,16 @@ fn taps(gain: impl Fn(f64) -> f64, half: usize) -> Vec<f64> {
     let gains: Vec<f64> = (0..POINTS / 2)
         .map(|k| gain(2.0 * PI * k as f64 / POINTS as f64))
         .collect();
+    let cosines: Vec<f64> = (0..POINTS)
+        .map(|k| (2.0 * PI * k as f64 / POINTS as f64).cos())
+        .collect();
     let one_side: Vec<f64> = (0..=half)
         .map(|n| {
-            let turn = 2.0 * PI * n as f64 / POINTS as f64;
             let sum: f64 = gains
                 .iter()
                 .enumerate()
                 .skip(1)
-                .map(|(k, gain)| gain * (turn * k as f64).cos())
+                .map(|(k, gain)| gain * cosines[n * k % POINTS])
                 .sum();
             (gains[0] + 2.0 * sum) / POINTS as f64
         })

@@ -45,7 +45,7 @@ pub fn filtered(
     let kernel = |order| Kernel::gaussian(filters.column, order, signals.period);
     let exact = effect.exact();
     if exact.is_empty() || filters.stated.is_some() {
-        let smooth = filters.column_kernel(signals.period);
+        let smooth = &signals.column;
         return working(signals, effect, shape)
             .iter()
             .map(|column| smooth.at_samples(column, rows))
@@ -71,7 +71,7 @@ pub fn filtered(
 /// y = τ_m − τ − J q̈ at rows `rows`, through the column filter.
 #[must_use]
 pub fn measured(signals: &Signals, filters: &Filters, inertia: f64, rows: &[usize]) -> Vec<f64> {
-    let smooth = filters.column_kernel(signals.period);
+    let smooth = &signals.column;
     let torque = smooth.at_samples(&signals.raw.motor_torque, rows);
     let load = smooth.at_samples(&signals.raw.joint_torque, rows);
     let acceleration = match filters.stated {
