@@ -150,6 +150,13 @@ impl Gram {
         }
     }
 
+    /// Coefficients by which the first `base` columns explain all others and y.
+    #[must_use]
+    pub fn explain_freely(&self, base: usize) -> DMatrix<f64> {
+        let nothing = DVector::zeros(base);
+        self.explain(&nothing, &nothing)
+    }
+
     /// Coefficients by which the first columns explain all others and y.
     /// Those of y lie around `around`, one for each of the first columns, and
     /// `hold` \[square of y over square of the coefficient\] holds all of them:
@@ -265,7 +272,7 @@ mod tests {
         let base = Gram::of(&[&ones], &y, 0, 50);
         let joint = base.with(&[&ones, &y], &[&x], 0, 50);
         assert_eq!(joint, Gram::of(&[&ones, &x], &y, 0, 50));
-        let reduced = joint.reduce(1, &joint.explain(&DVector::zeros(1), &DVector::zeros(1)));
+        let reduced = joint.reduce(1, &joint.explain_freely(1));
         assert!((reduced.solve()[0] - joint.solve()[1]).abs() < 1e-9);
     }
 

@@ -1,7 +1,5 @@
 //! Search for the shape of an effect: a grid, then golden sections.
 
-use nalgebra::DVector;
-
 use crate::design::{BlockGrams, Design};
 use crate::effects::EffectHandle;
 use crate::gram::Gram;
@@ -43,8 +41,7 @@ pub fn error_of(setup: &Setup, design: &Design, effect: &EffectHandle, shape: &[
             return f64::INFINITY;
         };
         let total = Gram::sum(&flat, first.columns());
-        let free = DVector::zeros(design.base);
-        total.reduce(design.base, &total.explain(&free, &free))
+        total.reduce(design.base, &total.explain_freely(design.base))
     } else {
         within(design, &grams)
     };

@@ -128,7 +128,10 @@ fn without_each(reduced: &BlockGrams, total: &Gram) -> Vec<DVector<f64>> {
 #[must_use]
 pub fn beside(design: &Design, grams: &BlockGrams, first: usize) -> f64 {
     let (reduced, total) = reduced(design, grams);
-    let later = |all: DVector<f64>| all.rows(first, all.len() - first).into_owned();
+    let later = |all: DVector<f64>| {
+        let first = first.min(all.len());
+        all.rows(first, all.len() - first).into_owned()
+    };
     let without: Vec<DVector<f64>> = without_each(&reduced, &total)
         .into_iter()
         .map(later)
@@ -252,7 +255,8 @@ pub fn disagreement(design: &Design, grams: &BlockGrams) -> f64 {
         .iter()
         .map(|session| {
             let own = Gram::sum(session, columns);
-            own.reduce(design.base, &design.explain(&own))
+            // What differs from session to session is not to be seen here.
+            own.reduce(design.base, &own.explain_freely(design.base))
         })
         .collect();
     let inside = Gram::sum(&reduced, 1);

@@ -62,7 +62,7 @@ fn xl330_is_sixteen_runs_made_even() {
     for session in sessions {
         let rate = 1.0 / session.period;
         assert!(
-            (184.0..253.0).contains(&rate),
+            (180.0..253.0).contains(&rate),
             "{rate} Hz in {}",
             session.name
         );
