@@ -395,28 +395,29 @@ fn blind_on_recordings_that_nobody_has_seen() {
         .json();
     let share = |value: &Value| number(value, "found") / number(value, "tried");
     assert_eq!(number(&told["right_first"]["1"], "tried"), 48.0);
-    assert!(
-        share(&told["right_first"]["1"]) >= 0.90,
-        "{:#}",
-        told["misses"]
-    );
-    assert!(
-        share(&told["in_family"]["1"]) >= 0.93,
-        "{:#}",
-        told["misses"]
-    );
-    assert!(
-        share(&told["right_first"]["0.5"]) >= 0.75,
-        "{:#}",
-        told["misses"]
-    );
-    assert!(
-        share(&told["unknown_not_named"]["1"]) >= 0.90,
-        "{:#}",
-        told["misses"]
-    );
-    assert!(share(&told["one_of_two"]) >= 0.5, "{told:#}");
-    assert!(share(&told["false_alarms"]) <= 0.04, "{:#}", told["misses"]);
+    for (row, strength, least) in [
+        ("right_first", "1", 0.95),
+        ("right_first", "0.5", 0.80),
+        ("in_family", "1", 0.99),
+        // Too few sessions prove little of temperature and date.
+        ("in_family", "0.5", 0.90),
+        ("at_least_suspected", "0.5", 0.95),
+        ("at_least_suspected", "0.25", 0.90),
+        ("unknown_not_named", "1", 0.95),
+        ("unknown_not_named", "0.5", 0.95),
+        ("as_good_as_true", "1", 0.80),
+        ("as_good_as_true", "0.5", 0.90),
+    ] {
+        let found = share(&told[row][strength]);
+        assert!(
+            found >= least,
+            "{row} at {strength}: {found}, {:#}",
+            told["misses"]
+        );
+    }
+    assert!(share(&told["resolved"]) >= 0.90, "{:#}", told["misses"]);
+    assert!(share(&told["one_of_two"]) >= 0.8, "{told:#}");
+    assert!(share(&told["false_alarms"]) <= 0.02, "{:#}", told["misses"]);
 }
 
 #[test]
