@@ -5,12 +5,11 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use crate::design::{BlockGrams, Design, SessionDesign};
+use crate::design::{Design, SessionDesign};
 use crate::effects;
 use crate::gram::{Gram, pseudo_inverse};
 use crate::setup::{BoundTerm, Setup};
-use crate::statistics::jackknife_covariance;
-use crate::validation::{fold_gram, left_out};
+use crate::validation::left_out;
 
 /// A parameter of the fitted model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -71,8 +70,7 @@ impl Setup {
 pub fn fit(setup: &Setup, design: &Design) -> Fit {
     let grams = design.own();
     let total = design.total();
-    let coefficients = total.solve();
-    let covariance = jackknife(design, &grams, &total, &coefficients);
+    let (coefficients, covariance) = (design.shared.clone(), design.covariance.clone());
     let rows = total.rows.max(1) as f64;
     let held_out = if setup.held_out.is_empty() {
         left_out(design, &grams).sqrt()
@@ -91,24 +89,6 @@ pub fn fit(setup: &Setup, design: &Design) -> Fit {
         not_excited,
         condition,
     }
-}
-
-fn jackknife(
-    design: &Design,
-    grams: &BlockGrams,
-    total: &Gram,
-    estimate: &DVector<f64>,
-) -> DMatrix<f64> {
-    let without: Vec<DVector<f64>> = design
-        .folds
-        .iter()
-        .map(|fold| {
-            total
-                .without(&fold_gram(grams, fold, total.columns()))
-                .solve()
-        })
-        .collect();
-    jackknife_covariance(estimate, &without)
 }
 
 /// RMS on the held-out sessions.

@@ -293,10 +293,10 @@ impl Setup {
                 e.description().id != "inertia_fit"
             });
             let total = working(signals, terms, coefficients, |_| true);
-            let friction_at = |velocity: fn(&Point, f64) -> f64| {
-                let mut other = signals.clone();
-                for point in &mut other.points {
-                    point.velocity = velocity(point, nudge);
+            let mut other = signals.clone();
+            let mut friction_at = |velocity: fn(&Point, f64) -> f64| {
+                for (point, measured) in other.points.iter_mut().zip(&signals.points) {
+                    point.velocity = velocity(measured, nudge);
                 }
                 working(&other, terms, coefficients, |e| {
                     e.description().id != "inertia_fit"

@@ -50,11 +50,11 @@ pub fn settle(setup: &Setup, design: &Design, passing: &mut Vec<Candidate>) {
         0,
         Candidate {
             left_out: left_out(design, &grams),
+            variants: refine::grid(&whole, &effect).len(),
             effect,
             shape,
             score: own,
             plausible: true,
-            variants: 1,
         },
     );
 }

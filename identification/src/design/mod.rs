@@ -42,7 +42,9 @@ pub struct Design {
     /// Which (session, block) are left out together.
     pub folds: Vec<Vec<(usize, usize)>>,
     /// Parameters of all sessions together.
-    shared: DVector<f64>,
+    pub shared: DVector<f64>,
+    /// Their covariance, by folds left out.
+    pub covariance: DMatrix<f64>,
     /// What holds a session's own parameters to them: mean square of what is left
     /// \[Nm²\] over the square of how far they may lie apart. A session that does
     /// not excite a parameter (friction by load, free of load) has none of its own.
@@ -81,27 +83,30 @@ impl Design {
             base,
             folds,
             shared: DVector::zeros(base),
+            covariance: DMatrix::zeros(base, base),
             hold: DVector::zeros(base),
         };
-        (design.shared, design.hold) = design.scatter();
+        design.fit();
         design
     }
 
-    fn scatter(&self) -> (DVector<f64>, DVector<f64>) {
+    /// Finds the parameters of all sessions together, and what holds a session's
+    /// own to them.
+    fn fit(&mut self) {
         let total = self.total();
         let shared = total.solve();
-        let own = self.own();
         let without: Vec<DVector<f64>> = self
             .folds
             .iter()
             .map(|fold| {
-                let out = fold.iter().filter_map(|(s, b)| own.get(*s)?.get(*b));
-                total.without(&Gram::sum(out, self.base)).solve()
+                let block = |(s, b): &(usize, usize)| self.sessions.get(*s)?.grams.get(*b);
+                let out = Gram::sum(fold.iter().filter_map(block), self.base);
+                total.without(&out).solve()
             })
             .collect();
         let covariance = jackknife_covariance(&shared, &without);
         let left = total.squared_error(&shared) / total.rows.max(1) as f64;
-        let hold = DVector::from_fn(self.base, |k, _| {
+        self.hold = DVector::from_fn(self.base, |k, _| {
             let error = covariance[(k, k)].max(0.0).sqrt();
             let apart = SCATTER * shared[k].abs() + SCATTER_ERRORS * error;
             if apart > 0.0 {
@@ -110,7 +115,7 @@ impl Design {
                 0.0
             }
         });
-        (shared, hold)
+        (self.shared, self.covariance) = (shared, covariance);
     }
 
     /// Coefficients by which a session's own parameters, which lie around those

@@ -8,7 +8,8 @@
 //!   `header`, else the log time; a stamp of zero says that the message is not
 //!   valid. In CSV it is a column \[s\].
 //! * A session ends where the position, or another signal, has a gap, where
-//!   `valid` is not above 0.5, and with the file. Stretches of fewer than 50 samples are left out.
+//!   `valid` is not above 0.5, and with the file. Stretches of fewer than 50
+//!   samples are left out.
 //! * Unevenly sampled sessions are interpolated onto their mean period.
 //! * Sessions keep the time between them where files carry a date; files whose
 //!   clock begins anew are put one behind the other.
