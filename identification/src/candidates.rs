@@ -4,11 +4,12 @@ use crate::design::{BlockGrams, Design};
 use crate::effects::{self, EffectHandle};
 use crate::periodic;
 use crate::refine;
+use crate::scatter::trend;
 use crate::setup::Setup;
-use crate::validation::{Score, between, disagreement, left_out, trend, within};
+use crate::validation::{Score, agreement, between, left_out, within};
 
-/// Standard errors by which a coefficient within and between sessions may differ.
-const MOST_DISAGREEMENT: f64 = 3.0;
+/// Chance below which a coefficient differs within and between sessions.
+const DISAGREES: f64 = 0.005;
 
 /// One effect at its best shape.
 #[derive(Clone)]
@@ -97,18 +98,6 @@ pub fn missing(setup: &Setup) -> Vec<EffectHandle> {
         .collect()
 }
 
-/// Place of the first column of the model's effect `id`.
-fn first_column(setup: &Setup, id: &str) -> Option<usize> {
-    let mut at = 0;
-    for term in &setup.terms {
-        if term.effect.description().id == id {
-            return Some(at);
-        }
-        at += term.effect.columns();
-    }
-    None
-}
-
 /// Scores one effect at one shape.
 #[must_use]
 pub fn score(
@@ -121,14 +110,13 @@ pub fn score(
     let score = if effect.between_sessions() && setup.facts.sessions >= 3 {
         let mut score = between(design, &grams);
         // What a session does to a coefficient is one number a session: a line
-        // through these is the honest test (G − 2 degrees of freedom), and the
-        // jackknife over sessions has to agree with it.
-        let varied = effect.varies().and_then(|id| first_column(setup, id));
-        if let Some(p) = varied.and_then(|column| trend(design, &grams, column)) {
-            score.p_value = score.p_value.max(p);
+        // through these is the honest test.
+        let varied = effect.varies();
+        if let Some(p) = varied.and_then(|id| trend(setup, design, &grams, id)) {
+            score.p_value = p;
         }
         // What changes within a session has to change it there as much.
-        if disagreement(design, &grams) > MOST_DISAGREEMENT {
+        if agreement(design, &grams) < DISAGREES {
             score.p_value = 1.0;
         }
         score

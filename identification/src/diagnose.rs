@@ -26,7 +26,7 @@ const LEAST_CERTAINTY: f64 = 3.0;
 /// Chance of a false alarm over all variants tried that show within a session …
 const SIGNIFICANCE: f64 = 0.01;
 /// … and over those that show between sessions, of which there are few.
-const SIGNIFICANCE_BETWEEN: f64 = 0.02;
+const SIGNIFICANCE_BETWEEN: f64 = 0.012;
 /// What has the shape of a map that passed explains this share of it at least.
 const SAME_AS_MAP: f64 = 0.85;
 /// A free map counts where it explains this share.
@@ -271,10 +271,7 @@ fn judge(
         .fold(0.0, |most, map| f64::max(most, map.gain));
     let mut named = 0.0;
     let mut best = first.clone();
-    let mut setup = setup.extended(BoundTerm {
-        effect: best.effect.clone(),
-        shape: best.shape.clone(),
-    });
+    let mut setup = setup.extended(BoundTerm::new(best.effect.clone(), best.shape.clone()));
     for step in 0..MOST_EFFECTS {
         let design = Design::new(&setup);
         let own = dependence::on_own_signals(&setup, &design, &best.effect);
@@ -299,10 +296,7 @@ fn judge(
             break;
         };
         best = candidate;
-        setup = setup.extended(BoundTerm {
-            effect: best.effect.clone(),
-            shape: best.shape.clone(),
-        });
+        setup = setup.extended(BoundTerm::new(best.effect.clone(), best.shape.clone()));
     }
     Verdict::Unexplained
 }
@@ -315,10 +309,7 @@ fn describe(
     passing: &[Candidate],
     trial: &Trial,
 ) -> NamedCandidate {
-    let term = BoundTerm {
-        effect: candidate.effect.clone(),
-        shape: candidate.shape.clone(),
-    };
+    let term = BoundTerm::new(candidate.effect.clone(), candidate.shape.clone());
     // Before and after are told on the rows that a model with it is fitted to.
     let (before, after) = if candidate.effect.shows_at_turns() {
         let whole = setup.with_reversals();

@@ -184,6 +184,32 @@ pub fn noise_level(signal: &[f64]) -> f64 {
     level / 70.0_f64.sqrt()
 }
 
+/// Widths \[samples\] that a signal is smoothed by.
+const WIDTHS: [f64; 6] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
+/// Share of noise in a derivative that is good enough.
+const MOST_NOISE: f64 = 0.05;
+
+/// The least width \[samples\] of [`Kernel::sharp`] that leaves the derivative of
+/// this `order` a twentieth noise; the greatest where none does.
+#[must_use]
+pub fn least_width(signals: &[Vec<f64>], order: u8, period: f64) -> f64 {
+    let noise = signals.iter().map(|s| noise_level(s)).fold(0.0, f64::max);
+    let is_quiet = |width: f64| {
+        let kernel = Kernel::sharp(width, order, period);
+        let (mut sum, mut count) = (0.0, 1e-9);
+        for signal in signals {
+            for at in (0..signal.len()).step_by(3) {
+                sum += kernel.at(signal, at).powi(2);
+                count += 1.0;
+            }
+        }
+        noise * noise * kernel.noise_gain() < MOST_NOISE * MOST_NOISE * sum / count
+    };
+    let [.., greatest] = WIDTHS;
+    let least = WIDTHS.into_iter().find(|width| is_quiet(*width));
+    least.unwrap_or(greatest)
+}
+
 /// Thins a signal by `factor` after a Gaussian against aliasing.
 #[must_use]
 pub fn thin(signal: &[f64], factor: usize) -> Vec<f64> {

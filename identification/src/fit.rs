@@ -49,18 +49,14 @@ impl Setup {
     /// This setup with one more effect in the model.
     #[must_use]
     pub fn extended(&self, term: BoundTerm) -> Self {
-        let mut terms = self.terms.clone();
-        let mut facts = self.facts.clone();
-        facts.load_coulomb |= effects::is_load_coulomb(&term.effect.description().id);
-        terms.push(term);
-        let mut extended = Self {
-            facts,
-            filters: self.filters,
-            sessions: self.sessions.clone(),
-            held_out: self.held_out.clone(),
-            terms,
-        };
+        let acts_on_channels = term.effect.acts_on_channels();
+        let mut extended = self.clone();
+        extended.facts.load_coulomb |= effects::is_load_coulomb(&term.effect.description().id);
+        extended.terms.push(term);
         extended.predict();
+        if acts_on_channels {
+            extended.undo();
+        }
         extended
     }
 }

@@ -6,12 +6,17 @@ use nalgebra::DVector;
 
 use crate::check::check;
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
-use crate::design::{Design, columns};
-use crate::effects::{self, EffectHandle, Facts, Point};
+use crate::design::Design;
+use crate::effects::{self, EffectHandle, Facts};
 use crate::error::PrepareError;
 use crate::expression::Compiled;
 use crate::refine;
 use crate::signals::{Filters, RESOLVED, Signals, quantile};
+
+/// Rounds over the shapes of a model's effects, at most, …
+const MOST_ROUNDS: usize = 8;
+/// … and none after one that moves no shape by this share.
+const SETTLED: f64 = 0.002;
 
 /// An effect of the model with the shape it has.
 #[derive(Clone)]
@@ -20,9 +25,25 @@ pub struct BoundTerm {
     pub effect: EffectHandle,
     /// Its shape parameters.
     pub shape: Vec<f64>,
+    /// Coefficients with which it has been taken out of the channels; empty for
+    /// an effect that acts on torque.
+    pub undone: Vec<f64>,
+}
+
+impl BoundTerm {
+    /// An effect with a shape.
+    #[must_use]
+    pub fn new(effect: EffectHandle, shape: Vec<f64>) -> Self {
+        Self {
+            effect,
+            shape,
+            undone: Vec::new(),
+        }
+    }
 }
 
 /// Everything that fits and tests start from.
+#[derive(Clone)]
 pub struct Setup {
     /// What is known of the recordings.
     pub facts: Facts,
@@ -34,6 +55,11 @@ pub struct Setup {
     pub held_out: Vec<Signals>,
     /// The model's effects; a fitted inertia comes first.
     pub terms: Vec<BoundTerm>,
+    /// Whether rows near rest and just after reversals count.
+    pub reversals: bool,
+    /// Coefficients of the effects that need no prediction, by which all others'
+    /// prediction is made.
+    pub(crate) predicted: DVector<f64>,
 }
 
 impl Setup {
@@ -69,6 +95,8 @@ impl Setup {
             sessions,
             held_out,
             terms: Vec::new(),
+            reversals: false,
+            predicted: DVector::zeros(0),
         };
         setup.terms = setup.bind(spec)?;
         if setup.terms.iter().any(|t| t.effect.shows_at_turns()) {
@@ -79,25 +107,19 @@ impl Setup {
         if rows < 20 + 5 * parameters {
             return Err(PrepareError::NothingExcited { rows, parameters });
         }
-        let is_load_modelled = !setup.facts.joint_torque && !dataset.joint.is_contact();
-        if is_load_modelled {
-            setup.model_load();
-        }
+        setup.model_load();
         setup.find_shapes();
-        if is_load_modelled {
-            setup.model_load();
-        }
+        setup.model_load();
         setup.predict();
+        setup.undo();
         Ok(setup)
     }
 
     fn bind(&self, spec: &ModelSpec) -> Result<Vec<BoundTerm>, PrepareError> {
         let mut terms: Vec<BoundTerm> = Vec::new();
         if spec.inertia == Inertia::Fit {
-            terms.push(BoundTerm {
-                effect: Arc::new(effects::FittedInertia::default()),
-                shape: Vec::new(),
-            });
+            let inertia = Arc::new(effects::FittedInertia::default());
+            terms.push(BoundTerm::new(inertia, Vec::new()));
         }
         for term in &spec.effects {
             let effect = self.resolve(term)?;
@@ -118,7 +140,7 @@ impl Setup {
                 Some(shape) if !shape.is_empty() || bounds.is_empty() => shape.clone(),
                 _ => bounds.iter().map(|b| 0.5 * (b[0] + b[1])).collect(),
             };
-            terms.push(BoundTerm { effect, shape });
+            terms.push(BoundTerm::new(effect, shape));
         }
         Ok(terms)
     }
@@ -165,197 +187,84 @@ impl Setup {
         self.terms.iter().any(|t| t.effect.description().id == id)
     }
 
+    /// Place of the first column of the model's effect `id`.
+    #[must_use]
+    pub fn first_column(&self, id: &str) -> Option<usize> {
+        let at = self
+            .terms
+            .iter()
+            .position(|t| t.effect.description().id == id)?;
+        Some(self.terms[..at].iter().map(|t| t.effect.columns()).sum())
+    }
+
     /// First coefficient of the model's effect `id`, fitted to everything; 0
     /// where the model does not have it.
     #[must_use]
     pub fn coefficient(&self, id: &str) -> f64 {
-        let mut at = 0;
-        for term in &self.terms {
-            if term.effect.description().id == id {
-                let all = Design::new(self).total().solve();
-                return all.get(at).copied().unwrap_or(0.0);
-            }
-            at += term.effect.columns();
-        }
-        0.0
+        let all = Design::new(self).total().solve();
+        self.first_column(id)
+            .and_then(|at| all.get(at).copied())
+            .unwrap_or(0.0)
     }
 
     /// The same with the rows near rest and just after reversals; of a contact
     /// only while it lasts.
     #[must_use]
     pub fn with_reversals(&self) -> Self {
-        let mut whole = Self {
-            facts: self.facts.clone(),
-            filters: self.filters,
-            sessions: self.sessions.clone(),
-            held_out: self.held_out.clone(),
-            terms: self.terms.clone(),
-        };
+        let mut whole = self.clone();
         whole.keep_reversals();
         whole
     }
 
-    fn keep_reversals(&mut self) {
+    pub(crate) fn keep_reversals(&mut self) {
+        self.reversals = true;
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             signals.rows.clone_from(&signals.turning_rows);
         }
     }
 
-    /// Finds the shape of the model's own effects, one after the other, twice:
-    /// one depends on the others', and on what they predict.
+    /// Finds the shape of the model's own effects, one after the other: one depends
+    /// on the others', and on what they predict. First anywhere, then close to
+    /// where it is, until nothing moves.
     fn find_shapes(&mut self) {
         let searched: Vec<usize> = (0..self.terms.len())
             .filter(|i| !self.terms[*i].shape.is_empty())
             .collect();
         let predicts = self.terms.iter().any(|t| t.effect.needs_prediction());
-        let rounds = if searched.len() > 1 || predicts { 2 } else { 1 };
-        for _ in 0..rounds {
+        let most = match (predicts, searched.len()) {
+            (true, _) => MOST_ROUNDS,
+            (false, 0 | 1) => 1,
+            (false, _) => 2,
+        };
+        for round in 0..most {
+            let mut moved = 0.0;
             for &at in &searched {
                 if self.terms[at].effect.needs_prediction() {
                     self.predict();
                 }
-                let term = self.terms.remove(at);
+                let mut term = self.terms.remove(at);
                 let design = Design::new(self);
-                let shape = refine::search(self, &design, &term.effect);
-                self.terms.insert(
-                    at,
-                    BoundTerm {
-                        effect: term.effect,
-                        shape: shape.unwrap_or(term.shape),
-                    },
-                );
-            }
-        }
-    }
-
-    /// Without a torque sensor the load is what inertia, gravity and spring
-    /// take by the model's own fit.
-    fn model_load(&mut self) {
-        for _ in 0..2 {
-            let design = Design::new(self);
-            let coefficients = design.total().solve();
-            let (inertia, terms) = (self.facts.inertia, &self.terms);
-            for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
-                let load = working(signals, terms, &coefficients, |effect| {
-                    effect.is_load() || effect.description().id == "inertia_fit"
-                });
-                for (point, load) in signals.points.iter_mut().zip(load) {
-                    point.load = load + inertia.unwrap_or(0.0) * point.acceleration;
-                }
-                let loads: Vec<f64> = signals.points.iter().map(|p| p.load).collect();
-                let rates = slope(&loads, signals.period);
-                let jerks = slope(&rates, signals.period);
-                for (point, (rate, jerk)) in signals.points.iter_mut().zip(rates.iter().zip(jerks))
-                {
-                    (point.load_rate, point.load_jerk) = (*rate, jerk);
-                }
-            }
-        }
-    }
-
-    /// What the model predicts, for effects that act on it. These effects
-    /// themselves are fitted along, but are no part of the prediction.
-    pub(crate) fn predict(&mut self) {
-        let mut own = self.terms.clone();
-        own.retain(|t| !t.effect.needs_prediction());
-        let all = std::mem::replace(&mut self.terms, own.clone());
-        let first = Design::new(self).total().solve();
-        self.spread(&first, &own);
-        self.terms = all;
-        if own.len() < self.terms.len() {
-            let together = Design::new(self).total().solve();
-            let mut at = 0;
-            let mut kept = Vec::new();
-            for term in &self.terms {
-                let columns = term.effect.columns();
-                if !term.effect.needs_prediction() {
-                    kept.extend((at..at + columns).map(|i| together[i]));
-                }
-                at += columns;
-            }
-            self.spread(&DVector::from_vec(kept), &own);
-        }
-    }
-
-    fn spread(&mut self, coefficients: &DVector<f64>, terms: &[BoundTerm]) {
-        let (inertia, sensor) = (self.facts.inertia.unwrap_or(0.0), self.facts.joint_torque);
-        let mut before = 0;
-        let mut load_slope = 0.0;
-        for term in terms {
-            if term.effect.description().id == "load_coulomb" {
-                load_slope = coefficients.get(before).copied().unwrap_or(0.0);
-            }
-            before += term.effect.columns();
-        }
-        let nudge = 1e-3 * self.facts.speed[1];
-        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
-            let friction = working(signals, terms, coefficients, |e| {
-                e.description().id != "inertia_fit"
-            });
-            let total = working(signals, terms, coefficients, |_| true);
-            let mut other = signals.clone();
-            let mut friction_at = |velocity: fn(&Point, f64) -> f64| {
-                for (point, measured) in other.points.iter_mut().zip(&signals.points) {
-                    point.velocity = velocity(measured, nudge);
-                }
-                working(&other, terms, coefficients, |e| {
-                    e.description().id != "inertia_fit"
-                })
-            };
-            let faster = friction_at(|point, nudge| point.velocity + nudge * point.sign());
-            let slowest = friction_at(|point, nudge| nudge * point.sign());
-            for (at, point) in signals.points.iter_mut().enumerate() {
-                point.friction_predicted = friction[at];
-                point.friction_level = slowest[at].abs();
-                point.load_slope = load_slope;
-                point.friction_slope = if nudge > 0.0 {
-                    point.sign() * (faster[at] - friction[at]) / nudge
-                } else {
-                    0.0
+                let shape = match round {
+                    0 | 1 => refine::search(self, &design, &term.effect),
+                    _ => Some(refine::polish(self, &design, &term.effect, &term.shape)),
                 };
-                point.motor_predicted = total[at]
-                    + inertia * point.acceleration
-                    + if sensor { point.load } else { 0.0 };
+                let shape = shape.unwrap_or_else(|| term.shape.clone());
+                moved = f64::max(moved, farthest(&term.shape, &shape));
+                term.shape = shape;
+                self.terms.insert(at, term);
+            }
+            if round > 0 && moved < SETTLED {
+                break;
             }
         }
     }
 }
 
-/// Sum of coefficients times columns at the working rate, of some effects.
-fn working(
-    signals: &Signals,
-    terms: &[BoundTerm],
-    coefficients: &DVector<f64>,
-    which: impl Fn(&EffectHandle) -> bool,
-) -> Vec<f64> {
-    let mut sum = vec![0.0; signals.points.len()];
-    let mut first = 0;
-    for term in terms {
-        let count = term.effect.columns();
-        if which(&term.effect) {
-            for (k, column) in columns::working(signals, &term.effect, &term.shape)
-                .iter()
-                .enumerate()
-            {
-                let c = coefficients.get(first + k).copied().unwrap_or(0.0);
-                sum.iter_mut().zip(column).for_each(|(s, x)| *s += c * x);
-            }
-        }
-        first += count;
-    }
-    sum
-}
-
-/// Central differences.
-fn slope(signal: &[f64], period: f64) -> Vec<f64> {
-    let last = signal.len().saturating_sub(1);
-    (0..signal.len())
-        .map(|at| {
-            let (before, after) = (at.saturating_sub(1), (at + 1).min(last));
-            let span = (after - before).max(1) as f64 * period;
-            (signal[after] - signal[before]) / span
-        })
-        .collect()
+/// The most by which a parameter of a shape changes, as a share of it.
+fn farthest(before: &[f64], after: &[f64]) -> f64 {
+    let both = before.iter().zip(after);
+    both.map(|(before, after)| (after - before).abs() / before.abs().max(1e-300))
+        .fold(0.0, f64::max)
 }
 
 fn gather(dataset: &Dataset, spec: &ModelSpec, sessions: &[Signals], filters: &Filters) -> Facts {

@@ -1,10 +1,11 @@
 //! A session made ready: smoothed, differentiated, thinned, masked.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::data::{Dataset, Session};
 use crate::effects::Point;
-use crate::filter::{Kernel, noise_level, thin};
+use crate::filter::{Kernel, least_width, noise_level, thin};
 use crate::stated_filter::StatedFilter;
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
@@ -30,6 +31,8 @@ pub struct Filters {
     /// Width \[working samples\] of the light smoothing in which states (the
     /// sign of velocity, say) are judged.
     pub state: f64,
+    /// The same for the rates of change of the load, which is noisier.
+    pub load: f64,
     /// Width \[working samples\] of the filter on every column of the regression.
     pub column: f64,
     /// Working samples from one row of the regression to the next.
@@ -59,8 +62,13 @@ pub struct Signals {
     pub points: Vec<Point>,
     /// Extra signals at the working rate.
     pub extra: BTreeMap<String, Vec<f64>>,
-    /// Channels at the working rate before smoothing.
-    pub raw: Channels,
+    /// Channels at the working rate before smoothing, without what the model's
+    /// effects do to them.
+    pub raw: Arc<Channels>,
+    /// The same as they were recorded.
+    pub recorded: Arc<Channels>,
+    /// Columns at the working rate of effects that act on channels, by their ids.
+    pub jacobians: BTreeMap<String, Vec<Vec<f64>>>,
     /// Working sample of each row, in order of time; near rest there is none.
     pub rows: Vec<usize>,
     /// See [`Session::unloaded`].
@@ -137,21 +145,14 @@ impl Filters {
             .map(|s| thin(&s.position, thinning))
             .collect();
         let noise = positions.iter().map(|q| noise_level(q)).fold(0.0, f64::max);
-        let mut state = 6.0;
-        for width in [1.0, 1.5, 2.0, 3.0, 4.0] {
-            let kernel = Kernel::sharp(width, order, working);
-            let (mut sum, mut count) = (0.0, 1e-9);
-            for q in &positions {
-                for at in (0..q.len()).step_by(3) {
-                    sum += kernel.at(q, at).powi(2);
-                    count += 1.0;
-                }
-            }
-            if noise * noise * kernel.noise_gain() < 0.0025 * sum / count {
-                state = width;
-                break;
-            }
-        }
+        let state = least_width(&positions, order, working);
+        let loads: Vec<Vec<f64>> = (sessions.iter())
+            .filter_map(|s| Some(thin(s.joint_torque.as_ref()?, thinning)))
+            .collect();
+        let load = match loads.is_empty() {
+            true => state,
+            false => least_width(&loads, 2, working).max(state),
+        };
         let slope = Kernel::sharp(state, 1, working);
         let mut speeds: Vec<f64> = positions
             .iter()
@@ -164,6 +165,7 @@ impl Filters {
         Self {
             thinning,
             state,
+            load,
             column,
             stride: (2.0 * column).round() as usize,
             rest_speed: f64::max(NEAR_REST * top, 4.0 * noise * slope.noise_gain().sqrt()),
@@ -171,6 +173,22 @@ impl Filters {
             position_noise: noise,
             touching: None,
             stated: None,
+        }
+    }
+
+    /// Smoothing of states, and their first two derivatives.
+    fn state_kernels(&self, period: f64) -> [Kernel; 3] {
+        match &self.stated {
+            Some(filter) => filter.states(period),
+            None => [0, 1, 2].map(|order| Kernel::sharp(self.state, order, period)),
+        }
+    }
+
+    /// The same of the load.
+    fn load_kernels(&self, period: f64) -> [Kernel; 3] {
+        match &self.stated {
+            Some(filter) => filter.states(period),
+            None => [0, 1, 2].map(|order| Kernel::sharp(self.load, order, period)),
         }
     }
 
@@ -206,55 +224,19 @@ impl Signals {
                 |s| thin(s),
             ),
         };
-        let kernel = |order| Kernel::sharp(filters.state, order, period);
-        let [smooth, slope, curvature] = match &filters.stated {
-            Some(filter) => filter.states(period),
-            None => [kernel(0), kernel(1), kernel(2)],
-        };
+        let raw = Arc::new(raw);
+        let [smooth, ..] = filters.state_kernels(period);
         let temperature = session.temperature.as_ref().map(|s| thin(s));
-        let normal_force = session.normal_force.as_ref().map(|s| thin(s));
-        let load = normal_force.as_ref().unwrap_or(&raw.joint_torque);
         let days = session.start / SECONDS_PER_DAY;
-        let points: Vec<Point> = (0..raw.position.len())
+        let points = (0..raw.position.len())
             .map(|at| Point {
                 period,
-                position: smooth.at(&raw.position, at),
-                velocity: slope.at(&raw.position, at),
-                acceleration: curvature.at(&raw.position, at),
-                motor_torque: smooth.at(&raw.motor_torque, at),
-                load: smooth.at(load, at),
-                load_rate: slope.at(load, at),
-                load_jerk: curvature.at(load, at),
                 temperature: temperature.as_ref().map_or(0.0, |t| smooth.at(t, at)),
                 days: days + at as f64 * period / SECONDS_PER_DAY,
                 ..Point::default()
             })
             .collect();
-        let reach = Kernel::reach(filters.column);
-        let last = points.len().saturating_sub(reach);
-        let all_rows: Vec<usize> = match &filters.stated {
-            Some(filter) => filter.rows(points.iter().map(|point| point.velocity)),
-            None => (reach..last).step_by(filters.stride.max(1)).collect(),
-        };
-        let mut sliding = Sliding::default();
-        let slides: Vec<bool> = points
-            .iter()
-            .map(|point| sliding.next(point, filters))
-            .collect();
-        let turning_too = match filters.touching {
-            Some(least) => touching(&points, filters.rest_speed, least),
-            None => vec![true; points.len()],
-        };
-        let both: Vec<bool> = slides
-            .iter()
-            .zip(&turning_too)
-            .map(|(slides, counts)| *slides && *counts)
-            .collect();
-        let rows = |good: &[bool]| match filters.stated {
-            Some(_) => all_rows.clone(),
-            None => clear_of_bad(&all_rows, good, reach),
-        };
-        Self {
+        let mut signals = Self {
             name: session.name.clone(),
             period,
             column: filters.column_kernel(period),
@@ -264,12 +246,69 @@ impl Signals {
                 .iter()
                 .map(|(k, v)| (k.clone(), smooth.everywhere(&thin(v))))
                 .collect(),
-            raw,
+            raw: raw.clone(),
+            recorded: raw.clone(),
+            jacobians: BTreeMap::new(),
             unloaded: session.unloaded,
-            rows: rows(&both),
-            turning_rows: rows(&turning_too),
-            all_rows,
+            rows: Vec::new(),
+            turning_rows: Vec::new(),
+            all_rows: Vec::new(),
+        };
+        match session.normal_force.as_ref() {
+            Some(force) => signals.derive(filters, &thin(force), 0),
+            None => signals.derive(filters, &raw.joint_torque, 0),
         }
+        signals
+    }
+
+    /// Puts other channels in the place of the recorded ones; the last `lost`
+    /// samples of these say nothing.
+    pub(crate) fn take(&mut self, channels: Channels, lost: usize, filters: &Filters) {
+        let channels = Arc::new(channels);
+        self.raw = channels.clone();
+        self.derive(filters, &channels.joint_torque, lost);
+    }
+
+    /// States and rows from the channels.
+    fn derive(&mut self, filters: &Filters, load: &[f64], lost: usize) {
+        let raw = &self.raw;
+        let [smooth, slope, curvature] = filters.state_kernels(self.period);
+        let [_, load_rate, load_jerk] = filters.load_kernels(self.period);
+        for (at, point) in self.points.iter_mut().enumerate() {
+            point.position = smooth.at(&raw.position, at);
+            point.velocity = slope.at(&raw.position, at);
+            point.acceleration = curvature.at(&raw.position, at);
+            point.motor_torque = smooth.at(&raw.motor_torque, at);
+            point.load = smooth.at(load, at);
+            point.load_rate = load_rate.at(load, at);
+            point.load_jerk = load_jerk.at(load, at);
+        }
+        let points = &self.points;
+        let reach = Kernel::reach(filters.column);
+        let last = points.len().saturating_sub(reach + lost);
+        self.all_rows = match &filters.stated {
+            Some(filter) => filter.rows(points.iter().map(|point| point.velocity)),
+            None => (reach..last).step_by(filters.stride.max(1)).collect(),
+        };
+        let mut sliding = Sliding::default();
+        let slides: Vec<bool> = points
+            .iter()
+            .map(|point| sliding.next(point, filters))
+            .collect();
+        let turning_too = match filters.touching {
+            Some(least) => touching(points, filters.rest_speed, least),
+            None => vec![true; points.len()],
+        };
+        let both: Vec<bool> = slides
+            .iter()
+            .zip(&turning_too)
+            .map(|(slides, counts)| *slides && *counts)
+            .collect();
+        let rows = |good: &[bool]| match filters.stated {
+            Some(_) => self.all_rows.clone(),
+            None => clear_of_bad(&self.all_rows, good, reach),
+        };
+        (self.rows, self.turning_rows) = (rows(&both), rows(&turning_too));
     }
 
     /// Time \[s\] of a working sample since the session's start.

@@ -104,6 +104,11 @@ fn torque(
     let mut first = 0;
     for ((term, memory), extra) in setup.terms.iter().zip(memories).zip(extra) {
         let width = term.effect.columns();
+        // The channels are already without it.
+        if !term.undone.is_empty() {
+            first += width;
+            continue;
+        }
         let mut sum = |acceleration: f64, memory: &mut Memory| {
             let point = Point {
                 acceleration,

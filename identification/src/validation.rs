@@ -203,45 +203,13 @@ pub fn between(design: &Design, grams: &BlockGrams) -> Score {
     Score::new(&estimate, gains, &slope, before, total.rows, p_value)
 }
 
-/// p-value of a straight line of one base coefficient, fitted session by
-/// session, over what the (single) extra column multiplies it with.
-///
-/// Scatter from session to session is the noise here: G − 2 degrees of freedom.
+/// Chance that the (single) extra column's coefficient differs by as much within
+/// and between sessions as it does; 1 where it hardly varies within a session.
 #[must_use]
-pub fn trend(design: &Design, grams: &BlockGrams, column: usize) -> Option<f64> {
-    let points: Vec<(f64, f64)> = grams
-        .iter()
-        .filter_map(|session| {
-            let total = Gram::sum(session, session.first()?.columns());
-            let own = total.products[(column, column)];
-            let factor = total.products[(column, design.base)] / own;
-            let coefficient = *select_base(&total, design.base).solve().get(column)?;
-            (own > 0.0 && factor.is_finite()).then_some((factor, coefficient))
-        })
-        .collect();
-    let n = points.len() as f64;
-    if n < 4.0 {
-        return None;
-    }
-    let mean = |f: fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
-    let (mx, my) = (mean(|p| p.0), mean(|p| p.1));
-    let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
-    let sxy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
-    let syy: f64 = points.iter().map(|p| (p.1 - my).powi(2)).sum();
-    if sxx <= 0.0 {
-        return None;
-    }
-    let rest = (syy - sxy * sxy / sxx).max(1e-300);
-    Some(f_tail(sxy * sxy / sxx / (rest / (n - 2.0)), 1.0, n - 2.0))
-}
-
-/// Difference of the (single) extra column's coefficient within and between
-/// sessions, in standard errors; 0 where it hardly varies within a session.
-#[must_use]
-pub fn disagreement(design: &Design, grams: &BlockGrams) -> f64 {
+pub fn agreement(design: &Design, grams: &BlockGrams) -> f64 {
     let columns = grams.iter().flatten().next().map_or(0, Gram::columns);
     if columns != design.base + 1 {
-        return 0.0;
+        return 1.0;
     }
     let total = Gram::sum(grams.iter().flatten(), columns);
     let last = |c: DVector<f64>| c.rows(columns - 1, 1).into_owned();
@@ -268,9 +236,14 @@ pub fn disagreement(design: &Design, grams: &BlockGrams) -> f64 {
     let variance = jackknife_covariance(&between, &without)[(0, 0)]
         + jackknife_covariance(&within, &inside_without)[(0, 0)];
     if variance > 0.0 && variance.is_finite() {
-        (within[0] - between[0]).abs() / variance.sqrt()
+        let sessions = inside_without.len() as f64;
+        f_tail(
+            (within[0] - between[0]).powi(2) / variance,
+            1.0,
+            sessions - 1.0,
+        )
     } else {
-        0.0
+        1.0
     }
 }
 

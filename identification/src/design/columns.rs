@@ -2,6 +2,7 @@
 
 use crate::effects::{EffectHandle, Exact, ExactSignal, MOST_COLUMNS};
 use crate::filter::Kernel;
+use crate::setup::BoundTerm;
 use crate::signals::{Filters, Signals};
 
 /// Columns at the working rate, not filtered.
@@ -66,6 +67,26 @@ pub fn filtered(
         sum
     };
     exact.iter().map(column).collect()
+}
+
+/// Columns of an effect of the model at rows `rows`, through the column filter.
+#[must_use]
+pub fn of_term(
+    signals: &Signals,
+    filters: &Filters,
+    inertia: f64,
+    term: &BoundTerm,
+    rows: &[usize],
+) -> Vec<Vec<f64>> {
+    if term.undone.is_empty() {
+        return filtered(signals, filters, inertia, &term.effect, &term.shape, rows);
+    }
+    match signals.jacobians.get(&term.effect.description().id) {
+        Some(columns) => (columns.iter())
+            .map(|column| signals.column.at_samples(column, rows))
+            .collect(),
+        None => vec![vec![0.0; rows.len()]; term.effect.columns()],
+    }
 }
 
 /// y = τ_m − τ − J q̈ at rows `rows`, through the column filter.

@@ -187,21 +187,18 @@ impl SessionDesign {
     #[must_use]
     pub fn new(setup: &Setup, signals: &Signals, rows: &[usize], count: usize) -> Self {
         let inertia = setup.facts.inertia.unwrap_or(0.0);
-        let measured = columns::measured(signals, &setup.filters, inertia, rows);
-        let base: Vec<Vec<f64>> = setup
-            .terms
-            .iter()
-            .flat_map(|term| {
-                columns::filtered(
-                    signals,
-                    &setup.filters,
-                    inertia,
-                    &term.effect,
-                    &term.shape,
-                    rows,
-                )
-            })
-            .collect();
+        let mut measured = columns::measured(signals, &setup.filters, inertia, rows);
+        let mut base = Vec::new();
+        for term in &setup.terms {
+            let own = columns::of_term(signals, &setup.filters, inertia, term, rows);
+            // What has been taken out of the channels is fitted again around where
+            // it was: the coefficient is all of it.
+            for (column, coefficient) in own.iter().zip(&term.undone) {
+                let taken = measured.iter_mut().zip(column);
+                taken.for_each(|(measured, value)| *measured += coefficient * value);
+            }
+            base.extend(own);
+        }
         let blocks = blocks(rows.len(), count);
         let views: Vec<&[f64]> = base.iter().map(Vec::as_slice).collect();
         let grams = blocks

@@ -1,6 +1,7 @@
 //! One channel stamped late.
 
 use super::{Effect, EffectDescription, Facts, Memory, ONE, Point, Unit, describe};
+use crate::signals::Channels;
 
 describe!(
     ChannelDelay,
@@ -14,6 +15,23 @@ describe!(
     shown_by: Accelerations,
     taken_for: ["inertia", "viscous", "elasticity"]
 );
+
+/// What `signal` is `samples` later, by cubics through four samples; at the end
+/// it stays as it is.
+fn advanced(signal: &[f64], samples: f64) -> Vec<f64> {
+    let last = signal.len().saturating_sub(1) as f64;
+    let value = |at: f64| signal[at.clamp(0.0, last) as usize];
+    (0..signal.len())
+        .map(|at| {
+            let place = (at as f64 + samples).clamp(0.0, last);
+            let from = place.floor();
+            let [a, b, c, d] = [-1.0, 0.0, 1.0, 2.0].map(|by| value(from + by));
+            let x = place - from;
+            let (slope, curve) = (0.5 * (c - a), a - 2.5 * b + 2.0 * c - 0.5 * d);
+            b + x * (slope + x * (curve + x * (0.5 * (d - a) + 1.5 * (b - c))))
+        })
+        .collect()
+}
 
 impl Effect for ChannelDelay {
     fn description(&self) -> &EffectDescription {
@@ -80,6 +98,30 @@ impl Effect for ChannelDelay {
         vec![[0.0, 0.0], [0.0002, 0.2]]
     }
 
+    fn acts_on_channels(&self) -> bool {
+        true
+    }
+
+    fn undo(
+        &self,
+        shape: &[f64],
+        coefficients: &[f64],
+        channels: &mut Channels,
+        period: f64,
+    ) -> usize {
+        let ([channel, ..], [delay, ..]) = (shape, coefficients) else {
+            return 0;
+        };
+        let late = match channel.round() as i64 {
+            0 => &mut channels.motor_torque,
+            1 => &mut channels.joint_torque,
+            _ => &mut channels.position,
+        };
+        let samples = delay / period;
+        *late = advanced(late, samples);
+        samples.abs().ceil() as usize + 1
+    }
+
     // The fitted delay is the shift, and the channel one of three.
     fn freedom(&self) -> usize {
         1
@@ -95,5 +137,22 @@ impl Effect for ChannelDelay {
         coefficients
             .iter()
             .all(|c| (0.5..1.6).contains(&(c / shift)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_channel_is_taken_back_by_its_delay() {
+        let wave = |at: f64| (0.13 * at).sin();
+        let signal: Vec<f64> = (0..200).map(|at| wave(f64::from(at))).collect();
+        for by in [0.0, 0.3, 1.0, 7.6] {
+            let advanced = advanced(&signal, by);
+            let exact = (2..180).all(|at| (advanced[at] - wave(at as f64 + by)).abs() < 2e-4);
+            assert!(exact, "by {by}");
+        }
+        assert!(advanced(&[], 1.0).is_empty());
     }
 }

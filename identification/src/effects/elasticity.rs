@@ -1,32 +1,64 @@
 //! A joint that winds up between motor and measured position.
 
-use super::{Effect, EffectDescription, Facts, Memory, Point, Unit, describe};
+use super::{Effect, EffectDescription, Facts, Memory, Point, TORQUE, Unit, describe, logarithmic};
+use crate::filter::{Kernel, least_width};
+use crate::signals::Channels;
 
 describe!(
     Elasticity,
     "elasticity",
-    "q_m = q + τ/K + k3 τ³: τ_F and J feel q̇ + d/dt(τ/K + k3 τ³)",
+    "q_m = q + δ with K δ + K3 δ³ = τ, K = 1/inverse_K, K3 = K/(inverse_K τ_s)²: τ_F and J feel q_m",
     "stiffness of the flex spline, ROKVISS, lessons learned, Fig. 15",
-    coefficients: ["inverse_K": Unit::new("rad/Nm", "m/N"), "c_jerk": Unit::new("s²", "s²"), "k3": Unit::new("rad/Nm³", "m/N³")],
-    shape: [],
+    coefficients: ["inverse_K": Unit::new("rad/Nm", "m/N")],
+    shape: ["tau_s": TORQUE],
     shows_as: "over τ and τ̇",
     excited_by: "load that changes fast while the joint hardly moves",
     shown_by: Accelerations,
     taken_for: ["presliding_hysteresis", "channel_delay"]
 );
 
+/// Steps of Newton's method, which converges from above.
+const STEPS: usize = 12;
+
+/// f of f + f³ = u: the twist over that of a joint that does not stiffen.
+fn wound_up(load: f64) -> f64 {
+    // Above where it turns back nowhere.
+    let mut twist = load.abs().min(load.abs().cbrt());
+    for _ in 0..STEPS {
+        let left = twist + twist.powi(3) - load.abs();
+        twist -= left / (1.0 + 3.0 * twist * twist);
+    }
+    twist.copysign(load)
+}
+
 impl Effect for Elasticity {
     fn description(&self) -> &EffectDescription {
         &self.0
     }
 
-    fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
-        // To first order: ∂τ_F/∂q̇ times the speed of winding up.
-        if let [linear, inertial, cubic] = columns {
-            *linear = point.friction_slope * point.load_rate;
-            *inertial = point.load_jerk;
-            *cubic = 3.0 * point.load * point.load * *linear;
+    fn evaluate(&self, shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
+        // To first order: ∂τ_F/∂q̇ times the speed of winding up, J times its
+        // acceleration.
+        if let ([c], [stiff, ..]) = (columns, shape) {
+            let twist = wound_up(point.load / stiff);
+            let slope = 1.0 / (1.0 + 3.0 * twist * twist);
+            let curve = -6.0 * twist * slope.powi(3) / stiff;
+            *c = point.friction_slope * slope * point.load_rate
+                + point.inertia * (slope * point.load_jerk + curve * point.load_rate.powi(2));
         }
+    }
+
+    // From twice as stiff under a third of the greatest load to hardly stiffer.
+    fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
+        let [low, high] = self.bounds(facts)[0];
+        logarithmic(low, high, 6)
+            .into_iter()
+            .map(|torque| vec![torque])
+            .collect()
+    }
+
+    fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
+        vec![[0.1 * facts.motor_torque, 10.0 * facts.motor_torque]]
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
@@ -37,8 +69,71 @@ impl Effect for Elasticity {
         true
     }
 
-    // Softer than 30 Nm/rad it would be no joint; ahead, not behind.
+    fn acts_on_channels(&self) -> bool {
+        true
+    }
+
+    fn undo(
+        &self,
+        shape: &[f64],
+        coefficients: &[f64],
+        channels: &mut Channels,
+        period: f64,
+    ) -> usize {
+        if let ([stiff, ..], [inverse, ..]) = (shape, coefficients) {
+            let recorded = std::slice::from_ref(&channels.joint_torque);
+            let width = least_width(recorded, 2, period);
+            let smooth = Kernel::sharp(width, 0, period);
+            for (at, position) in channels.position.iter_mut().enumerate() {
+                let torque = smooth.at(&channels.joint_torque, at);
+                *position += inverse * stiff * wound_up(torque / stiff);
+            }
+        }
+        0
+    }
+
+    // Ahead, not behind.
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
         coefficients.first().is_some_and(|c| *c > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// τ = 300 δ + 6e4 δ³.
+    #[test]
+    fn a_stiffening_joint_winds_up_by_its_law() {
+        let stiff = 300.0 * f64::sqrt(300.0 / 6e4);
+        for angle in [-0.5, -0.01, 0.0, 1e-4, 0.03, 0.5] {
+            let torque = 300.0 * angle + 6e4 * f64::powi(angle, 3);
+            let found = stiff / 300.0 * wound_up(torque / stiff);
+            assert!((found - angle).abs() < 1e-12, "{found} for {angle}");
+        }
+    }
+
+    /// Its column is the derivative of what it does to τ_F + J q̈_m.
+    #[test]
+    fn its_column_is_what_winding_up_does() {
+        let (load, rate, jerk, by) = (12.0, 90.0, -400.0, 1e-4);
+        let twist = |time: f64| {
+            let load = load + rate * time + 0.5 * jerk * time * time;
+            20.0 * wound_up(load / 20.0)
+        };
+        let speed = (twist(by) - twist(-by)) / (2.0 * by);
+        let acceleration = (twist(by) + twist(-by) - 2.0 * twist(0.0)) / (by * by);
+        let point = Point {
+            load,
+            load_rate: rate,
+            load_jerk: jerk,
+            friction_slope: 70.0,
+            inertia: 1.2,
+            ..Point::default()
+        };
+        let mut column = [0.0];
+        Elasticity::default().evaluate(&[20.0], &point, &mut [0.0; 4], &mut column);
+        let expected = 70.0 * speed + 1.2 * acceleration;
+        assert!((column[0] - expected).abs() < 1e-4 * expected.abs());
     }
 }

@@ -45,6 +45,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::data::{JointType, Subject};
+use crate::signals::Channels;
 pub(crate) use description::describe;
 pub(crate) use description::{ANGLE, DAY, ONE, SPEED, STIFFNESS, TORQUE};
 pub use description::{EffectDescription, Quantity, Unit};
@@ -87,6 +88,8 @@ pub struct Point {
     pub friction_level: f64,
     /// ∂τ_F/∂|τ| that the model predicts for q̇ > 0 \[-\]: b_0T.
     pub load_slope: f64,
+    /// J of the model, given or fitted \[kg m²\].
+    pub inertia: f64,
 }
 
 impl Point {
@@ -322,6 +325,26 @@ pub trait Effect: Send + Sync {
     /// Whether its columns need the model's own prediction.
     fn needs_prediction(&self) -> bool {
         false
+    }
+
+    /// Whether it acts on what is measured rather than on torque. Its columns are
+    /// then right for a small effect; of a large one [`Self::undo`] takes out
+    /// all.
+    fn acts_on_channels(&self) -> bool {
+        false
+    }
+
+    /// Takes it out of the channels, sampled every `period` \[s\], that it acts
+    /// on. Returns how many samples at the end say nothing then.
+    fn undo(
+        &self,
+        shape: &[f64],
+        coefficients: &[f64],
+        channels: &mut Channels,
+        period: f64,
+    ) -> usize {
+        let _ = (shape, coefficients, channels, period);
+        0
     }
 
     /// Whether coefficients make physical sense for this effect.

@@ -1,0 +1,167 @@
+//! What the model itself predicts, for effects that act on it: load, friction,
+//! motor torque.
+
+use nalgebra::DVector;
+
+use crate::design::{Design, columns};
+use crate::effects::{EffectHandle, Point};
+use crate::setup::{BoundTerm, Setup};
+use crate::signals::Signals;
+
+/// Fits of a model whose effects act on its own prediction, at most, …
+const MOST_PREDICTIONS: usize = 12;
+/// … and none after one that moves no parameter by this share of its standard error.
+const SAME_PREDICTION: f64 = 0.1;
+
+impl Setup {
+    /// Without a torque sensor the load of a joint is what inertia, gravity and
+    /// spring take by the model's own fit.
+    pub(crate) fn model_load(&mut self) {
+        if self.facts.joint_torque || self.facts.joint.is_contact() {
+            return;
+        }
+        for _ in 0..2 {
+            let design = Design::new(self);
+            let coefficients = design.total().solve();
+            let (inertia, terms) = (self.facts.inertia, &self.terms);
+            for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+                let load = working(signals, terms, &coefficients, |effect| {
+                    effect.is_load() || effect.description().id == "inertia_fit"
+                });
+                for (point, load) in signals.points.iter_mut().zip(load) {
+                    point.load = load + inertia.unwrap_or(0.0) * point.acceleration;
+                }
+                let loads: Vec<f64> = signals.points.iter().map(|p| p.load).collect();
+                let rates = slope(&loads, signals.period);
+                let jerks = slope(&rates, signals.period);
+                for (point, (rate, jerk)) in signals.points.iter_mut().zip(rates.iter().zip(jerks))
+                {
+                    (point.load_rate, point.load_jerk) = (*rate, jerk);
+                }
+            }
+        }
+    }
+
+    /// What the model predicts, for effects that act on it. These effects
+    /// themselves are fitted along, but are no part of the prediction: where
+    /// that changes by them, they are fitted again.
+    pub(crate) fn predict(&mut self) {
+        let mut own = self.terms.clone();
+        own.retain(|t| !t.effect.needs_prediction());
+        let all = std::mem::replace(&mut self.terms, own.clone());
+        let mut predicted = Design::new(self).shared;
+        self.spread(&predicted, &own);
+        self.terms = all;
+        if own.len() == self.terms.len() {
+            return;
+        }
+        for _ in 0..MOST_PREDICTIONS {
+            let together = Design::new(self);
+            let mut at = 0;
+            let mut kept = Vec::new();
+            for term in &self.terms {
+                let columns = term.effect.columns();
+                if !term.effect.needs_prediction() {
+                    kept.extend(at..at + columns);
+                }
+                at += columns;
+            }
+            let next = DVector::from_iterator(kept.len(), kept.iter().map(|k| together.shared[*k]));
+            let error = |k: usize| together.covariance[(k, k)].max(0.0).sqrt();
+            let moved = (next.iter().zip(&predicted).zip(&kept))
+                .any(|((next, before), k)| (next - before).abs() > SAME_PREDICTION * error(*k));
+            if !moved {
+                return;
+            }
+            self.spread(&next, &own);
+            predicted = next;
+        }
+    }
+
+    fn spread(&mut self, coefficients: &DVector<f64>, terms: &[BoundTerm]) {
+        self.predicted.clone_from(coefficients);
+        let sensor = self.facts.joint_torque;
+        let fitted = terms
+            .iter()
+            .position(|t| t.effect.description().id == "inertia_fit");
+        let given = self.facts.inertia;
+        let inertia = given.or_else(|| coefficients.get(fitted?).copied());
+        let (given, inertia) = (given.unwrap_or(0.0), inertia.unwrap_or(0.0));
+        let mut before = 0;
+        let mut load_slope = 0.0;
+        for term in terms {
+            if term.effect.description().id == "load_coulomb" {
+                load_slope = coefficients.get(before).copied().unwrap_or(0.0);
+            }
+            before += term.effect.columns();
+        }
+        let nudge = 1e-3 * self.facts.speed[1];
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            let friction = working(signals, terms, coefficients, |e| {
+                e.description().id != "inertia_fit"
+            });
+            let total = working(signals, terms, coefficients, |_| true);
+            let mut other = signals.clone();
+            let mut friction_at = |velocity: fn(&Point, f64) -> f64| {
+                for (point, measured) in other.points.iter_mut().zip(&signals.points) {
+                    point.velocity = velocity(measured, nudge);
+                }
+                working(&other, terms, coefficients, |e| {
+                    e.description().id != "inertia_fit"
+                })
+            };
+            let faster = friction_at(|point, nudge| point.velocity + nudge * point.sign());
+            let slowest = friction_at(|point, nudge| nudge * point.sign());
+            for (at, point) in signals.points.iter_mut().enumerate() {
+                point.friction_predicted = friction[at];
+                point.friction_level = slowest[at].abs();
+                point.load_slope = load_slope;
+                point.inertia = inertia;
+                point.friction_slope = if nudge > 0.0 {
+                    point.sign() * (faster[at] - friction[at]) / nudge
+                } else {
+                    0.0
+                };
+                point.motor_predicted =
+                    total[at] + given * point.acceleration + if sensor { point.load } else { 0.0 };
+            }
+        }
+    }
+}
+
+/// Sum of coefficients times columns at the working rate, of some effects.
+pub(crate) fn working(
+    signals: &Signals,
+    terms: &[BoundTerm],
+    coefficients: &DVector<f64>,
+    which: impl Fn(&EffectHandle) -> bool,
+) -> Vec<f64> {
+    let mut sum = vec![0.0; signals.points.len()];
+    let mut first = 0;
+    for term in terms {
+        let count = term.effect.columns();
+        if which(&term.effect) {
+            for (k, column) in columns::working(signals, &term.effect, &term.shape)
+                .iter()
+                .enumerate()
+            {
+                let c = coefficients.get(first + k).copied().unwrap_or(0.0);
+                sum.iter_mut().zip(column).for_each(|(s, x)| *s += c * x);
+            }
+        }
+        first += count;
+    }
+    sum
+}
+
+/// Central differences.
+fn slope(signal: &[f64], period: f64) -> Vec<f64> {
+    let last = signal.len().saturating_sub(1);
+    (0..signal.len())
+        .map(|at| {
+            let (before, after) = (at.saturating_sub(1), (at + 1).min(last));
+            let span = (after - before).max(1) as f64 * period;
+            (signal[after] - signal[before]) / span
+        })
+        .collect()
+}

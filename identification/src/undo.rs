@@ -1,0 +1,176 @@
+//! Effects that act on what is measured, taken out of the channels: a channel
+//! stamped late, a position measured behind a spring.
+//!
+//! A column says what such an effect does to the torque balance to first order.
+//! Where it is large, the channels are made what they are without it, and what the
+//! coefficients do beyond is linear again (Gauss and Newton's method).
+
+use nalgebra::DVector;
+
+use crate::design::Design;
+use crate::prediction::working;
+use crate::refine;
+use crate::setup::{BoundTerm, Setup};
+use crate::signals::{Channels, Signals};
+
+/// Steps, whole or halved, at most, …
+const MOST_STEPS: usize = 10;
+/// … and none after one that is shorter than this share of a standard error, …
+const SETTLED: f64 = 0.2;
+/// … or than this share of the whole one.
+const SHORTEST: f64 = 0.2;
+/// Share of a coefficient over which the columns are differences.
+const NUDGE: f64 = 1e-3;
+
+impl Setup {
+    /// Takes the model's effects that act on channels out of these, if that leaves
+    /// less than their columns do.
+    pub(crate) fn undo(&mut self) {
+        if !self.terms.iter().any(|t| t.effect.acts_on_channels()) {
+            return;
+        }
+        let mut design = Design::new(self);
+        let mut error = left(&design);
+        let mut share = 1.0;
+        for _ in 0..MOST_STEPS {
+            let next = self.next(&design.shared, share);
+            if share < SHORTEST || self.is_settled(&design) {
+                return;
+            }
+            let mut tried = self.clone();
+            tried.take_out(&next);
+            let then = Design::new(&tried);
+            let after = left(&then);
+            if after < error {
+                (*self, design, error, share) = (tried, then, after, 1.0);
+            } else {
+                share *= 0.5;
+            }
+        }
+    }
+
+    /// Coefficients of each effect that acts on channels, `share` of the way to the
+    /// fitted ones; none for other effects.
+    fn next(&self, fitted: &DVector<f64>, share: f64) -> Vec<Vec<f64>> {
+        let mut first = 0;
+        let mut next = Vec::new();
+        for term in &self.terms {
+            let columns = term.effect.columns();
+            next.push(match term.effect.acts_on_channels() {
+                true => (0..columns)
+                    .map(|k| {
+                        let before = term.undone.get(k).copied().unwrap_or(0.0);
+                        before + share * (fitted[first + k] - before)
+                    })
+                    .collect(),
+                false => Vec::new(),
+            });
+            first += columns;
+        }
+        next
+    }
+
+    fn is_settled(&self, design: &Design) -> bool {
+        let mut first = 0;
+        self.terms.iter().all(|term| {
+            let columns = first..first + term.effect.columns();
+            first = columns.end;
+            let settled = columns.zip(&term.undone).all(|(k, before)| {
+                let error = design.covariance[(k, k)].max(0.0).sqrt();
+                (design.shared[k] - before).abs() <= SETTLED * error
+            });
+            settled && (!term.effect.acts_on_channels() || !term.undone.is_empty())
+        })
+    }
+
+    /// Makes the channels what they are without the effects that act on them.
+    fn take_out(&mut self, coefficients: &[Vec<f64>]) {
+        for (term, own) in self.terms.iter_mut().zip(coefficients) {
+            term.undone.clone_from(own);
+        }
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            let (channels, lost) = undone(&self.terms, signals);
+            signals.jacobians.clear();
+            signals.take(channels, lost, &self.filters);
+        }
+        if self.reversals {
+            self.keep_reversals();
+        }
+        self.model_load();
+        self.predict();
+        self.differentiate();
+    }
+
+    /// Columns of the effects that are taken out: how the torque balance changes
+    /// with their coefficients.
+    fn differentiate(&mut self) {
+        let Self {
+            facts,
+            filters,
+            terms,
+            predicted,
+            ..
+        } = self;
+        let own: Vec<BoundTerm> = (terms.iter())
+            .filter(|t| !t.effect.needs_prediction())
+            .cloned()
+            .collect();
+        let inertia = facts.inertia.unwrap_or(0.0);
+        // τ + J q̈ + τ_F − τ_m.
+        let balance = |signals: &Signals| -> Vec<f64> {
+            let friction = working(signals, &own, predicted, |_| true);
+            let points = signals.points.iter().zip(friction);
+            points
+                .map(|(point, friction)| {
+                    let load = if facts.joint_torque { point.load } else { 0.0 };
+                    load + inertia * point.acceleration + friction - point.motor_torque
+                })
+                .collect()
+        };
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            let before = balance(signals);
+            for at in 0..terms.len() {
+                let columns = (0..terms[at].undone.len())
+                    .map(|k| {
+                        let coefficient = terms[at].undone[k];
+                        let nudge = NUDGE * coefficient.abs().max(1e-9);
+                        let mut nudged = terms.clone();
+                        nudged[at].undone[k] += nudge;
+                        let (channels, lost) = undone(&nudged, signals);
+                        let mut other = signals.clone();
+                        other.take(channels, lost, filters);
+                        if !facts.joint_torque {
+                            for (point, known) in other.points.iter_mut().zip(&signals.points) {
+                                point.load = known.load;
+                            }
+                        }
+                        let after = balance(&other);
+                        let both = after.iter().zip(&before);
+                        both.map(|(after, before)| (after - before) / nudge)
+                            .collect()
+                    })
+                    .collect();
+                let id = terms[at].effect.description().id.clone();
+                signals.jacobians.insert(id, columns);
+            }
+        }
+    }
+}
+
+/// The channels of a session without what `terms` do to them, and how many
+/// samples at the end say nothing then.
+fn undone(terms: &[BoundTerm], signals: &Signals) -> (Channels, usize) {
+    let mut channels = Channels::clone(&signals.recorded);
+    let mut lost = 0;
+    for term in terms.iter().filter(|t| !t.undone.is_empty()) {
+        let period = signals.period;
+        lost += (term.effect).undo(&term.shape, &term.undone, &mut channels, period);
+    }
+    (channels, lost)
+}
+
+/// Squared error that the model leaves, each session with its own parameters.
+fn left(design: &Design) -> f64 {
+    let left = refine::within(design, &design.own());
+    left.square() / left.rows.max(1) as f64
+}
