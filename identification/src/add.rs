@@ -51,12 +51,9 @@ pub fn add(dataset: &Dataset, spec: &ModelSpec, effect: &Term) -> Result<Additio
         }
         _ => model.effects.push(effect.clone()),
     }
-    let mut before = Setup::new(dataset, spec)?;
     let setup = Setup::new(dataset, &model)?;
     // Both on the rows that the new model is fitted to.
-    if setup.terms.iter().any(|t| t.effect.shows_at_turns()) {
-        before = before.with_reversals();
-    }
+    let before = Setup::new(dataset, spec)?.on_rows_of(&setup);
     let before = fit(&before, &Design::new(&before));
     let after = fit(&setup, &Design::new(&setup));
     Ok(Addition {

@@ -311,15 +311,18 @@ fn describe(
 ) -> NamedCandidate {
     let term = BoundTerm::new(candidate.effect.clone(), candidate.shape.clone());
     // Before and after are told on the rows that a model with it is fitted to.
-    let (before, after) = if candidate.effect.shows_at_turns() {
-        let whole = setup.with_reversals();
-        let extended = whole.extended(term);
-        let before = fit(&whole, &Design::new(&whole)).held_out;
-        (before, fit(&extended, &Design::new(&extended)))
-    } else {
-        let extended = setup.extended(term);
-        (base.held_out, fit(&extended, &Design::new(&extended)))
+    let extended = match candidate.effect.shows_at_turns() {
+        true => setup.with_reversals().extended(term),
+        false => setup.extended(term),
     };
+    let before = match extended.rows().eq(setup.rows()) {
+        true => base.held_out,
+        false => {
+            let same = setup.clone().on_rows_of(&extended);
+            fit(&same, &Design::new(&same)).held_out
+        }
+    };
+    let after = fit(&extended, &Design::new(&extended));
     let id = candidate.id();
     let like = family::of(design, candidate, passing, &trial.candidates);
     NamedCandidate {

@@ -57,6 +57,7 @@ impl Setup {
         if acts_on_channels {
             extended.undo();
         }
+        extended.leave_out_breaks();
         extended
     }
 }

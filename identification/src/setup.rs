@@ -10,6 +10,7 @@ use crate::design::Design;
 use crate::effects::{self, EffectHandle, Facts};
 use crate::error::PrepareError;
 use crate::expression::Compiled;
+use crate::filter::Kernel;
 use crate::refine;
 use crate::signals::{Filters, RESOLVED, Signals, quantile};
 
@@ -112,6 +113,7 @@ impl Setup {
         setup.model_load();
         setup.predict();
         setup.undo();
+        setup.find_shapes_between_breaks();
         Ok(setup)
     }
 
@@ -221,6 +223,62 @@ impl Setup {
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             signals.rows.clone_from(&signals.turning_rows);
         }
+    }
+
+    /// Leaves rows with breaks out, and finds the shapes of the effects that break
+    /// there again: a break says little of these, and much that is wrong.
+    fn find_shapes_between_breaks(&mut self) {
+        let all: Vec<Vec<usize>> = self.rows().map(<[usize]>::to_vec).collect();
+        self.leave_out_breaks();
+        if self.rows().eq(all.iter().map(Vec::as_slice)) {
+            return;
+        }
+        for at in 0..self.terms.len() {
+            let mut term = self.terms.remove(at);
+            let mut sessions = self.sessions.iter();
+            if sessions.any(|s| !term.effect.breaks(&term.shape, &s.points).is_empty()) {
+                let design = Design::new(self);
+                term.shape = refine::polish(self, &design, &term.effect, &term.shape);
+            }
+            self.terms.insert(at, term);
+        }
+        let sessions = self.sessions.iter_mut().chain(&mut self.held_out);
+        for (signals, rows) in sessions.zip(all) {
+            signals.rows = rows;
+        }
+        self.predict();
+        self.leave_out_breaks();
+    }
+
+    /// Leaves out the rows that reach to where an effect of the model breaks.
+    pub(crate) fn leave_out_breaks(&mut self) {
+        let reach = Kernel::reach(self.filters.column);
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            for term in &self.terms {
+                let breaks = term.effect.breaks(&term.shape, &signals.points);
+                signals.rows.retain(|row| {
+                    let after = breaks.partition_point(|at| at + reach < *row);
+                    breaks.get(after).is_none_or(|at| *at > row + reach)
+                });
+            }
+        }
+    }
+
+    /// Rows of each session.
+    pub fn rows(&self) -> impl Iterator<Item = &[usize]> {
+        let all = self.sessions.iter().chain(&self.held_out);
+        all.map(|signals| signals.rows.as_slice())
+    }
+
+    /// The same with the rows of `other`.
+    #[must_use]
+    pub fn on_rows_of(mut self, other: &Self) -> Self {
+        let own = self.sessions.iter_mut().chain(&mut self.held_out);
+        let theirs = other.sessions.iter().chain(&other.held_out);
+        for (own, theirs) in own.zip(theirs) {
+            own.rows.clone_from(&theirs.rows);
+        }
+        self
     }
 
     /// Finds the shape of the model's own effects, one after the other: one depends

@@ -107,6 +107,21 @@ impl Effect for Backlash {
         *c = memory[FRICTION] - point.friction_predicted;
     }
 
+    // Where the teeth meet again, the inertia of a gear whose speed nobody measures
+    // decides what the motor feels.
+    fn breaks(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
+        let mut memory = Memory::default();
+        let mut meets = Vec::new();
+        for (at, point) in points.iter().enumerate() {
+            let was_free = memory[FREE] != 0.0;
+            self.evaluate(shape, point, &mut memory, &mut [0.0]);
+            if was_free && memory[FREE] == 0.0 {
+                meets.push(at);
+            }
+        }
+        meets
+    }
+
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
         let [gaps, bends] = [0, 1].map(|at| self.bounds(facts)[at]);
         logarithmic(gaps[0], gaps[1], 16)

@@ -322,6 +322,13 @@ pub trait Effect: Send + Sync {
         false
     }
 
+    /// Samples at which what it does depends on more than is measured: rows of
+    /// the regression that reach there are left out of a model that has it.
+    fn breaks(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
+        let _ = (shape, points);
+        Vec::new()
+    }
+
     /// Whether its columns need the model's own prediction.
     fn needs_prediction(&self) -> bool {
         false
