@@ -400,13 +400,14 @@ fn blind_on_recordings_that_nobody_has_seen() {
         ("right_first", "0.5", 0.80),
         ("in_family", "1", 0.99),
         // Too few sessions prove little of temperature and date.
-        ("in_family", "0.5", 0.90),
+        ("in_family", "0.5", 0.95),
+        ("in_family", "0.25", 0.90),
         ("at_least_suspected", "0.5", 0.95),
         ("at_least_suspected", "0.25", 0.90),
         ("unknown_not_named", "1", 0.95),
         ("unknown_not_named", "0.5", 0.95),
-        ("as_good_as_true", "1", 0.80),
-        ("as_good_as_true", "0.5", 0.90),
+        ("as_good_as_true", "1", 0.90),
+        ("as_good_as_true", "0.5", 0.95),
     ] {
         let found = share(&told[row][strength]);
         assert!(
