@@ -9,9 +9,11 @@ use crate::setup::{BoundTerm, Setup};
 use crate::signals::Signals;
 
 /// Fits of a model whose effects act on its own prediction, at most, …
-const MOST_PREDICTIONS: usize = 12;
+const MOST_PREDICTIONS: usize = 20;
 /// … and none after one that moves no parameter by this share of its standard error.
-const SAME_PREDICTION: f64 = 0.1;
+const SAME_PREDICTION: f64 = 0.02;
+/// Steps that one fit may go on for.
+const LONGEST_STRIDE: f64 = 20.0;
 
 impl Setup {
     /// Without a torque sensor the load of a joint is what inertia, gravity and
@@ -55,27 +57,48 @@ impl Setup {
         if own.len() == self.terms.len() {
             return;
         }
+        // Where a prediction mostly repeats itself, as where a sensor is clipped,
+        // step by step it creeps: Aitken's relaxation goes on as far as two steps
+        // say.
+        let mut before: Option<DVector<f64>> = None;
+        let mut stride = 1.0;
         for _ in 0..MOST_PREDICTIONS {
             let together = Design::new(self);
-            let mut at = 0;
-            let mut kept = Vec::new();
-            for term in &self.terms {
-                let columns = term.effect.columns();
-                if !term.effect.needs_prediction() {
-                    kept.extend(at..at + columns);
-                }
-                at += columns;
+            let kept = self.predicting_columns();
+            let error = |k: &usize| together.covariance[(*k, *k)].max(1e-300).sqrt();
+            let step = DVector::from_iterator(
+                kept.len(),
+                (kept.iter().zip(&predicted))
+                    .map(|(k, own)| (together.shared[*k] - own) / error(k)),
+            );
+            if let Some(before) = &before {
+                let change = &step - before;
+                let along = -stride * before.dot(&change) / change.norm_squared().max(1e-300);
+                stride = along.clamp(1.0, LONGEST_STRIDE);
             }
-            let next = DVector::from_iterator(kept.len(), kept.iter().map(|k| together.shared[*k]));
-            let error = |k: usize| together.covariance[(k, k)].max(0.0).sqrt();
-            let moved = (next.iter().zip(&predicted).zip(&kept))
-                .any(|((next, before), k)| (next - before).abs() > SAME_PREDICTION * error(*k));
-            if !moved {
+            for ((own, step), k) in predicted.iter_mut().zip(&step).zip(&kept) {
+                *own += stride * step * error(k);
+            }
+            self.spread(&predicted, &own);
+            if step.amax() < SAME_PREDICTION {
                 return;
             }
-            self.spread(&next, &own);
-            predicted = next;
+            before = Some(step);
         }
+    }
+
+    /// Columns of the terms that need no prediction.
+    fn predicting_columns(&self) -> Vec<usize> {
+        let mut at = 0;
+        let mut kept = Vec::new();
+        for term in &self.terms {
+            let columns = at..at + term.effect.columns();
+            at = columns.end;
+            if !term.effect.needs_prediction() {
+                kept.extend(columns);
+            }
+        }
+        kept
     }
 
     fn spread(&mut self, coefficients: &DVector<f64>, terms: &[BoundTerm]) {

@@ -76,13 +76,18 @@ enum Action {
         #[arg(long, value_delimiter = ',', default_values_t = [1.0, 0.5, 0.25])]
         strengths: Vec<f64>,
 
-        /// Recordings that hide nothing.
-        #[arg(long, default_value_t = 400)]
-        nothing: usize,
+        /// Only the recordings that hide this effect (can be given several times),
+        /// with the seeds that they have among all.
+        #[arg(long, value_name = "EFFECT")]
+        hide: Vec<String>,
 
-        /// Recordings that hide two effects at once.
-        #[arg(long, default_value_t = 40)]
-        two: usize,
+        /// Recordings that hide nothing [default: 400; 0 with --hide].
+        #[arg(long)]
+        nothing: Option<usize>,
+
+        /// Recordings that hide two effects at once [default: 40; 0 with --hide].
+        #[arg(long)]
+        two: Option<usize>,
 
         /// Seed of the first recording.
         #[arg(long, default_value_t = 1)]
@@ -124,18 +129,23 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             contact,
             repeats,
             strengths,
+            hide,
             nothing,
             two,
             seed,
         } => {
+            let of_all = |count: usize| if hide.is_empty() { count } else { 0 };
             let plan = Plan {
                 seed,
                 repeats,
                 strengths,
-                nothing,
-                two,
+                nothing: nothing.unwrap_or(of_all(400)),
+                two: two.unwrap_or(of_all(40)),
             };
-            blind(&plan, contact, json)
+            match contact {
+                true => blind::<contact_bench::HiddenEffect>(&plan, &hide, json),
+                false => blind::<joint_bench::HiddenEffect>(&plan, &hide, json),
+            }
         }
     }
 }
@@ -194,16 +204,15 @@ fn reveal(folder: &Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn blind(plan: &Plan, contact: bool, json: bool) -> Result<ExitCode, Failure> {
+fn blind<H: TestBench>(plan: &Plan, hide: &[String], json: bool) -> Result<ExitCode, Failure> {
+    let only: Result<Vec<H>, BenchError> = hide.iter().map(|id| id.parse()).collect();
+    let only = only.map_err(Failure::refused)?;
     let bar = ProgressBar::new(0);
     let progress = |done: usize, all: usize| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     };
-    let test = match contact {
-        true => challenge::blind_test::<contact_bench::HiddenEffect>(plan, &progress),
-        false => challenge::blind_test::<joint_bench::HiddenEffect>(plan, &progress),
-    };
+    let test = challenge::blind_test(plan, &only, &progress);
     bar.finish_and_clear();
     let test = test.map_err(Failure::refused)?;
     if json {

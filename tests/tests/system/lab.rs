@@ -5,7 +5,7 @@ use std::fs;
 use ferntast_tests::{Ended, Process, Session, data};
 use serde_json::{Value, json};
 
-use crate::support::{number, refused, run};
+use crate::support::{PATIENCE, number, refused, run};
 
 fn hidden(name: &str) -> String {
     let path = data().join("hidden").join(name);
@@ -368,6 +368,36 @@ fn a_challenge_is_made_solved_and_revealed() {
         &["challenge", "reveal", "nowhere", "x"],
         &["nowhere"],
     );
+    refused(
+        &session,
+        &["challenge", "blind", "--hide", "magic"],
+        &["magic", "stribeck"],
+    );
+}
+
+#[test]
+fn blind_on_one_effect_asks_for_that_alone() {
+    let session = Session::new();
+    let arguments = [
+        "challenge",
+        "blind",
+        "--hide",
+        "ripple",
+        "--repeats",
+        "1",
+        "--strengths",
+        "1",
+        "--seed",
+        "3",
+        "--json",
+    ];
+    let told = Process::spawn(session.ferntast(&arguments))
+        .wait(PATIENCE)
+        .success()
+        .json();
+    assert_eq!(told["right_first"]["1"], json!({"found": 1, "tried": 1}));
+    assert_eq!(number(&told["false_alarms"], "tried"), 0.0);
+    assert_eq!(number(&told["one_of_two"], "tried"), 0.0);
 }
 
 #[test]

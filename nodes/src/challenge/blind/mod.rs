@@ -40,7 +40,9 @@ struct Case<H> {
 }
 
 impl Plan {
-    fn cases<H: TestBench>(&self) -> Vec<Case<H>> {
+    /// All recordings with one effect hidden, those of `only` where it names any,
+    /// and those with none.
+    fn cases<H: TestBench>(&self, only: &[H]) -> Vec<Case<H>> {
         let mut cases = Vec::new();
         for repeat in 0..self.repeats as u64 {
             for &hidden in H::ALL {
@@ -56,6 +58,8 @@ impl Plan {
                 }
             }
         }
+        let asked = |hidden: H| only.is_empty() || only.contains(&hidden);
+        cases.retain(|case: &Case<H>| case.hidden.is_some_and(asked));
         let first = self.seed.wrapping_add(1_000_000);
         cases.extend((0..self.nothing as u64).map(|index| Case {
             hidden: None,
@@ -66,7 +70,8 @@ impl Plan {
     }
 }
 
-/// Puts every recording of `plan` to the diagnosis, on all processors.
+/// Puts every recording of `plan` to the diagnosis, on all processors; of those
+/// with one effect hidden only such as hide one of `only`, unless that is empty.
 /// `progress` is told how many of how many are done.
 ///
 /// # Errors
@@ -74,9 +79,10 @@ impl Plan {
 /// A recording that cannot be made or diagnosed, with what it hid.
 pub fn run<H: TestBench>(
     plan: &Plan,
+    only: &[H],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<BlindTest, String> {
-    let cases = plan.cases::<H>();
+    let cases = plan.cases(only);
     let next = AtomicUsize::new(0);
     let answers = Mutex::new(Vec::new());
     let workers = thread::available_parallelism().map_or(1, usize::from);
