@@ -204,4 +204,24 @@ mod tests {
         let follows = reaches(30.0, 18.0, there_and_back());
         assert!(follows[32..].iter().all(|f| (f + 15.0).abs() < 0.1));
     }
+    #[test]
+    fn it_breaks_where_the_teeth_meet_again() {
+        let point = |velocity: f64| Point {
+            period: 1e-3 / 0.05,
+            velocity,
+            motor_torque: 20.0 * velocity,
+            friction_predicted: 20.0 * sign(velocity),
+            friction_level: 20.0,
+            ..Point::default()
+        };
+        // From the middle of a gap of 20 mrad, 1 mrad a sample; back after 30.
+        let points: Vec<Point> = (0..60)
+            .map(|at| point(if at < 30 { 0.05 } else { -0.05 }))
+            .collect();
+        let meets = Backlash::default().breaks(&[0.02, 1e-5], &points);
+        let [first, second] = meets[..] else {
+            panic!("{meets:?}");
+        };
+        assert!((8..=11).contains(&first) && (48..=51).contains(&second));
+    }
 }
