@@ -1,7 +1,7 @@
 //! Every effect that the model lacks, tried on the same rows.
 
 use crate::design::{BlockGrams, Design};
-use crate::effects::{self, EffectHandle};
+use crate::effects::{self, EffectHandle, parts};
 use crate::periodic;
 use crate::refine;
 use crate::scatter::trend;
@@ -74,26 +74,18 @@ impl Trial {
 /// part of one it has.
 #[must_use]
 pub fn missing(setup: &Setup) -> Vec<EffectHandle> {
-    let contained: [(&str, &[&str]); 5] = [
-        ("nonlinear_viscous", &["quadratic_viscous", "cubic_viscous"]),
-        (
-            "cable_spring",
-            &["asymmetric_coulomb", "torque_sensor_offset"],
-        ),
-        ("gravity", &[]),
-        ("asymmetric_coulomb", &["torque_sensor_offset"]),
-        ("torque_sensor_offset", &["asymmetric_coulomb"]),
-    ];
+    let has_whole = |id: &str| {
+        let mut own = setup.terms.iter().map(|t| &t.effect.description().id);
+        own.any(|whole| parts::has(whole, id))
+    };
+    // The step from equation (3) to (4) of the paper is both or one of them.
+    let has_part = |id: &str| id == "nonlinear_viscous" && parts::of(id).any(|p| setup.has(p));
     effects::of(setup.facts.joint.subject())
         .into_iter()
         .filter(|effect| {
             let id = effect.description().id.as_str();
-            let part = contained
-                .iter()
-                .any(|(whole, parts)| setup.has(whole) && parts.contains(&id));
-            let parts_there = id == "nonlinear_viscous"
-                && (setup.has("quadratic_viscous") || setup.has("cubic_viscous"));
-            !setup.has(id) && !part && !parts_there && effect.unavailable(&setup.facts).is_none()
+            let there = setup.has(id) || has_whole(id) || has_part(id);
+            !there && effect.unavailable(&setup.facts).is_none()
         })
         .collect()
 }

@@ -4,7 +4,7 @@
 
 use crate::candidates::Candidate;
 use crate::design::Design;
-use crate::effects::{Effect, EffectDescription, EffectHandle, MOST_COLUMNS, Memory, Point};
+use crate::effects::{Effect, EffectDescription, EffectHandle, MOST_COLUMNS, Memory, Point, parts};
 use crate::family::as_good;
 use crate::setup::Setup;
 use crate::validation::beside;
@@ -13,14 +13,6 @@ use crate::validation::beside;
 const ADDS: f64 = 1e-4;
 /// … and what adds nothing with this at least.
 const ADDS_NOTHING: f64 = 0.01;
-
-/// A whole, a part of it, and the column that the whole has beyond the part.
-const PARTS: [(&str, &str, usize); 4] = [
-    ("cable_spring", "asymmetric_coulomb", 0),
-    ("cable_spring", "torque_sensor_offset", 0),
-    ("nonlinear_viscous", "quadratic_viscous", 1),
-    ("nonlinear_viscous", "cubic_viscous", 0),
-];
 
 /// One column of an effect.
 struct Beyond {
@@ -61,12 +53,8 @@ fn adds(
     beside(design, &design.with(&columns), first.effect.columns())
 }
 
-/// The column that `whole` has beyond `part`, where it has `part` among its own.
 fn beyond(whole: &Candidate, part: &Candidate) -> Option<usize> {
-    let (.., column) = PARTS
-        .iter()
-        .find(|(w, p, _)| *w == whole.id() && *p == part.id())?;
-    Some(*column)
+    parts::column_beyond(whole.id(), part.id())
 }
 
 /// Leaves out of `passing` what is one of the others with a term too many: a

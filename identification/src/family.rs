@@ -2,6 +2,7 @@
 
 use crate::candidates::Candidate;
 use crate::design::{Design, columns};
+use crate::effects::parts;
 use crate::proposal::Proposal;
 use crate::setup::Setup;
 use crate::statistics::mean_error;
@@ -118,9 +119,9 @@ pub fn of<'a>(
     tried: &'a [Candidate],
 ) -> Vec<&'a Candidate> {
     // The step from equation (3) to (4) of the paper is these two together.
-    let parts: &[&str] = match candidate.id() {
-        "nonlinear_viscous" => &["quadratic_viscous", "cubic_viscous"],
-        _ => &[],
+    let parts: Vec<&str> = match candidate.id() {
+        whole @ "nonlinear_viscous" => parts::of(whole).collect(),
+        _ => Vec::new(),
     };
     let mut like: Vec<&Candidate> = passing
         .iter()

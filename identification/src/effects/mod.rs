@@ -29,6 +29,7 @@ mod load_coulomb;
 mod local_friction;
 mod motor_constant;
 mod nonlinear_viscous;
+pub(crate) mod parts;
 mod presliding_hysteresis;
 mod quadratic_viscous;
 mod ripple;

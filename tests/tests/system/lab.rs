@@ -230,7 +230,7 @@ fn real_recordings_are_identified() {
             "FERNTAST_DATA",
             data().canonicalize().expect("the recordings"),
         );
-        Process::spawn(command).wait(crate::support::PATIENCE)
+        Process::spawn(command).wait(PATIENCE)
     };
     let told = environment(&["lab", "compare", emps, "--json"])
         .success()
