@@ -5,6 +5,8 @@
 //! Where it is large, the channels are made what they are without it, and what the
 //! coefficients do beyond is linear again (Gauss and Newton's method).
 
+use std::iter::repeat;
+
 use nalgebra::DVector;
 
 use crate::design::Design;
@@ -19,6 +21,9 @@ const MOST_STEPS: usize = 10;
 const SETTLED: f64 = 0.2;
 /// … or than this share of the whole one.
 const SHORTEST: f64 = 0.2;
+/// Share of the rows that a step leaves at least: what comes too late is lost at
+/// the end.
+const LEAST_KEPT: f64 = 0.9;
 /// Share of a coefficient over which the columns are differences.
 const NUDGE: f64 = 1e-3;
 
@@ -30,18 +35,20 @@ impl Setup {
             return;
         }
         let mut design = Design::new(self);
-        let mut error = left(&design);
+        let (mut error, rows) = left(&design);
         let mut share = 1.0;
         for _ in 0..MOST_STEPS {
-            let next = self.next(&design.shared, share);
             if share < SHORTEST || self.is_settled(&design) {
                 return;
             }
+            let Some(next) = self.next(&design.shared, share) else {
+                return;
+            };
             let mut tried = self.clone();
             tried.take_out(&next);
             let then = Design::new(&tried);
-            let after = left(&then);
-            if after < error {
+            let (after, kept) = left(&then);
+            if after < error && kept as f64 > LEAST_KEPT * rows as f64 {
                 (*self, design, error, share) = (tried, then, after, 1.0);
             } else {
                 share *= 0.5;
@@ -50,24 +57,23 @@ impl Setup {
     }
 
     /// Coefficients of each effect that acts on channels, `share` of the way to the
-    /// fitted ones; none for other effects.
-    fn next(&self, fitted: &DVector<f64>, share: f64) -> Vec<Vec<f64>> {
+    /// fitted ones; none for other effects. `None` where they make no sense.
+    fn next(&self, fitted: &DVector<f64>, share: f64) -> Option<Vec<Vec<f64>>> {
         let mut first = 0;
-        let mut next = Vec::new();
-        for term in &self.terms {
-            let columns = term.effect.columns();
-            next.push(match term.effect.acts_on_channels() {
-                true => (0..columns)
-                    .map(|k| {
-                        let before = term.undone.get(k).copied().unwrap_or(0.0);
-                        before + share * (fitted[first + k] - before)
-                    })
-                    .collect(),
-                false => Vec::new(),
-            });
-            first += columns;
-        }
-        next
+        let each = self.terms.iter().map(|term| {
+            let columns = first..first + term.effect.columns();
+            first = columns.end;
+            if !term.effect.acts_on_channels() {
+                return Some(Vec::new());
+            }
+            let before = term.undone.iter().copied().chain(repeat(0.0));
+            let next: Vec<f64> = columns
+                .zip(before)
+                .map(|(k, before)| before + share * (fitted[k] - before))
+                .collect();
+            term.effect.plausible(&term.shape, &next).then_some(next)
+        });
+        each.collect()
     }
 
     fn is_settled(&self, design: &Design) -> bool {
@@ -104,17 +110,9 @@ impl Setup {
     /// Columns of the effects that are taken out: how the torque balance changes
     /// with their coefficients.
     fn differentiate(&mut self) {
-        let Self {
-            facts,
-            filters,
-            terms,
-            predicted,
-            ..
-        } = self;
-        let own: Vec<BoundTerm> = (terms.iter())
-            .filter(|t| !t.effect.needs_prediction())
-            .cloned()
-            .collect();
+        let mut own = self.terms.clone();
+        own.retain(|t| !t.effect.needs_prediction());
+        let (facts, predicted) = (&self.facts, &self.predicted);
         let inertia = facts.inertia.unwrap_or(0.0);
         // τ + J q̈ + τ_F − τ_m.
         let balance = |signals: &Signals| -> Vec<f64> {
@@ -127,31 +125,36 @@ impl Setup {
                 })
                 .collect()
         };
+        let nudged = |signals: &Signals, terms: &[BoundTerm]| {
+            let (channels, lost) = undone(terms, signals);
+            let mut nudged = signals.clone();
+            nudged.take(channels, lost, &self.filters);
+            if !facts.joint_torque {
+                for (point, known) in nudged.points.iter_mut().zip(&signals.points) {
+                    point.load = known.load;
+                }
+            }
+            balance(&nudged)
+        };
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             let before = balance(signals);
-            for at in 0..terms.len() {
-                let columns = (0..terms[at].undone.len())
-                    .map(|k| {
-                        let coefficient = terms[at].undone[k];
-                        let nudge = NUDGE * coefficient.abs().max(1e-9);
-                        let mut nudged = terms.clone();
-                        nudged[at].undone[k] += nudge;
-                        let (channels, lost) = undone(&nudged, signals);
-                        let mut other = signals.clone();
-                        other.take(channels, lost, filters);
-                        if !facts.joint_torque {
-                            for (point, known) in other.points.iter_mut().zip(&signals.points) {
-                                point.load = known.load;
-                            }
-                        }
-                        let after = balance(&other);
-                        let both = after.iter().zip(&before);
+            for (at, term) in self.terms.iter().enumerate() {
+                let mut columns = Vec::new();
+                for (k, coefficient) in term.undone.iter().enumerate() {
+                    let nudge = NUDGE * coefficient.abs().max(1e-9);
+                    let mut terms = self.terms.clone();
+                    terms[at].undone[k] += nudge;
+                    let after = nudged(signals, &terms);
+                    let both = after.iter().zip(&before);
+                    columns.push(
                         both.map(|(after, before)| (after - before) / nudge)
-                            .collect()
-                    })
-                    .collect();
-                let id = terms[at].effect.description().id.clone();
-                signals.jacobians.insert(id, columns);
+                            .collect(),
+                    );
+                }
+                if !columns.is_empty() {
+                    let id = term.effect.description().id.clone();
+                    signals.jacobians.insert(id, columns);
+                }
             }
         }
     }
@@ -169,10 +172,11 @@ fn undone(terms: &[BoundTerm], signals: &Signals) -> (Channels, usize) {
     (channels, lost)
 }
 
-/// Squared error that the model leaves, each session with its own parameters.
-fn left(design: &Design) -> f64 {
+/// Mean square that the model leaves, each session with its own parameters, and
+/// of how many rows.
+fn left(design: &Design) -> (f64, usize) {
     let left = refine::within(design, &design.own());
-    left.square() / left.rows.max(1) as f64
+    (left.square() / left.rows.max(1) as f64, left.rows)
 }
 
 #[cfg(test)]

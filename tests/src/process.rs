@@ -70,6 +70,14 @@ impl Process {
     /// It cannot be started.
     pub fn spawn(mut command: Command) -> Process {
         let name = format!("{command:?}");
+        // A shell starts what runs in the background deaf to Ctrl-C.
+        // SAFETY: signal takes no pointers here; it may be called after fork.
+        unsafe {
+            command.pre_exec(|| {
+                libc::signal(libc::SIGINT, libc::SIG_DFL);
+                Ok(())
+            });
+        }
         let mut child = command
             .process_group(0)
             .stdin(Stdio::null())
