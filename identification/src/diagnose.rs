@@ -77,7 +77,8 @@ pub struct NamedCandidate {
     pub held_out_before: f64,
     /// With it \[Nm\].
     pub held_out_after: f64,
-    /// p-value by leaving blocks out in turn, corrected for all variants tried.
+    /// p-value by leaving blocks out in turn, or by scatter between sessions, corrected
+    /// for all variants tried.
     pub p_value: f64,
     /// Share of the residual's mean square that it explains on rows left out.
     pub share: f64,
@@ -97,7 +98,7 @@ pub struct NamedCandidate {
 pub struct Suspect {
     /// Its id.
     pub effect: String,
-    /// p-value by leaving sessions out in turn, not corrected for what was tried.
+    /// p-value by scatter between sessions, not corrected for what was tried.
     pub p_value: f64,
     /// Share of the residual's mean square that it explains on rows left out.
     pub share: f64,

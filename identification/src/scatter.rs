@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 use crate::design::{BlockGrams, Design};
 use crate::gram::{Gram, pseudo_inverse};
 use crate::setup::Setup;
-use crate::statistics::f_tail;
+use crate::statistics::{f_tail, mean_error};
 
 /// What scales together.
 const PARTS: [&[&str]; 5] = [
@@ -84,10 +84,8 @@ impl Scales {
     /// Variance of part number `at` over the sessions around their mean.
     fn variance(&self, at: usize) -> Option<f64> {
         let scales: Vec<f64> = self.sessions.iter().filter_map(|s| s[at]).collect();
-        let count = scales.len() as f64;
-        let mean = scales.iter().sum::<f64>() / count;
-        (scales.len() >= FEWEST)
-            .then(|| scales.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (count - 1.0))
+        let (_, error) = mean_error(&scales);
+        (scales.len() >= FEWEST).then_some(error * error * scales.len() as f64)
     }
 }
 
