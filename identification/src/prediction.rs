@@ -23,8 +23,7 @@ impl Setup {
             return;
         }
         for _ in 0..2 {
-            let design = Design::new(self);
-            let coefficients = design.total().solve();
+            let coefficients = Design::new(self).shared;
             let (inertia, terms) = (self.facts.inertia, &self.terms);
             for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
                 let load = working(signals, terms, &coefficients, |effect| {

@@ -203,9 +203,8 @@ impl Setup {
     /// where the model does not have it.
     #[must_use]
     pub fn coefficient(&self, id: &str) -> f64 {
-        let all = Design::new(self).total().solve();
         self.first_column(id)
-            .and_then(|at| all.get(at).copied())
+            .and_then(|at| Design::new(self).shared.get(at).copied())
             .unwrap_or(0.0)
     }
 

@@ -176,19 +176,11 @@ impl Filters {
         }
     }
 
-    /// Smoothing of states, and their first two derivatives.
-    fn state_kernels(&self, period: f64) -> [Kernel; 3] {
+    /// Smoothing of states by this `width`, and their first two derivatives.
+    fn state_kernels(&self, width: f64, period: f64) -> [Kernel; 3] {
         match &self.stated {
             Some(filter) => filter.states(period),
-            None => [0, 1, 2].map(|order| Kernel::sharp(self.state, order, period)),
-        }
-    }
-
-    /// The same of the load.
-    fn load_kernels(&self, period: f64) -> [Kernel; 3] {
-        match &self.stated {
-            Some(filter) => filter.states(period),
-            None => [0, 1, 2].map(|order| Kernel::sharp(self.load, order, period)),
+            None => [0, 1, 2].map(|order| Kernel::sharp(width, order, period)),
         }
     }
 
@@ -225,7 +217,7 @@ impl Signals {
             ),
         };
         let raw = Arc::new(raw);
-        let [smooth, ..] = filters.state_kernels(period);
+        let [smooth, ..] = filters.state_kernels(filters.state, period);
         let temperature = session.temperature.as_ref().map(|s| thin(s));
         let days = session.start / SECONDS_PER_DAY;
         let points = (0..raw.position.len())
@@ -272,8 +264,8 @@ impl Signals {
     /// States and rows from the channels.
     fn derive(&mut self, filters: &Filters, load: &[f64], lost: usize) {
         let raw = &self.raw;
-        let [smooth, slope, curvature] = filters.state_kernels(self.period);
-        let [_, load_rate, load_jerk] = filters.load_kernels(self.period);
+        let [smooth, slope, curvature] = filters.state_kernels(filters.state, self.period);
+        let [_, load_rate, load_jerk] = filters.state_kernels(filters.load, self.period);
         for (at, point) in self.points.iter_mut().enumerate() {
             point.position = smooth.at(&raw.position, at);
             point.velocity = slope.at(&raw.position, at);
