@@ -94,7 +94,10 @@ pub struct LockstepSession {
 }
 
 /// Puts a node on the bus and among the executor's tasks.
-pub(crate) fn add<P: Ports + 'static>(
+/// # Errors
+///
+/// A topic that cannot be opened.
+pub fn add<P: Ports + 'static>(
     executor: &mut Lockstep<'static, Bus>,
     bus: &Bus,
     name: NodeName,

@@ -9,9 +9,10 @@ use ferntast_bus::{
     Bus, CreateError, OpenError, SharedMemoryBus, SharedMemoryConfig,
     frames::{LinkDirection, LinkEndpoint, ZenohLink, ZenohLinkConfig},
 };
+use ferntast_emulation::channel::ChannelConfig;
 use ferntast_model::ParameterError;
 use ferntast_msgs::sample::{Fault, Faults};
-use ferntast_sim::{arm::SimulatedArmError, channel::ChannelConfig};
+use ferntast_sim::arm::SimulatedArmError;
 
 use crate::{
     arm::{ArmNode, ArmPorts},
