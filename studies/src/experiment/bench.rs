@@ -20,12 +20,12 @@ use ferntast_nodes::{
     arm::{ArmNode, ArmPorts},
     carry::{Carrier, Carry, Stamp},
     estimator::{EstimatorNode, EstimatorPorts},
-    lockstep::add,
+    lockstep::{Lockstep, add},
     node_name::NodeName,
     process::PERIOD_NANOS,
     servo::{ServoNode, ServoPorts},
 };
-use ferntast_sim::{arm::ArmConfig, lockstep::Lockstep};
+use ferntast_sim::arm::ArmConfig;
 
 use super::{
     ExperimentError,

@@ -5,10 +5,11 @@ use std::{io, path::PathBuf};
 use ferntast_bus::CreateError;
 use ferntast_lab::recording::LoadError;
 use ferntast_model::{ParameterError, kinematics::InverseError};
-use ferntast_sim::{arm::SimulatedArmError, lockstep::LockstepError};
-
-use ferntast_nodes::config::ConfigError;
-use ferntast_nodes::lockstep::RunError;
+use ferntast_nodes::{
+    config::ConfigError,
+    lockstep::{LockstepError, RunError},
+};
+use ferntast_sim::arm::SimulatedArmError;
 
 /// Why an experiment cannot be run.
 #[derive(Debug, thiserror::Error)]
