@@ -1,34 +1,33 @@
 //! How long a recording of the joint bench takes: six sessions of about a minute.
 
-use criterion::{Criterion, criterion_group, criterion_main};
 use ferntast_benches::joint_bench::{Bench, BenchConfig, BenchError, HiddenEffect};
+use std::time::Instant;
 
-fn record(criterion: &mut Criterion) {
-    for (name, hidden) in [
-        ("nothing", vec![]),
-        ("ripple", vec![HiddenEffect::Ripple]),
-        (
-            "two",
-            vec![HiddenEffect::Backlash, HiddenEffect::ChannelDelay],
-        ),
-    ] {
-        let config = BenchConfig {
-            hidden,
-            ..BenchConfig::default()
-        };
-        let run = || -> Result<usize, BenchError> {
-            let recording = Bench::new(&config)?.record()?;
-            Ok(recording.sessions.iter().map(|s| s.time.len()).sum())
-        };
-        criterion.bench_function(&format!("joint_bench/record_{name}"), |bencher| {
-            bencher.iter(|| std::hint::black_box(run()));
-        });
+const RUNS: usize = 9;
+
+fn main() -> Result<(), BenchError> {
+    println!(
+        "{:<24} {:>8} {:>8} {:>8}   ms a recording, {RUNS} runs",
+        "hidden", "min", "median", "max"
+    );
+    report("nothing", &[])?;
+    report("ripple", &[HiddenEffect::Ripple])?;
+    report("two", &[HiddenEffect::Backlash, HiddenEffect::ChannelDelay])
+}
+
+fn report(name: &str, hidden: &[HiddenEffect]) -> Result<(), BenchError> {
+    let config = BenchConfig {
+        hidden: hidden.to_vec(),
+        ..BenchConfig::default()
+    };
+    let mut times = Vec::with_capacity(RUNS);
+    for _ in 0..RUNS {
+        let begun = Instant::now();
+        std::hint::black_box(Bench::new(&config)?.record()?);
+        times.push(begun.elapsed().as_secs_f64() * 1e3);
     }
+    times.sort_by(f64::total_cmp);
+    let (min, median, max) = (times[0], times[RUNS / 2], times[RUNS - 1]);
+    println!("{name:<24} {min:>8.1} {median:>8.1} {max:>8.1}");
+    Ok(())
 }
-
-criterion_group! {
-    name = benches;
-    config = Criterion::default().sample_size(10);
-    targets = record
-}
-criterion_main!(benches);
