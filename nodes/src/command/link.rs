@@ -13,7 +13,7 @@ use ferntast_msgs::{
 use serde_json::json;
 
 use super::{Failure, output::print_json};
-use crate::{clock::Clock, config::UnknownLaw};
+use crate::{config::UnknownLaw, process::Clock};
 
 /// Tell how the link of a running session does, or change its delay law.
 #[derive(Debug, clap::Args)]

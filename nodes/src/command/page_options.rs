@@ -6,7 +6,7 @@ use clap::Args;
 use ferntast_console::Listen;
 
 use super::Failure;
-use crate::session::ConsoleOptions;
+use crate::process::ConsoleOptions;
 
 /// Where the page is served, and to whom.
 #[derive(Debug, Args)]

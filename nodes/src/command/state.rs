@@ -11,7 +11,7 @@ use ferntast_msgs::topics::{self, Topic};
 use serde_json::json;
 
 use super::{Failure, output::print_json};
-use crate::clock::Clock;
+use crate::process::Clock;
 
 /// Tell the operating state of a running session, or change it.
 #[derive(Debug, clap::Args)]

@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ferntast_control::servo::ServoConfig;
 use ferntast_model::ParameterError;
 use ferntast_sim::{
     arm::ArmConfig,
@@ -236,6 +237,17 @@ pub fn read_hand_recording(path: &Path) -> Result<String, ConfigError> {
 }
 
 impl Loaded {
+    /// An arm and its servo with nobody who operates them, for experiments.
+    pub fn without_operator(arm: ArmConfig, servo: ServoConfig, seed: u64) -> Loaded {
+        Loaded {
+            path: String::new(),
+            scenario: Scenario::without_operator(servo, seed),
+            arm,
+            link: LinkConfig::default(),
+            hand_recording: None,
+        }
+    }
+
     /// Takes another channel.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use ferntast_console::{Listen, Server, server::Content};
 use serde_json::json;
 
 use super::super::{Failure, output::print_json, page_options::PageOptions};
-use crate::stop;
+use crate::process::stop_on_signals;
 
 /// Work in the browser: map signals, compare, diagnose, add, see the error fall.
 #[derive(Debug, clap::Args)]
@@ -24,7 +24,7 @@ pub struct Arguments {
 
 /// Serves until Ctrl-C.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let stop = stop_on_signals().map_err(Failure::failed)?;
     let page = arguments.page.console()?;
     let listen = Listen {
         address: page.listen,

@@ -9,7 +9,7 @@ use ferntast_msgs::{
 };
 
 use super::super::{Failure, output::print_json};
-use crate::{clock::Clock, servo::FrictionSummary};
+use crate::{process::Clock, servo::FrictionSummary};
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {

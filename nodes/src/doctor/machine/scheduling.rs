@@ -4,7 +4,7 @@ use std::io;
 
 use ferntast_msgs::Time;
 
-use crate::clock::Clock;
+use crate::process::Clock;
 
 use super::super::surroundings::WakeUps;
 
