@@ -3,7 +3,9 @@
 
 use std::{path::Path, time::Instant};
 
-use ferntast_nodes::{arm, config, lockstep::LockstepSession, process::SessionContext, session_graph};
+use ferntast_nodes::{
+    arm, config, lockstep::LockstepSession, process::SessionContext, session_graph,
+};
 
 /// Virtual time of one run \[s\].
 const SECONDS: f64 = 20.0;

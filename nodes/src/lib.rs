@@ -1,23 +1,18 @@
-//! The nodes, the graph that they make, their supervisor and the ferntast command.
+//! The nodes, their configuration, and what runs them: supervisor, lockstep, replay.
 
 pub mod arm;
 pub mod carry;
-pub mod challenge;
 mod choice_parameter;
-pub mod command;
 pub mod config;
 mod console;
-pub mod doctor;
 pub mod estimator;
-pub mod experiment;
 mod foxglove;
-mod gateway;
+pub mod gateway;
 pub mod graph;
 pub mod link;
 pub mod lockstep;
 pub mod master;
 pub mod node;
-pub mod paper;
 mod player;
 pub mod process;
 mod recorder;
@@ -25,7 +20,6 @@ mod relay;
 pub mod replay;
 pub mod servo;
 pub mod session;
-pub mod sweep;
 pub mod twin;
 
 use graph::{Graph, NodeRow, always, never};

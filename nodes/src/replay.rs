@@ -7,12 +7,12 @@ use ferntast_bus::{
     Bus, CreateError, Depth, McapBus, Subscriber,
     mcap::{self, BagReader},
 };
+use ferntast_emulation::channel::LinkConfig;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Message, Time,
     topics::{self, Topic, Visitor},
 };
-use ferntast_sim::channel::LinkConfig;
 use serde::Serialize;
 
 use crate::{

@@ -4,6 +4,7 @@
 use std::{fs, path::Path};
 
 use ferntast_bus::{Depth, Subscriber};
+use ferntast_emulation::hand::Motion;
 use ferntast_msgs::{
     sample::{Fault, FrictionCommand, JointSample},
     topics,
@@ -16,7 +17,6 @@ use ferntast_nodes::{
     servo::FrictionSummary,
     session_graph,
 };
-use ferntast_sim::hand::Motion;
 
 /// The joint of the tests, from 0.
 const JOINT: usize = 1;

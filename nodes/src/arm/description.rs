@@ -131,11 +131,12 @@ mod tests {
     use ferntast_msgs::Message;
 
     use super::*;
-    use crate::config::load_arm;
+    use crate::config;
+    use ferntast_sim::arm::ArmConfig;
 
     #[test]
     fn the_shipped_arm_is_described_whole() {
-        let sample = describe(&load_arm("rokviss").unwrap().model());
+        let sample = describe(&config::load::<ArmConfig>("rokviss").unwrap().model());
         assert_eq!(sample.check(), Ok(()));
         let text = sample.urdf.as_str();
         assert!(text.trim_end().ends_with("</robot>"), "cut: {text}");
@@ -149,7 +150,7 @@ mod tests {
 
     #[test]
     fn a_contour_without_end_is_left_out() {
-        let mut model = load_arm("rokviss").unwrap().model();
+        let mut model = config::load::<ArmConfig>("rokviss").unwrap().model();
         let edge = model.contour.edge[0];
         model.contour.edge = vec![edge; 200];
         let sample = describe(&model);

@@ -2,6 +2,8 @@
 
 use ferntast_msgs::sample::{Faults, FrictionCommand, FrictionSource};
 
+use ferntast_sim::arm::ArmConfig;
+
 use super::*;
 use crate::{
     config,
@@ -20,7 +22,7 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let arm = config::load_arm("rokviss").unwrap();
+        let arm = config::load::<ArmConfig>("rokviss").unwrap();
         Self {
             node: ServoNode::new(&arm.model(), &ServoConfig::default()).unwrap(),
             now: START,

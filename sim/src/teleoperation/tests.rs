@@ -1,6 +1,7 @@
-use super::*;
-use crate::channel::ChannelConfig;
 use ferntast_control::delay::PositionForce;
+use ferntast_emulation::channel::ChannelConfig;
+
+use super::*;
 
 fn link(round_trip: f64) -> LinkConfig {
     let one_way = ChannelConfig::with_delay(0.5 * round_trip);

@@ -9,7 +9,15 @@ mod table;
 use std::path::PathBuf;
 
 /// The crates that must not reach a clock, a file, a socket, a thread or the middleware.
-const PURE: [&str; 5] = ["model", "control", "identification", "msgs", "sim"];
+const PURE: [&str; 7] = [
+    "model",
+    "control",
+    "identification",
+    "msgs",
+    "emulation",
+    "sim",
+    "benches",
+];
 
 /// The folder of a crate of the workspace.
 fn folder(name: &str) -> PathBuf {
