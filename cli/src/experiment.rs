@@ -7,7 +7,7 @@ use std::{
 };
 
 use ferntast_model::contour::Surface;
-use ferntast_nodes::config;
+use ferntast_nodes::arm as simulated;
 use ferntast_studies::experiment::{
     self, Conditions, ExperimentError, Plan,
     campaign::{self, Mission},
@@ -179,7 +179,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
 }
 
 fn one(plan: &Plan, common: &Common, json: bool) -> Result<ExitCode, Failure> {
-    let arm = config::load::<ArmConfig>(&common.arm).map_err(Failure::refused)?;
+    let arm = simulated::load_config(&common.arm).map_err(Failure::refused)?;
     let conditions = Conditions {
         ground: common.ground,
         day: common.day,
@@ -222,8 +222,8 @@ fn campaign(own: &Campaign, json: bool) -> Result<ExitCode, Failure> {
             own.output.display()
         )));
     }
-    let mission = config::load::<Mission>(&own.file).map_err(Failure::refused)?;
-    let arm = config::load::<ArmConfig>(&mission.arm).map_err(Failure::refused)?;
+    let mission = Mission::load(&own.file).map_err(Failure::refused)?;
+    let arm = simulated::load_config(&mission.arm).map_err(Failure::refused)?;
     let duration = campaign::duration(&mission, &arm).map_err(Failure::refused)?;
     let bar = bar(duration);
     let done = AtomicU64::new(0);

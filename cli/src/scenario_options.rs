@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use ferntast_nodes::{
+    arm as simulated,
     config::{self, HandSource, Loaded, Middleware},
     twin,
 };
@@ -64,7 +65,8 @@ impl ScenarioOptions {
     ///
     /// What is wrong with it, where, and how to mend it.
     pub fn load(&self) -> Result<Loaded, Failure> {
-        let mut loaded = config::load_scenario(&self.scenario).map_err(Failure::refused)?;
+        let mut loaded =
+            config::load_scenario(&self.scenario, simulated::load_arm).map_err(Failure::refused)?;
         let scenario = &mut loaded.scenario;
         if let Some(seed) = self.seed {
             scenario.seed = seed;

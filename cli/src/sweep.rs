@@ -7,7 +7,6 @@ use std::{
     time::Instant,
 };
 
-use ferntast_nodes::config;
 use ferntast_studies::sweep::{self, Row, SweepConfig};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -35,7 +34,7 @@ pub struct Arguments {
 
 /// Runs it.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let mut config = config::load::<SweepConfig>(&arguments.file).map_err(Failure::refused)?;
+    let mut config = SweepConfig::load(&arguments.file).map_err(Failure::refused)?;
     for name in &arguments.law {
         if !config.laws.iter().any(|law| law.name() == name) {
             let has: Vec<&str> = config.laws.iter().map(|law| law.name()).collect();

@@ -40,7 +40,8 @@ fn report(name: &str, mut run: impl FnMut() -> Result<f64, String>) {
 
 /// Virtual seconds per second.
 fn run(record: Option<&Path>) -> Result<f64, String> {
-    let mut loaded = config::load_scenario("rokviss").map_err(|error| error.to_string())?;
+    let mut loaded =
+        config::load_scenario("rokviss", arm::load_arm).map_err(|error| error.to_string())?;
     loaded.complete().map_err(|error| error.to_string())?;
     let mut context = SessionContext::in_virtual_time(loaded);
     context.bag = record.map(Path::to_owned);

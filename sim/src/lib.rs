@@ -1,5 +1,4 @@
-//! The simulated arm, trials of teleoperation, the lockstep executor; seeded.
+//! The simulated arm, trials of teleoperation; seeded.
 
 pub mod arm;
-pub mod lockstep;
 pub mod teleoperation;

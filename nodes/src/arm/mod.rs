@@ -1,7 +1,10 @@
 //! The simulated arm as a node; hardware takes its place by speaking the same
 //! topics.
 
+mod config;
 mod description;
+
+pub use config::{arm_file, load_arm, load_config};
 
 use ferntast_msgs::{
     Time,
@@ -49,7 +52,7 @@ pub const fn row() -> NodeRow {
 
 fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
-    let node = ArmNode::new(&loaded.arm, loaded.scenario.seed).map_err(NodeError::own)?;
+    let node = ArmNode::new(&loaded.arm.whole()?, loaded.scenario.seed).map_err(NodeError::own)?;
     let ports = ArmPorts::connect(build.bus)?;
     build.join(node, ports)
 }

@@ -44,6 +44,9 @@ pub enum ConfigError {
         /// Key, value, bounds, unit.
         source: ParameterError,
     },
+    /// An arm's configuration is not one that the arm's driver reads.
+    #[error("the arm's configuration is not one of its driver: {0}")]
+    Arm(serde_json::Error),
     /// A recorded hand motion cannot be used.
     #[error("{path}: {source}")]
     Hand {

@@ -8,37 +8,46 @@ use serde::de::DeserializeOwned;
 use super::{ConfigError, shipped};
 
 /// A kind of configuration file.
-pub trait ConfigFile: DeserializeOwned {
+#[derive(Clone, Copy, Debug)]
+pub struct FileKind {
     /// What it is called in messages.
-    const KIND: &'static str;
+    pub name: &'static str,
     /// Its folder below `config/`.
-    const FOLDER: &'static str;
-
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, with key, value, bounds, unit.
-    fn validate(&self) -> Result<(), ParameterError>;
+    pub folder: &'static str,
 }
 
-/// Loads the file `name`, shipped or on disk.
+/// A file of `config/arms/`; the arm's driver says what is in it.
+pub const ARM: FileKind = FileKind {
+    name: "arm",
+    folder: "arms",
+};
+
+/// Loads the file `name`, shipped or on disk; `validate` checks its values
+/// against their bounds.
 ///
 /// # Errors
 ///
-/// What is wrong, in which file, and how to mend it.
-pub fn load<T: ConfigFile>(name: &str) -> Result<T, ConfigError> {
-    load_with_path(name).map(|(_, file)| file)
+/// What is wrong, in which file, and how to correct it.
+pub fn load<T: DeserializeOwned>(
+    kind: FileKind,
+    name: &str,
+    validate: impl FnOnce(&T) -> Result<(), ParameterError>,
+) -> Result<T, ConfigError> {
+    load_with_path(kind, name, validate).map(|(_, file)| file)
 }
 
 /// The same, and where it was found.
-pub(super) fn load_with_path<T: ConfigFile>(name: &str) -> Result<(String, T), ConfigError> {
-    let Source { path, text } = find(T::KIND, T::FOLDER, name)?;
+pub(super) fn load_with_path<T: DeserializeOwned>(
+    kind: FileKind,
+    name: &str,
+    validate: impl FnOnce(&T) -> Result<(), ParameterError>,
+) -> Result<(String, T), ConfigError> {
+    let Source { path, text } = find(kind, name)?;
     let file: T = toml::from_str(&text).map_err(|error| ConfigError::Syntax {
         path: path.clone(),
         message: error.to_string().trim_end().to_owned(),
     })?;
-    match file.validate() {
+    match validate(&file) {
         Ok(()) => Ok((path, file)),
         Err(source) => Err(ConfigError::Value { path, source }),
     }
@@ -49,8 +58,9 @@ struct Source {
     text: String,
 }
 
-fn find(kind: &'static str, folder: &'static str, name: &str) -> Result<Source, ConfigError> {
+fn find(kind: FileKind, name: &str) -> Result<Source, ConfigError> {
     let path = Path::new(name);
+    let folder = kind.folder;
     let below = format!("{folder}/{name}.toml");
     let on_disk = Path::new("config").join(&below);
     let looks_like_path = name.contains('/') || name.ends_with(".toml");
@@ -77,7 +87,7 @@ fn find(kind: &'static str, folder: &'static str, name: &str) -> Result<Source, 
             text: text.to_owned(),
         }),
         None => Err(ConfigError::Unknown {
-            kind,
+            kind: kind.name,
             name: name.to_owned(),
             shipped: shipped::names(folder).join(", "),
         }),

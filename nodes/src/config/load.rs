@@ -7,67 +7,47 @@ use ferntast_emulation::{
     channel::{ChannelConfig, LinkConfig},
     hand::{Hand, RecordedHand, RecordedMotion, ScriptedHand},
 };
-use ferntast_model::ParameterError;
-use ferntast_sim::arm::ArmConfig;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    ConfigError, HandSource, Scenario,
-    file::{ConfigFile, load, load_with_path},
+    ArmFile, ConfigError, HandSource, LoadArm, Scenario,
+    file::{FileKind, load, load_with_path},
 };
 
 /// A scenario with all that it names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Loaded {
     /// Where the scenario came from.
     pub path: String,
     /// The scenario.
     pub scenario: Scenario,
     /// The arm.
-    pub arm: ArmConfig,
+    pub arm: ArmFile,
     /// The channel of the link.
     pub link: LinkConfig,
     /// Text of the recorded hand motion.
     pub hand_recording: Option<String>,
 }
 
-impl ConfigFile for LinkConfig {
-    const KIND: &'static str = "link";
-    const FOLDER: &'static str = "links";
-
-    fn validate(&self) -> Result<(), ParameterError> {
-        self.validate()
-    }
-}
-
-impl ConfigFile for ArmConfig {
-    const KIND: &'static str = "arm";
-    const FOLDER: &'static str = "arms";
-
-    fn validate(&self) -> Result<(), ParameterError> {
-        self.validate()
-    }
-}
-
-impl ConfigFile for Scenario {
-    const KIND: &'static str = "scenario";
-    const FOLDER: &'static str = "scenarios";
-
-    fn validate(&self) -> Result<(), ParameterError> {
-        self.validate()
-    }
-}
+const LINK: FileKind = FileKind {
+    name: "link",
+    folder: "links",
+};
+const SCENARIO: FileKind = FileKind {
+    name: "scenario",
+    folder: "scenarios",
+};
 
 /// Loads the scenario `name`, shipped or a file, with the arm and the link that it names.
 ///
 /// # Errors
 ///
-/// What is wrong, in which file, and how to mend it.
-pub fn load_scenario(name: &str) -> Result<Loaded, ConfigError> {
-    let (path, scenario) = load_with_path::<Scenario>(name)?;
+/// What is wrong, in which file, and how to correct it.
+pub fn load_scenario(name: &str, load_arm: LoadArm) -> Result<Loaded, ConfigError> {
+    let (path, scenario) = load_with_path(SCENARIO, name, Scenario::validate)?;
     Ok(Loaded {
-        arm: load(&scenario.arm)?,
-        link: load(&scenario.link.channel)?,
+        arm: load_arm(&scenario.arm)?,
+        link: load(LINK, &scenario.link.channel, LinkConfig::validate)?,
         path,
         scenario,
         hand_recording: None,
@@ -95,7 +75,7 @@ pub fn read_hand_recording(path: &Path) -> Result<String, ConfigError> {
 
 impl Loaded {
     /// An arm and its servo with nobody who operates them, for experiments.
-    pub fn without_operator(arm: ArmConfig, servo: ServoConfig, seed: u64) -> Loaded {
+    pub fn without_operator(arm: ArmFile, servo: ServoConfig, seed: u64) -> Loaded {
         Loaded {
             path: String::new(),
             scenario: Scenario::without_operator(servo, seed),
@@ -111,7 +91,7 @@ impl Loaded {
     ///
     /// As for the scenario's own.
     pub fn set_link(&mut self, name: &str) -> Result<(), ConfigError> {
-        self.link = load(name)?;
+        self.link = load(LINK, name, LinkConfig::validate)?;
         name.clone_into(&mut self.scenario.link.channel);
         Ok(())
     }

@@ -45,7 +45,7 @@ ports! {
 /// A parameter out of its bounds, a topic that cannot be opened.
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let arm = &build.session.loaded.arm;
-    let node = EstimatorNode::new(&arm.model(), &arm.estimator)?;
+    let node = EstimatorNode::new(&arm.model, &arm.estimator)?;
     let ports = EstimatorPorts::connect(build.bus)?;
     build.join(node, ports)
 }

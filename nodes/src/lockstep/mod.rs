@@ -1,5 +1,6 @@
 //! All nodes in one process and virtual time.
 
+mod executor;
 mod virtual_time;
 
 use ferntast_bus::{Bus, CreateError, McapBus};
@@ -10,7 +11,6 @@ use ferntast_msgs::{
     },
     topics::{self, Topic},
 };
-use ferntast_sim::lockstep::LockstepError;
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
@@ -20,6 +20,7 @@ use crate::{
     session::Monitor,
 };
 
+pub use executor::{Lockstep, LockstepError};
 pub use virtual_time::VirtualTime;
 
 /// When the arm is armed, after the start \[ns\].

@@ -5,9 +5,8 @@ use ferntast_bus::{
     frames::{self, FrameReceiver, FrameSender, LinkDirection},
 };
 use ferntast_msgs::{Time, sample::Faults};
-use ferntast_sim::lockstep::Lockstep;
 
-use super::RunError;
+use super::{RunError, executor::Lockstep};
 use crate::{
     graph::{Build, Make, NodeRow, STEP_NANOS},
     node::HealthMeter,

@@ -60,7 +60,7 @@ ports! {
 /// A parameter out of its bounds, a topic that cannot be opened.
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
-    let node = ServoNode::new(&loaded.arm.model(), &loaded.scenario.servo)?;
+    let node = ServoNode::new(&loaded.arm.model, &loaded.scenario.servo)?;
     let ports = ServoPorts::connect(build.bus)?;
     build.join(node, ports)
 }

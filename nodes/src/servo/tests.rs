@@ -2,8 +2,6 @@
 
 use ferntast_msgs::sample::{Faults, FrictionCommand, FrictionSource};
 
-use ferntast_sim::arm::ArmConfig;
-
 use super::*;
 use crate::{
     config,
@@ -22,9 +20,9 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let arm = config::load::<ArmConfig>("rokviss").unwrap();
+        let arm = config::load_model_only("rokviss").unwrap();
         Self {
-            node: ServoNode::new(&arm.model(), &ServoConfig::default()).unwrap(),
+            node: ServoNode::new(&arm.model, &ServoConfig::default()).unwrap(),
             now: START,
             last: [None; 2],
             faults: Faults::default(),

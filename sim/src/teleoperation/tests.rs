@@ -64,7 +64,7 @@ fn a_hard_wall_behind_a_delay_is_unstable_with_position_force() {
 #[test]
 fn the_same_trial_gives_the_same_outcome() {
     let mut link = link(0.05);
-    link.up.loss = Some(crate::channel::Loss::Independent { probability: 0.2 });
+    link.up.loss = Some(ferntast_emulation::channel::Loss::Independent { probability: 0.2 });
     let run = |seed| {
         Trial::new(
             position_force(),

@@ -187,7 +187,8 @@ impl Bench {
             path: folder.to_owned(),
             reason,
         };
-        let loaded = Loaded::without_operator(self.arm.clone(), self.servo.clone(), self.seed);
+        let loaded =
+            Loaded::without_operator(arm::arm_file(&self.arm)?, self.servo.clone(), self.seed);
         let nodes = match self.contact {
             true => &["arm", "servo", "estimator"][..],
             false => &["arm", "servo"],

@@ -8,7 +8,7 @@ use std::{
 
 use ferntast_identification::{contact_friction::ContactFriction, damping::Average};
 use ferntast_model::{ParameterError, check, contour::Surface};
-use ferntast_nodes::config::ConfigFile;
+use ferntast_nodes::config::{self, ConfigError, FileKind};
 use ferntast_sim::arm::ArmConfig;
 use serde::{Deserialize, Serialize};
 
@@ -41,11 +41,28 @@ pub struct Mission {
     pub experiment: Vec<Plan>,
 }
 
-impl ConfigFile for Mission {
-    const KIND: &'static str = "campaign";
-    const FOLDER: &'static str = "experiments";
+/// Where campaigns are.
+const FILE: FileKind = FileKind {
+    name: "campaign",
+    folder: "experiments",
+};
 
-    fn validate(&self) -> Result<(), ParameterError> {
+impl Mission {
+    /// Loads the campaign `name`, shipped or a file.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, in which file, and how to correct it.
+    pub fn load(name: &str) -> Result<Mission, ConfigError> {
+        config::load(FILE, name, Mission::validate)
+    }
+
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds.
+    pub fn validate(&self) -> Result<(), ParameterError> {
         check("number of days", self.days.len() as f64, 1.0, 1000.0, "-")?;
         for &day in &self.days {
             check("days", day, 0.0, 36_525.0, "d")?;
@@ -59,9 +76,7 @@ impl ConfigFile for Mission {
         )?;
         Ok(())
     }
-}
 
-impl Mission {
     /// All runs: the ground first, then date by date.
     pub fn runs(&self) -> Vec<Run> {
         let ground = self.ground.then_some(Conditions {
@@ -256,13 +271,14 @@ pub fn run_all(
 mod tests {
     use std::collections::BTreeSet;
 
+    use ferntast_nodes::arm as simulated;
+
     use super::*;
-    use ferntast_nodes::config;
 
     #[test]
     fn the_shipped_mission_fits_the_arm_and_no_two_runs_share_a_folder_or_seed() {
-        let mission = config::load::<Mission>("mission").unwrap();
-        let arm = config::load::<ArmConfig>(&mission.arm).unwrap();
+        let mission = Mission::load("mission").unwrap();
+        let arm = simulated::load_config(&mission.arm).unwrap();
         let seconds = duration(&mission, &arm).unwrap();
         assert!(seconds > 2000.0 && seconds < 10_000.0, "{seconds} s");
         let runs = mission.runs();

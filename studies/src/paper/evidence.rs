@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use ferntast_identification::{damping::Sample, flexible_joint::Row, stiffness::Stiffness};
 use ferntast_model::contour::Surface;
-use ferntast_nodes::config::{self, ConfigError};
+use ferntast_nodes::{arm as simulated, config::ConfigError};
 use ferntast_sim::arm::ArmConfig;
 
 use super::flexible_joint::{self, FlexibleJointEvidence, FlexibleJointJob};
@@ -262,8 +262,8 @@ fn jobs(mission: &Mission) -> Vec<Job> {
 }
 
 fn load() -> Result<(Mission, ArmConfig), PaperError> {
-    let mission = config::load::<Mission>("mission")?;
-    let arm = config::load::<ArmConfig>(&mission.arm)?;
+    let mission = Mission::load("mission")?;
+    let arm = simulated::load_config(&mission.arm)?;
     Ok((mission, arm))
 }
 

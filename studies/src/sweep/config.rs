@@ -3,7 +3,7 @@
 use ferntast_control::delay::Law;
 use ferntast_emulation::hand::ImpedanceParameters;
 use ferntast_model::{ParameterError, check};
-use ferntast_nodes::config::ConfigFile;
+use ferntast_nodes::config::{self, ConfigError, FileKind};
 use ferntast_sim::teleoperation::{Environment, TipParameters};
 use serde::{Deserialize, Serialize};
 
@@ -36,11 +36,28 @@ pub struct SweepConfig {
     pub tip: TipParameters,
 }
 
-impl ConfigFile for SweepConfig {
-    const KIND: &'static str = "sweep";
-    const FOLDER: &'static str = "scenarios";
+/// Where sweeps are.
+const FILE: FileKind = FileKind {
+    name: "sweep",
+    folder: "scenarios",
+};
 
-    fn validate(&self) -> Result<(), ParameterError> {
+impl SweepConfig {
+    /// Loads the sweep `name`, shipped or a file.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, in which file, and how to correct it.
+    pub fn load(name: &str) -> Result<SweepConfig, ConfigError> {
+        config::load(FILE, name, SweepConfig::validate)
+    }
+
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds, with key, value, bounds, unit.
+    pub fn validate(&self) -> Result<(), ParameterError> {
         for law in &self.laws {
             let within = |error: ParameterError| error.within(&format!("laws ({})", law.name()));
             law.validate().map_err(within)?;

@@ -1,11 +1,10 @@
 use ferntast_control::delay::Law;
-use ferntast_nodes::config;
 use ferntast_sim::teleoperation::Environment;
 
 use super::*;
 
 fn small() -> SweepConfig {
-    let mut config = config::load::<SweepConfig>("delay_sweep").unwrap();
+    let mut config = SweepConfig::load("delay_sweep").unwrap();
     config.laws.retain(|law| law.name() == "position_force");
     config.environments = vec![Environment::SoftSpring, Environment::HardWall];
     config.rtt_ms = vec![0.0, 300.0];
@@ -14,7 +13,7 @@ fn small() -> SweepConfig {
 
 #[test]
 fn the_shipped_sweep_holds_every_law_and_what_it_has_to() {
-    let config = config::load::<SweepConfig>("delay_sweep").unwrap();
+    let config = SweepConfig::load("delay_sweep").unwrap();
     let laws: Vec<&str> = config.laws.iter().map(Law::name).collect();
     assert_eq!(laws, Law::NAMES);
     for rtt in [0.0, 20.0, 100.0, 300.0, 600.0, 700.0, 800.0, 1000.0, 2000.0] {
