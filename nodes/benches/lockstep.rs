@@ -3,7 +3,9 @@
 
 use std::{path::Path, time::Instant};
 
-use ferntast_nodes::{arm, config, lockstep::LockstepSession};
+use ferntast_nodes::{
+    arm, config, lockstep::LockstepSession, process::SessionContext, session_graph,
+};
 
 /// Virtual time of one run \[s\].
 const SECONDS: f64 = 20.0;
@@ -41,8 +43,11 @@ fn run(record: Option<&Path>) -> Result<f64, String> {
     let mut loaded =
         config::load_scenario("rokviss", arm::load_arm).map_err(|error| error.to_string())?;
     loaded.complete().map_err(|error| error.to_string())?;
+    let mut context = SessionContext::in_virtual_time(loaded);
+    context.bag = record.map(Path::to_owned);
+    let graph = session_graph(arm::row());
     let begun = Instant::now();
-    let mut session = LockstepSession::new(&loaded, record).map_err(|error| error.to_string())?;
+    let mut session = LockstepSession::new(&graph, &context).map_err(|error| error.to_string())?;
     session.run(SECONDS);
     session.finish().map_err(|error| error.to_string())?;
     Ok(SECONDS / begun.elapsed().as_secs_f64())

@@ -9,7 +9,7 @@ use ferntast_msgs::{
     topics,
 };
 
-use crate::process::{ProcessError, Surroundings};
+use crate::process::{NodeError, ProcessContext};
 
 /// A wish that was not followed for this long is taken back \[s\]: two seconds
 /// of round trip, and the switch.
@@ -36,16 +36,16 @@ impl ChoiceParameter {
     /// # Errors
     ///
     /// A topic or the parameter's node that cannot be opened.
-    pub fn law(around: &Surroundings, ros: &Bus) -> Result<ChoiceParameter, ProcessError> {
+    pub fn law(process: &ProcessContext, ros: &Bus) -> Result<ChoiceParameter, NodeError> {
         let choice = Choice {
             node: "link".to_owned(),
             name: "law".to_owned(),
             description: "The delay law, at both ends of the link".to_owned(),
             choices: Law::NAMES.iter().map(|name| (*name).to_owned()).collect(),
-            value: around.context.loaded.scenario.law.name().to_owned(),
+            value: process.session.loaded.scenario.law.name().to_owned(),
         };
-        let mut command = around.bus.publisher(topics::LINK_LAW_COMMAND)?;
-        let mut status = around.bus.subscriber(topics::LINK_STATUS, Depth::Newest)?;
+        let mut command = process.bus.publisher(topics::LINK_LAW_COMMAND)?;
+        let mut status = process.bus.subscriber(topics::LINK_STATUS, Depth::Newest)?;
         let pass_on = move |now, law| {
             // One that does not get through is taken back later.
             let _ = command.publish(now, &LawCommandSample { stamp: now, law });
@@ -59,7 +59,7 @@ impl ChoiceParameter {
     /// # Errors
     ///
     /// A topic or the parameter's node that cannot be opened.
-    pub fn friction(around: &Surroundings, ros: &Bus) -> Result<ChoiceParameter, ProcessError> {
+    pub fn friction(process: &ProcessContext, ros: &Bus) -> Result<ChoiceParameter, NodeError> {
         let names = FrictionSource::ALL
             .into_iter()
             .filter_map(FrictionSource::name);
@@ -70,7 +70,7 @@ impl ChoiceParameter {
             choices: names.map(str::to_owned).collect(),
             value: "configured".to_owned(),
         };
-        let bus = &around.bus;
+        let bus = &process.bus;
         let mut command = bus.publisher(topics::FOLLOWER_FRICTION_COMMAND)?;
         let mut joints = [
             bus.subscriber(topics::FOLLOWER_JOINT_1_FRICTION, Depth::Newest)?,
@@ -102,7 +102,7 @@ impl ChoiceParameter {
         choice: Choice,
         pass_on: Box<dyn FnMut(Time, Word)>,
         heard: Box<dyn FnMut(Time) -> Option<Word>>,
-    ) -> Result<ChoiceParameter, ProcessError> {
+    ) -> Result<ChoiceParameter, NodeError> {
         Ok(ChoiceParameter {
             does: Text::new(&choice.value),
             node: ParameterNode::open(ros, choice)?,

@@ -24,12 +24,9 @@ use serde_json::{Value, json};
 use crate::{
     config::{HandSource, Loaded},
     node::{InputWatch, NodeHealth},
-    pace,
-    process::{ProcessError, Surroundings},
+    process::{NodeError, ProcessContext, periodic},
 };
 
-/// The hand moves in steps of this \[ns\]: 250 Hz, where 100 Hz would do.
-const PERIOD_NANOS: i64 = 4_000_000;
 /// How far the hand goes from the middle \[m\].
 const REACH: f64 = 0.06;
 /// How far the pointer draws the hand's spring out \[m\]: it pulls with 4 N at
@@ -61,15 +58,15 @@ impl GripModel for Grip {
 /// # Errors
 ///
 /// A topic that cannot be opened; an address that cannot be listened at.
-pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
-    let options = around.context.console.clone().unwrap_or_default();
-    let clock = around.clock;
-    let about = about(&around.context.session, &around.context.loaded);
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+    let options = process.session.console.clone().unwrap_or_default();
+    let clock = process.clock;
+    let about = about(&process.session.session, &process.session.loaded);
     let desk = Arc::new(Desk::new(about, Box::new(move || clock.now())));
     let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 2]));
     let hand = PageHand::new(Box::new(grip), REACH, LEASH);
-    let mut ports = SessionPorts::connect(&around.bus, desk.clone(), hand)?;
-    let mut diagnostics = around.bus.publisher(topics::DIAGNOSTICS)?;
+    let mut ports = SessionPorts::connect(&process.bus, desk.clone(), hand)?;
+    let mut diagnostics = process.bus.publisher(topics::DIAGNOSTICS)?;
     let listen = Listen {
         address: options.listen,
         token: options.token,
@@ -80,17 +77,18 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
             desk: Some(desk),
             folder: PathBuf::from("."),
         },
-    )?;
+    )
+    .map_err(NodeError::own)?;
     eprintln!("console: {}", server.url);
     // After the server's threads, which must not have it: the hand on the
     // master shall not be lost to a computer that is busy drawing.
     let mut standing = Faults::default();
-    if pace::request_realtime().is_err() {
+    if periodic::request_realtime().is_err() {
         standing.set(Fault::NoRealtime);
     }
-    let mut meter = around.meter(PERIOD_NANOS, standing);
+    let mut meter = process.meter(standing);
     let mut watch = InputWatch::default();
-    pace::run(clock, PERIOD_NANOS, around.stop, |wake| {
+    process.run(|wake| {
         let mut health = NodeHealth {
             lost: ports.round(wake.now),
             ..NodeHealth::default()

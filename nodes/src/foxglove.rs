@@ -7,8 +7,7 @@ use ferntast_bus::{Bus, FoxgloveBus, FoxgloveConfig};
 use crate::{
     carry::{Carrier, Stamp},
     gateway::goes_out,
-    pace,
-    process::{PERIOD_NANOS, ProcessError, Surroundings},
+    process::{NodeError, ProcessContext},
     relay::Relay,
 };
 
@@ -17,25 +16,25 @@ use crate::{
 /// # Errors
 ///
 /// No address; one that is taken or beyond loopback; a topic that cannot be opened.
-pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let config = FoxgloveConfig {
-        address: around.context.foxglove.ok_or(ProcessError::NoFoxglove)?,
-        name: format!("ferntast {}", around.context.session),
+        address: process.session.foxglove.ok_or(NodeError::NoFoxglove)?,
+        name: format!("ferntast {}", process.session.session),
     };
     let foxglove = FoxgloveBus::open(&config)?;
     eprintln!(
         "foxglove: ws://{} (in Foxglove or Lichtblick: Open connection; layout: config/layouts/)",
         foxglove.address()
     );
-    let section = &around.context.loaded.scenario.gateway;
-    let mut relay = Relay::new(around, PERIOD_NANOS)?;
+    let section = &process.session.loaded.scenario.gateway;
+    let mut relay = Relay::new(process)?;
     let mut carrier = Carrier::default();
     let to = Bus::Foxglove(foxglove);
-    carrier.add_topics(&around.bus, &to, Stamp::Received, |topic, delivery| {
+    carrier.add_topics(&process.bus, &to, Stamp::Received, |topic, delivery| {
         goes_out(topic, delivery, section)
     })?;
     relay.begin(carrier);
-    pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
+    process.run(|wake| {
         relay.round(wake.now, wake, |_, _| {});
     });
     Ok(())

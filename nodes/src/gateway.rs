@@ -13,8 +13,7 @@ use crate::{
     carry::{Carrier, Carry, Stamp},
     choice_parameter::ChoiceParameter,
     config::{GatewaySection, HandSource, Middleware},
-    pace,
-    process::{PERIOD_NANOS, ProcessError, Surroundings},
+    process::{NodeError, ProcessContext},
     relay::Relay,
 };
 
@@ -75,13 +74,13 @@ pub fn goes_out(topic: &str, delivery: Delivery, section: &GatewaySection) -> Ca
 /// # Errors
 ///
 /// ROS 2 or a topic that cannot be opened.
-pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
-    let scenario = &around.context.loaded.scenario;
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+    let scenario = &process.session.loaded.scenario;
     let section = &scenario.gateway;
     let crtk = scenario.hand.source == HandSource::Crtk;
     let ros = open_ros(section)?;
     let mut carrier = Carrier::default();
-    carrier.add_topics(&around.bus, &ros, Stamp::Round, |topic, delivery| {
+    carrier.add_topics(&process.bus, &ros, Stamp::Round, |topic, delivery| {
         if comes_in(topic, crtk) {
             Carry::Not
         } else {
@@ -89,7 +88,7 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         }
     })?;
     let every = Carry::Every { queue: 64 };
-    let (bus, stamp) = (&around.bus, Stamp::Round);
+    let (bus, stamp) = (&process.bus, Stamp::Round);
     for topic in [topics::FOLLOWER_STATE_COMMAND, topics::LEADER_STATE_COMMAND] {
         carrier.add(topic, &ros, bus, stamp, every, |_, _| {})?;
     }
@@ -119,12 +118,12 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     }
 
     let mut parameters = [
-        ChoiceParameter::law(around, &ros)?,
-        ChoiceParameter::friction(around, &ros)?,
+        ChoiceParameter::law(process, &ros)?,
+        ChoiceParameter::friction(process, &ros)?,
     ];
-    let mut relay = Relay::new(around, PERIOD_NANOS)?;
+    let mut relay = Relay::new(process)?;
     relay.begin(carrier);
-    pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
+    process.run(|wake| {
         for parameter in &mut parameters {
             parameter.round(wake.now);
         }

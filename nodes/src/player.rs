@@ -7,17 +7,19 @@ use ferntast_msgs::Time;
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    pace,
-    process::{PERIOD_NANOS, ProcessError, Surroundings},
+    process::{NodeError, ProcessContext, periodic},
     relay::Relay,
 };
 
+/// Name of the node.
+pub const NAME: &str = "player";
+
 /// Opens `McapBus` readers on the recording with the lanes to play it.
 fn open(
-    around: &Surroundings,
+    process: &ProcessContext,
     path: &std::path::Path,
-) -> Result<(Carrier, Time, Time), ProcessError> {
-    let bad = |reason: String| ProcessError::Bag {
+) -> Result<(Carrier, Time, Time), NodeError> {
+    let bad = |reason: String| NodeError::Bag {
         path: path.to_owned(),
         reason,
     };
@@ -26,11 +28,11 @@ fn open(
         return Err(bad("it holds no message".to_owned()));
     };
     let recording = McapBus::open(path).map_err(|error| bad(error.to_string()))?;
-    let except = &around.context.play.except;
+    let except = &process.session.play.except;
     let mut carrier = Carrier::default();
     carrier.add_topics(
         &Bus::Mcap(recording),
-        &around.bus,
+        &process.bus,
         Stamp::Round,
         |topic, _| {
             let recorded = info.topics.iter().any(|own| own.name == topic);
@@ -49,26 +51,26 @@ fn open(
 /// # Errors
 ///
 /// The recording or a topic cannot be opened.
-pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
-    let path = around.context.bag.as_deref().ok_or(ProcessError::NoBag)?;
-    let rate = around.context.play.rate;
-    let mut relay = Relay::new(around, PERIOD_NANOS)?;
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+    let path = process.session.bag.as_deref().ok_or(NodeError::NoBag)?;
+    let rate = process.session.play.rate;
+    let mut relay = Relay::new(process)?;
     loop {
-        let (carrier, start, end) = open(around, path)?;
+        let (carrier, start, end) = open(process, path)?;
         relay.begin(carrier);
-        let begun = around.clock.now();
+        let begun = process.clock.now();
         let done = AtomicBool::new(false);
-        pace::run_while(
-            around.clock,
-            PERIOD_NANOS,
-            || !around.stop.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed),
+        periodic::run_while(
+            process.clock,
+            process.period_nanos,
+            || !process.stop.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed),
             |wake| {
                 let at = start.plus_seconds(wake.now.seconds_since(begun) * rate);
                 relay.round(at, wake, |_, _| {});
                 done.store(at > end, Ordering::Relaxed);
             },
         );
-        if around.stop.load(Ordering::Relaxed) || !around.context.play.repeat {
+        if process.stop.load(Ordering::Relaxed) || !process.session.play.repeat {
             return Ok(());
         }
     }

@@ -1,10 +1,14 @@
 //! The recorder: writes every topic into a rosbag2 directory, from the start
 //! of the session or when `/recorder/command` says so.
 
-use std::path::{Component, Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Component, Path, PathBuf},
+};
 
 use chrono::DateTime;
 use ferntast_bus::{Bus, Depth, McapBus, SharedMemoryBus, mcap::BagOptions};
+use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Text, Time,
     sample::{Fault, Level, RecorderAction, RecorderStatusSample},
@@ -13,23 +17,43 @@ use ferntast_msgs::{
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    pace,
-    process::{ProcessError, Surroundings},
+    config::Loaded,
+    process::{NodeError, ProcessContext},
     relay::Relay,
 };
 
-/// The recorder looks this often \[ns\].
-const PERIOD_NANOS: i64 = 10_000_000;
+/// Name of the node.
+pub const NAME: &str = "recorder";
+
 /// How often it tells what it does \[ns\].
 const STATUS_NANOS: i64 = 500_000_000;
+
+/// Options of a recording that tell what it was made of: `mode` is `session`
+/// or `lockstep`; scenario, arm and link are kept as JSON.
+pub fn bag_options(loaded: &Loaded, mode: &str) -> BagOptions {
+    let json = |value: Result<String, serde_json::Error>| value.unwrap_or_default();
+    let record: BTreeMap<String, String> = [
+        ("mode", mode.to_owned()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("scenario", json(serde_json::to_string(&loaded.scenario))),
+        ("arm", json(serde_json::to_string(&loaded.arm))),
+        ("link", json(serde_json::to_string(&loaded.link))),
+    ]
+    .map(|(key, value)| (key.to_owned(), value))
+    .into();
+    BagOptions {
+        custom: [(RECORD.to_owned(), record)].into(),
+        ..BagOptions::default()
+    }
+}
 
 /// Opens a recording for writing, with what is needed to run it again.
 ///
 /// # Errors
 ///
 /// The folder exists, cannot be made, or the disk is full.
-pub fn create(folder: &Path, options: BagOptions) -> Result<McapBus, ProcessError> {
-    McapBus::create_with(folder, options).map_err(|error| ProcessError::Bag {
+pub fn create(folder: &Path, options: BagOptions) -> Result<McapBus, NodeError> {
+    McapBus::create_with(folder, options).map_err(|error| NodeError::Bag {
         path: folder.to_owned(),
         reason: error.to_string(),
     })
@@ -69,15 +93,15 @@ struct Recording {
 }
 
 fn begin(
-    around: &Surroundings,
+    process: &ProcessContext,
     relay: &mut Relay,
     folder: PathBuf,
-) -> Result<Recording, ProcessError> {
-    let options = super::lockstep::bag_options(&around.context.loaded, "session");
+) -> Result<Recording, NodeError> {
+    let options = bag_options(&process.session.loaded, "session");
     let bag = create(&folder, options)?;
     let to = Bus::Mcap(bag.clone());
     let mut carrier = Carrier::default();
-    carrier.add_topics(&around.bus, &to, Stamp::Received, |_, delivery| {
+    carrier.add_topics(&process.bus, &to, Stamp::Received, |_, delivery| {
         Carry::Every {
             queue: SharedMemoryBus::max_queue(delivery),
         }
@@ -86,11 +110,11 @@ fn begin(
     Ok(Recording { folder, bag })
 }
 
-fn finish(recording: Recording) -> Result<(), ProcessError> {
+fn finish(recording: Recording) -> Result<(), NodeError> {
     let Recording { folder, bag } = recording;
     bag.finish()
         .map(|_| ())
-        .map_err(|error| ProcessError::Broken(format!("{}: {error}", folder.display())))
+        .map_err(|error| NodeError::Broken(format!("{}: {error}", folder.display())))
 }
 
 /// Runs the recorder until it is told to stop; closes the recording.
@@ -99,27 +123,27 @@ fn finish(recording: Recording) -> Result<(), ProcessError> {
 ///
 /// The session's recording cannot be made, a topic not opened; a recording
 /// cannot be closed.
-pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
-    let bus = &around.bus;
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+    let bus = &process.bus;
     let mut commands =
         bus.subscriber(topics::RECORDER_COMMAND, Depth::Queue(topics::EVENT_QUEUE))?;
     let mut statuses = bus.publisher(topics::RECORDER_STATUS)?;
-    let mut relay = Relay::new(around, PERIOD_NANOS)?;
-    let mut recording = match &around.context.bag {
-        Some(bag) => Some(begin(around, &mut relay, folder(bag, around.generation))?),
+    let mut relay = Relay::new(process)?;
+    let mut recording = match &process.session.bag {
+        Some(bag) => Some(begin(process, &mut relay, folder(bag, process.generation))?),
         None => None,
     };
-    let mut status = RecorderStatusSample::idle(around.clock.now());
+    let mut status = RecorderStatusSample::idle(process.clock.now());
     let mut trouble = Text::<96>::EMPTY;
     let mut due = Time::INVALID;
-    pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
+    process.run(|wake| {
         let now = wake.now;
         while let Some(received) = commands.next(now) {
             let command = received.message;
             let outcome = match command.action {
                 RecorderAction::START if recording.is_none() => {
                     match asked_for(command.label.as_str(), now) {
-                        Some(folder) => begin(around, &mut relay, folder)
+                        Some(folder) => begin(process, &mut relay, folder)
                             .map(|begun| recording = Some(begun))
                             .map_err(Text::display),
                         None => Err(Text::new(
@@ -160,7 +184,7 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
             let _ = statuses.publish(now, &status);
         }
     });
-    relay.end(around.clock.now());
+    relay.end(process.clock.now());
     recording.map_or(Ok(()), finish)
 }
 

@@ -11,8 +11,7 @@ use ferntast_msgs::{
 use crate::{
     carry::Carrier,
     node::{HealthMeter, InputWatch, NodeHealth},
-    pace::Wake,
-    process::Surroundings,
+    process::{ProcessContext, periodic::Wake},
 };
 
 /// A carrier, and how it is doing.
@@ -28,19 +27,19 @@ pub struct Relay {
 }
 
 impl Relay {
-    /// A relay that steps every `period_nanos` \[ns\] and carries nothing yet.
+    /// A relay that carries nothing yet.
     ///
     /// # Errors
     ///
     /// `/diagnostics` cannot be opened.
-    pub fn new(around: &Surroundings, period_nanos: i64) -> Result<Relay, CreateError> {
+    pub fn new(process: &ProcessContext) -> Result<Relay, CreateError> {
         Ok(Relay {
             carrier: Carrier::default(),
             watch: InputWatch::default(),
             carried: 0,
             failed: 0,
-            meter: around.meter(period_nanos, Faults::default()),
-            diagnostics: around.bus.publisher(topics::DIAGNOSTICS)?,
+            meter: process.meter(Faults::default()),
+            diagnostics: process.bus.publisher(topics::DIAGNOSTICS)?,
         })
     }
 

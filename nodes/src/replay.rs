@@ -1,29 +1,27 @@
-//! Feeds a recording again through servo, estimator and, if asked, a twin.
+//! Feeds a recording again through the nodes that can be replayed: servo,
+//! estimator and, if asked, a twin.
 
 use std::path::Path;
 
 use ferntast_bus::{
-    Bus, CreateError, Depth, MemoryBus, Subscriber,
+    Bus, CreateError, Depth, McapBus, Subscriber,
     mcap::{self, BagReader},
 };
+use ferntast_emulation::channel::LinkConfig;
 use ferntast_lab::experiment::RECORD;
-use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Message, Time,
-    sample::Faults,
-    topics::{self, Delivery, Topic},
+    topics::{self, Topic, Visitor},
 };
 use serde::Serialize;
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    config::{ArmFile, Scenario},
-    estimator::{EstimatorNode, EstimatorPorts},
-    node::{HealthMeter, Runner},
-    node_name::NodeName,
-    process::PERIOD_NANOS,
-    servo::{ServoNode, ServoPorts},
-    twin::{Assessing, TwinModel, TwinNode, TwinPorts, TwinSummary},
+    config::Loaded,
+    graph::{Graph, NodeRow},
+    lockstep::{RunError, VirtualTime},
+    process::SessionContext,
+    twin::TwinSummary,
 };
 
 /// Why a recording cannot be fed again.
@@ -40,9 +38,9 @@ pub enum ReplayError {
     /// A topic cannot be opened.
     #[error(transparent)]
     Create(#[from] CreateError),
-    /// A parameter is out of its bounds.
+    /// A node cannot be made.
     #[error(transparent)]
-    Parameter(#[from] ParameterError),
+    Run(#[from] RunError),
 }
 
 /// How the outputs compare.
@@ -59,25 +57,6 @@ pub struct Comparison {
     /// The twin's last word; `null` without one.
     pub twin: Option<TwinSummary>,
 }
-
-/// Inputs of servo and estimator.
-const INPUTS: [&str; 5] = [
-    "/follower/measured_js",
-    "/follower/servo_cp",
-    "/follower/servo_jp",
-    "/follower/state_command",
-    "/follower/friction_command",
-];
-
-/// What the servo takes of a twin: from the recording, where no twin is run anew.
-const FROM_THE_TWIN: &str = "/twin/parameters";
-
-/// Inputs of a twin beside those.
-const OF_THE_TWIN: [&str; 3] = [
-    "/follower/motor_js",
-    "/follower/joint_1/temperature",
-    "/follower/joint_2/temperature",
-];
 
 trait Check {
     fn check(&mut self, now: Time, result: &mut Comparison);
@@ -135,122 +114,38 @@ fn same_bytes<R: ferntast_msgs::RosMessage>(first: &R, second: &R) -> bool {
         && first_bytes == second_bytes
 }
 
-/// Feeds the recording at `path` again through servo, estimator and `twin` and
-/// compares what they publish with what is recorded: of the twin only where one
-/// was recorded.
+/// Feeds the recording at `path` again through the nodes of `graph` that can
+/// be replayed, and through a twin of the experiment `twin`, and compares what
+/// they publish with what is recorded: of the twin only where one was recorded.
 ///
 /// # Errors
 ///
-/// A recording that cannot be opened, or that lockstep did not make.
+/// A recording that cannot be opened, or that lockstep did not make; an
+/// experiment that cannot be followed.
 pub fn run(
+    graph: &Graph,
     path: &Path,
-    twin: Option<TwinModel>,
+    twin: Option<&Path>,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Comparison, ReplayError> {
-    let open = |error: &dyn std::fmt::Display| ReplayError::Open(error.to_string());
-    let info = mcap::info(path).map_err(|error| open(&error))?;
-    let (Some(start), Some(end)) = (info.start, info.end) else {
-        return Err(ReplayError::Open(format!(
-            "{} holds no message",
-            path.display()
-        )));
-    };
-    let origin = info
-        .metadata
-        .get(RECORD)
-        .ok_or_else(|| ReplayError::Origin(format!("no metadata record {RECORD:?}")))?;
-    let entry = |key: &str| origin.get(key).map(String::as_str).unwrap_or_default();
-    if entry("mode") != "lockstep" {
-        return Err(ReplayError::Origin(format!(
-            "its mode is {:?}, in which steps are not at known times",
-            entry("mode")
-        )));
-    }
-    let bad = |error: serde_json::Error| ReplayError::Origin(error.to_string());
-    let scenario: Scenario = serde_json::from_str(entry("scenario")).map_err(bad)?;
-    let arm: ArmFile = serde_json::from_str(entry("arm")).map_err(bad)?;
-
-    let bus = Bus::Memory(MemoryBus::new());
-    let recording = Bus::Mcap(ferntast_bus::McapBus::open(path).map_err(|error| open(&error))?);
-    let topics_there: Vec<String> = BagReader::open(path)
-        .map_err(|error| open(&error))?
-        .topics()
-        .map(|topic| topic.name.to_string())
+    let recorded = Recorded::open(path)?;
+    let mut session = SessionContext::in_virtual_time(recorded.loaded()?);
+    session.twin = twin.map(Path::to_owned);
+    let rows: Vec<&NodeRow> = graph
+        .rows()
+        .filter(|row| (row.in_replay)(&session))
         .collect();
-    let recorded = |name: &str| {
-        let counted = info.topics.iter().find(|own| own.name == name);
-        counted.is_some_and(|own| own.messages > 0)
-    };
-    let there = |name: &str| topics_there.iter().any(|own| own == name);
-    let mut carrier = Carrier::default();
-    carrier.add_topics(&recording, &bus, Stamp::Received, |topic, _: Delivery| {
-        let wanted = INPUTS.contains(&topic)
-            || match twin.is_some() {
-                true => OF_THE_TWIN.contains(&topic),
-                false => topic == FROM_THE_TWIN,
-            };
-        if wanted && there(topic) {
-            Carry::Every { queue: 64 }
-        } else {
-            Carry::Not
-        }
+
+    let mut time = VirtualTime::new(recorded.start)?;
+    let mut carrier = recorded.inputs(&rows, time.bus())?;
+    time.add(move |now| {
+        carrier.carry(now);
     })?;
-    let mut checks: Vec<Box<dyn Check>> = Vec::new();
-    add_check(&mut checks, &recording, &bus, topics::FOLLOWER_SERVO_JF)?;
-    add_check(&mut checks, &recording, &bus, topics::FOLLOWER_SETPOINT_JS)?;
-    add_check(
-        &mut checks,
-        &recording,
-        &bus,
-        topics::FOLLOWER_OPERATING_STATE,
-    )?;
-    for topic in [
-        topics::FOLLOWER_JOINT_1_FRICTION,
-        topics::FOLLOWER_JOINT_2_FRICTION,
-    ] {
-        // Recordings of earlier versions have none.
-        if there(topic.name) {
-            add_check(&mut checks, &recording, &bus, topic)?;
-        }
-    }
-    add_check(&mut checks, &recording, &bus, topics::FOLLOWER_MEASURED_CP)?;
-    add_check(&mut checks, &recording, &bus, topics::FOLLOWER_MEASURED_CF)?;
-    add_check(&mut checks, &recording, &bus, topics::FOLLOWER_CONTACT_CF)?;
-    add_check(
-        &mut checks,
-        &recording,
-        &bus,
-        topics::FOLLOWER_CONTACT_STATE,
-    )?;
-
-    if twin.is_some() && recorded(topics::TWIN_PARAMETERS.name) {
-        add_check(&mut checks, &recording, &bus, topics::TWIN_MOTOR_JS)?;
-        add_check(&mut checks, &recording, &bus, topics::TWIN_RESIDUAL_JS)?;
-        add_check(&mut checks, &recording, &bus, topics::TWIN_PARAMETERS)?;
-    }
-
-    let meter =
-        |name: NodeName| HealthMeter::new(name.as_str(), 0, PERIOD_NANOS, Faults::default());
-    let servo = ServoNode::new(&arm.model, &scenario.servo)?;
-    let mut servo = Runner::new(
-        &bus,
-        servo,
-        ServoPorts::connect(&bus)?,
-        meter(NodeName::Servo),
-    )?;
-    let estimator = EstimatorNode::new(&arm.model, &arm.estimator)?;
-    let ports = EstimatorPorts::connect(&bus)?;
-    let mut estimator = Runner::new(&bus, estimator, ports, meter(NodeName::Estimator))?;
-
-    let mut said = bus.subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?;
-    let mut twin = match twin {
-        None => None,
-        Some(model) => {
-            let node = TwinNode::new(model, Assessing::Inline);
-            let ports = TwinPorts::connect(&bus)?;
-            Some(Runner::new(&bus, node, ports, meter(NodeName::Twin))?)
-        }
-    };
+    time.add_nodes(rows.iter().copied(), &session)?;
+    let mut checks = recorded.checks(&rows, time.bus())?;
+    let mut said = time
+        .bus()
+        .subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?;
 
     let mut result = Comparison {
         equal: true,
@@ -259,43 +154,148 @@ pub fn run(
         first_difference: None,
         twin: None,
     };
-    let duration = end.seconds_since(start).max(1e-9);
-    let mut now = start;
-    while now <= end {
-        carrier.carry(now);
-        servo.tick(now, 0, 0);
-        estimator.tick(now, 0, 0);
-        if let Some(twin) = &mut twin {
-            twin.tick(now, 0, 0);
-        }
-        if let Some(own) = said.newest(now) {
-            result.twin = Some(TwinSummary::of(&own.message));
-        }
+    let duration = recorded.end.seconds_since(recorded.start).max(1e-9);
+    while time.now() <= recorded.end {
+        let now = time.tick();
         for check in &mut checks {
             check.check(now, &mut result);
         }
-        if now.nanos_since(start) % 1_000_000_000 == 0 {
-            progress(now.seconds_since(start) / duration);
+        if now.nanos_since(recorded.start) % 1_000_000_000 == 0 {
+            progress(now.seconds_since(recorded.start) / duration);
         }
-        now = now.plus_nanos(PERIOD_NANOS);
     }
     // What was published at the end is visible after it.
-    if let Some(own) = said.newest(now) {
-        result.twin = Some(TwinSummary::of(&own.message));
-    }
+    let last = said.newest(time.now());
+    result.twin = last.map(|own| TwinSummary::of(&own.message));
     Ok(result)
 }
 
-fn add_check<M: Message>(
-    checks: &mut Vec<Box<dyn Check>>,
-    recording: &Bus,
-    bus: &Bus,
-    topic: Topic<M>,
-) -> Result<(), CreateError> {
-    checks.push(Box::new(TypedCheck {
-        topic: topic.name,
-        recorded: recording.subscriber(topic, Depth::Queue(64))?,
-        replayed: bus.subscriber(topic, Depth::Queue(64))?,
-    }));
-    Ok(())
+/// A recording of lockstep.
+struct Recorded {
+    bus: Bus,
+    info: mcap::BagInfo,
+    /// Topics that it has, with messages or without.
+    topics: Vec<String>,
+    start: Time,
+    end: Time,
+}
+
+impl Recorded {
+    fn open(path: &Path) -> Result<Recorded, ReplayError> {
+        let open = |error: &dyn std::fmt::Display| ReplayError::Open(error.to_string());
+        let info = mcap::info(path).map_err(|error| open(&error))?;
+        let (Some(start), Some(end)) = (info.start, info.end) else {
+            return Err(ReplayError::Open(format!(
+                "{} holds no message",
+                path.display()
+            )));
+        };
+        let reader = BagReader::open(path).map_err(|error| open(&error))?;
+        Ok(Recorded {
+            bus: Bus::Mcap(McapBus::open(path).map_err(|error| open(&error))?),
+            topics: reader.topics().map(|own| own.name.to_string()).collect(),
+            info,
+            start,
+            end,
+        })
+    }
+
+    /// What it was made of; the link and the hand have no part in a replay.
+    fn loaded(&self) -> Result<Loaded, ReplayError> {
+        let origin = self.info.metadata.get(RECORD);
+        let origin =
+            origin.ok_or_else(|| ReplayError::Origin(format!("no metadata record {RECORD:?}")))?;
+        let entry = |key: &str| origin.get(key).map(String::as_str).unwrap_or_default();
+        if entry("mode") != "lockstep" {
+            return Err(ReplayError::Origin(format!(
+                "its mode is {:?}, in which steps are not at known times",
+                entry("mode")
+            )));
+        }
+        let bad = |error: serde_json::Error| ReplayError::Origin(error.to_string());
+        Ok(Loaded {
+            path: String::new(),
+            scenario: serde_json::from_str(entry("scenario")).map_err(bad)?,
+            arm: serde_json::from_str(entry("arm")).map_err(bad)?,
+            link: LinkConfig::default(),
+            hand_recording: None,
+        })
+    }
+
+    fn has(&self, topic: &str) -> bool {
+        self.topics.iter().any(|own| own == topic)
+    }
+
+    fn has_messages(&self, topic: &str) -> bool {
+        let counted = self.info.topics.iter().find(|own| own.name == topic);
+        counted.is_some_and(|own| own.messages > 0)
+    }
+
+    /// Carries what the nodes of `rows` take and none of them publishes.
+    fn inputs(&self, rows: &[&NodeRow], to: &Bus) -> Result<Carrier, CreateError> {
+        let mut carrier = Carrier::default();
+        carrier.add_topics(&self.bus, to, Stamp::Received, |topic, _| {
+            let taken = rows.iter().any(|row| row.inputs().contains(&topic));
+            let published = rows.iter().any(|row| row.outputs().contains(&topic));
+            match taken && !published && self.has(topic) {
+                true => Carry::Every { queue: 64 },
+                false => Carry::Not,
+            }
+        })?;
+        Ok(carrier)
+    }
+
+    /// Compares what the nodes of `rows` publish with what is recorded.
+    /// Recordings of earlier versions lack some topics; one without a twin has
+    /// its topics without messages.
+    fn checks(&self, rows: &[&NodeRow], bus: &Bus) -> Result<Vec<Box<dyn Check>>, CreateError> {
+        let outputs = rows
+            .iter()
+            .filter(|row| row.outputs().iter().any(|topic| self.has_messages(topic)))
+            .flat_map(|row| row.outputs())
+            .copied()
+            .filter(|topic| self.has(topic))
+            .collect();
+        let mut add = AddChecks {
+            outputs,
+            recorded: &self.bus,
+            bus,
+            checks: Ok(Vec::new()),
+        };
+        topics::visit(&mut add);
+        add.checks
+    }
+}
+
+/// Adds a check of each topic that is an output.
+struct AddChecks<'a> {
+    outputs: Vec<&'static str>,
+    recorded: &'a Bus,
+    bus: &'a Bus,
+    checks: Result<Vec<Box<dyn Check>>, CreateError>,
+}
+
+impl AddChecks<'_> {
+    fn check<M: Message>(&self, topic: Topic<M>) -> Result<Box<dyn Check>, CreateError> {
+        Ok(Box::new(TypedCheck {
+            topic: topic.name,
+            recorded: self.recorded.subscriber(topic, Depth::Queue(64))?,
+            replayed: self.bus.subscriber(topic, Depth::Queue(64))?,
+        }))
+    }
+}
+
+impl Visitor for AddChecks<'_> {
+    fn topic<M: Message>(&mut self, topic: Topic<M>) {
+        if !self.outputs.contains(&topic.name) {
+            return;
+        }
+        let check = self.check(topic);
+        if let Ok(checks) = &mut self.checks {
+            match check {
+                Ok(check) => checks.push(check),
+                Err(error) => self.checks = Err(error),
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! A twin in lockstep: what it found is taken over by the servo, and it
 //! follows what changes at the simulated arm.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use ferntast_bus::{Depth, Subscriber};
 use ferntast_emulation::hand::Motion;
@@ -10,11 +10,12 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_nodes::{
-    arm::{arm_file, load_arm},
+    arm::{self, arm_file, load_arm},
     config::{self, Loaded},
     lockstep::LockstepSession,
+    process::SessionContext,
     servo::FrictionSummary,
-    twin,
+    session_graph,
 };
 use ferntast_sim::arm::ArmConfig;
 
@@ -87,27 +88,30 @@ fn change_arm(loaded: &mut Loaded, change: impl FnOnce(&mut ArmConfig)) {
     loaded.arm = arm_file(&arm).expect("a simulated arm");
 }
 
-/// A twin, fitted to 40 s of `loaded` with another seed.
-fn twin_of(loaded: &Loaded) -> twin::TwinModel {
+/// A session of `loaded`; recorded to `bag`, followed by a twin of the experiment `twin`.
+fn session(loaded: &Loaded, bag: Option<&Path>, twin: Option<&Path>) -> LockstepSession {
+    let mut context = SessionContext::in_virtual_time(loaded.clone());
+    context.bag = bag.map(Path::to_owned);
+    context.twin = twin.map(Path::to_owned);
+    LockstepSession::new(&session_graph(arm::row()), &context).expect("a session in lockstep")
+}
+
+/// A session of `loaded` with a twin, fitted to 40 s of `fitted_to` with another seed.
+fn with_twin(loaded: &Loaded, fitted_to: &Loaded) -> LockstepSession {
     let folder = tempfile::tempdir().expect("a session in lockstep");
-    let mut loaded = loaded.clone();
-    loaded.scenario.seed += 1000;
-    let first = folder.path().join("first");
-    let mut session = LockstepSession::new(&loaded, Some(&first)).expect("a session in lockstep");
-    session.run(40.0);
-    session.finish().expect("a session in lockstep");
+    let mut other = fitted_to.clone();
+    other.scenario.seed += 1000;
+    let mut first = session(&other, Some(&folder.path().join("first")), None);
+    first.run(40.0);
+    first.finish().expect("a session in lockstep");
     let file = folder.path().join("joint.toml");
     fs::write(&file, EXPERIMENT).expect("a session in lockstep");
-    twin::open(&file).expect("a session in lockstep")
+    session(loaded, None, Some(&file))
 }
 
 /// A session of `loaded`, watched, with a twin fitted to the arm as it is configured.
 fn watched(loaded: &Loaded) -> Watched {
-    let mut session = LockstepSession::new(loaded, None).expect("a session in lockstep");
-    session
-        .add_twin(twin_of(&scenario(3, true)))
-        .expect("a session in lockstep");
-    Watched::new(session)
+    Watched::new(with_twin(loaded, &scenario(3, true)))
 }
 
 /// A session of which tracking error and torque are watched.
@@ -229,7 +233,7 @@ fn what_is_beyond_the_bounds_is_refused_and_changes_nothing() {
 
 #[test]
 fn without_a_twin_there_is_nothing_to_take_over() {
-    let mut own = Watched::new(LockstepSession::new(&scenario(6, true), None).unwrap());
+    let mut own = Watched::new(session(&scenario(6, true), None, None));
     own.command(FrictionCommand::TAKE_OVER);
     own.run(2.0);
     let reason = own.friction().refused.unwrap();
@@ -241,8 +245,7 @@ fn without_a_twin_there_is_nothing_to_take_over() {
 #[test]
 fn five_minutes_of_a_right_model_raise_no_alarm() {
     let loaded = scenario(7, false);
-    let mut session = LockstepSession::new(&loaded, None).unwrap();
-    session.add_twin(twin_of(&loaded)).unwrap();
+    let mut session = with_twin(&loaded, &loaded);
     session.run(300.0);
     let twin = session.monitor().twin().unwrap();
     println!("{twin}");
@@ -259,8 +262,7 @@ fn a_rising_temperature_is_a_drift() {
         arm.truth.environment.temperature = None;
         arm.truth.joint[JOINT].thermal.capacity = 3000.0;
     });
-    let mut session = LockstepSession::new(&loaded, None).unwrap();
-    session.add_twin(twin_of(&loaded)).unwrap();
+    let mut session = with_twin(&loaded, &loaded);
     session.run(240.0);
     let twin = session.monitor().twin().unwrap();
     println!("{twin}");

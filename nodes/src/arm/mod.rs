@@ -12,7 +12,11 @@ use ferntast_msgs::{
 };
 use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
 
-use crate::node::{Node, ports};
+use crate::{
+    graph::{Build, NodeRow},
+    node::{Node, Ticking, ports},
+    process::NodeError,
+};
 
 /// A torque command older than this \[s\] no longer counts: the drives are off.
 const COMMAND_LIFE: f64 = 0.010;
@@ -35,6 +39,22 @@ ports! {
         temperature_2: TemperatureSample = FOLLOWER_JOINT_2_TEMPERATURE,
         description: RobotDescriptionSample = ROBOT_DESCRIPTION,
     }
+}
+
+/// Its row in the graph.
+pub const fn row() -> NodeRow {
+    NodeRow::step::<ArmPorts>(
+        "arm",
+        "The simulated arm; hardware takes its place by speaking the same topics",
+        make,
+    )
+}
+
+fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    let node = ArmNode::new(&loaded.arm.whole()?, loaded.scenario.seed).map_err(NodeError::own)?;
+    let ports = ArmPorts::connect(build.bus)?;
+    build.join(node, ports)
 }
 
 /// The simulated arm.

@@ -160,6 +160,35 @@ impl Default for RecorderSection {
 }
 
 impl Scenario {
+    /// A servo with nobody who operates it: all else as it is by default.
+    pub fn without_operator(servo: ServoConfig, seed: u64) -> Scenario {
+        Scenario {
+            name: "without_operator".to_owned(),
+            description: String::new(),
+            arm: String::new(),
+            seed,
+            duration: 1.0,
+            start: 1,
+            hand: HandSection {
+                source: HandSource::Crtk,
+                scripted: None,
+                recording: None,
+                recorded: RecordedHandConfig::default(),
+            },
+            link: LinkSection {
+                channel: "direct".to_owned(),
+                endpoint: link_endpoint(),
+                buffer: 0.0,
+            },
+            law: Law::default(),
+            laws: Vec::new(),
+            servo,
+            master: MasterConfig::default(),
+            gateway: GatewaySection::default(),
+            recorder: RecorderSection::default(),
+        }
+    }
+
     /// Checks every value against its bounds.
     ///
     /// # Errors

@@ -10,6 +10,11 @@ pub trait Ports {
     /// The node that they belong to.
     type Node: Node;
 
+    /// Topics that it takes.
+    const INPUTS: &'static [&'static str];
+    /// Topics that it publishes, beside `/diagnostics`.
+    const OUTPUTS: &'static [&'static str];
+
     /// Fills `input` with what is visible at `now`.
     fn read(&mut self, now: Time, input: &mut <Self::Node as Node>::Input);
 
@@ -168,6 +173,11 @@ macro_rules! ports {
 
         impl $crate::node::Ports for $ports {
             type Node = $node;
+
+            const INPUTS: &'static [&'static str] =
+                &[$(ferntast_msgs::topics::$in_topic.name,)*];
+            const OUTPUTS: &'static [&'static str] =
+                &[$(ferntast_msgs::topics::$out_topic.name,)*];
 
             fn read(&mut self, now: ferntast_msgs::Time, input: &mut $input) {
                 $($crate::node::Receiver::fill(&mut self.$in_field, now, &mut input.$in_field);)*

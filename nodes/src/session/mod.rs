@@ -1,6 +1,5 @@
 //! A session: processes, their supervision, the live line, the summary.
 
-mod context;
 mod live;
 mod monitor;
 mod place;
@@ -9,7 +8,6 @@ mod run;
 mod summary;
 mod supervisor;
 
-pub use context::{ConsoleOptions, ContextError, PlayOptions, SessionContext};
 pub use monitor::Monitor;
 pub use place::runtime_folder;
 pub use play::{Played, play};

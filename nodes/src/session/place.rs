@@ -4,7 +4,8 @@ use std::{fs, path::PathBuf};
 
 use ferntast_bus::SharedMemoryBus;
 
-use super::{SessionContext, run::SessionError};
+use super::run::SessionError;
+use crate::process::SessionContext;
 
 /// Folder for the files of the sessions of this user.
 pub fn runtime_folder() -> PathBuf {

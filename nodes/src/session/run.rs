@@ -18,12 +18,16 @@ use ferntast_msgs::{
 };
 
 use super::{
-    ContextError, Monitor, SessionContext, Summary, Supervisor, SupervisorError,
+    Monitor, Summary, Supervisor, SupervisorError,
     live::LiveLine,
     place::Place,
     summary::{NodeSummary, RecorderSummary},
 };
-use crate::{clock::Clock, node_name::NodeName, recorder};
+use crate::{
+    graph::Graph,
+    process::{Clock, ContextError, SessionContext},
+    recorder,
+};
 
 /// How often the supervisor looks \[ns\].
 const ROUND_NANOS: i64 = 20_000_000;
@@ -111,42 +115,14 @@ impl SessionError {
     }
 }
 
-/// The nodes of a session, in the order in which they are stopped: first what
-/// moves the arm, last the recorder.
-fn nodes(context: &SessionContext) -> Vec<NodeName> {
-    let mut nodes = Vec::new();
-    if context.console.is_some() {
-        nodes.push(NodeName::Console);
-    }
-    if context.foxglove.is_some() {
-        nodes.push(NodeName::Foxglove);
-    }
-    nodes.extend([
-        NodeName::Master,
-        NodeName::LinkLeader,
-        NodeName::LinkFollower,
-        NodeName::Servo,
-        NodeName::Estimator,
-        NodeName::Arm,
-        NodeName::Gateway,
-    ]);
-    if context.twin.is_some() {
-        nodes.push(NodeName::Twin);
-    }
-    // The page can have it record at any time.
-    if context.bag.is_some() || context.console.is_some() {
-        nodes.push(NodeName::Recorder);
-    }
-    nodes
-}
-
-/// Runs a session until `stop` is set, its duration is over, or it fails.
+/// Runs a session of the nodes of `graph` until `stop` is set, its duration is over, or it fails.
 /// Gives the summary, and what went wrong while it ran.
 ///
 /// # Errors
 ///
 /// What kept it from starting.
 pub fn run(
+    graph: &Graph,
     context: SessionContext,
     options: &SessionOptions,
     stop: &AtomicBool,
@@ -155,9 +131,11 @@ pub fn run(
     let place = Place::take(&context)?;
     let session_file = place.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
+    let rows = graph.rows().filter(|row| (row.in_session)(&context));
+    let nodes: Vec<&str> = rows.map(|row| row.name).collect();
 
     let mut session = Running {
-        supervisor: Supervisor::new(executable, session_file, &nodes(&context)),
+        supervisor: Supervisor::new(executable, session_file, &nodes),
         live: LiveLine::new(options.duration),
         armed_at: None,
         commanded_at: None,
@@ -230,7 +208,7 @@ struct Running {
     live: LiveLine,
     armed_at: Option<Time>,
     commanded_at: Option<Time>,
-    died: Vec<NodeName>,
+    died: Vec<&'static str>,
 }
 
 struct Arming {
@@ -322,11 +300,11 @@ impl Running {
     }
 
     fn waiting_for(&self, now: Time, monitor: &Monitor) -> String {
-        let silent: Vec<String> = self
+        let silent: Vec<&str> = self
             .supervisor
             .nodes()
-            .filter(|(node, _, _)| !monitor.is_alive(*node, now))
-            .map(|(node, _, _)| node.to_string())
+            .filter(|(node, _, _)| !monitor.is_alive(node, now))
+            .map(|(node, _, _)| node)
             .collect();
         if !silent.is_empty() {
             return format!("nothing was heard of {}", silent.join(", "));
@@ -341,10 +319,10 @@ impl Running {
         }
     }
 
-    fn note_death(&mut self, node: NodeName, status: ExitStatus) {
+    fn note_death(&mut self, node: &'static str, status: ExitStatus) {
         self.live
             .note(&format!("node {node} died ({status}); it is started again"));
-        if node == NodeName::Recorder
+        if node == recorder::NAME
             && !self.died.contains(&node)
             && let Some(bag) = &self.context.bag
         {
@@ -419,7 +397,7 @@ fn recording(
     let Some(bag) = &context.bag else {
         return Ok(None);
     };
-    let recorder = nodes.get(NodeName::Recorder.as_str());
+    let recorder = nodes.get(recorder::NAME);
     let restarts = recorder.map_or(0, |recorder| recorder.restarts);
     let mut summary = RecorderSummary {
         messages: 0,

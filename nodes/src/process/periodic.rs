@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ferntast_msgs::Time;
 
-use crate::clock::Clock;
+use super::Clock;
 
 /// Real-time priority (SCHED_FIFO) of the 1 kHz loops: below the kernel's own
 /// interrupt threads at 50.

@@ -8,7 +8,8 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::{clock::Clock, config::Loaded};
+use super::Clock;
+use crate::config::Loaded;
 
 /// What every process of a session needs to know. The supervisor writes it to
 /// a file; each node reads that.
@@ -51,6 +52,8 @@ pub struct PlayOptions {
     pub rate: f64,
     /// Begin again at the end.
     pub repeat: bool,
+    /// Whether a live estimator publishes in place of the recording.
+    pub estimate: bool,
     /// Topics that are not played, because a live node publishes them.
     pub except: Vec<String>,
 }
@@ -60,6 +63,7 @@ impl Default for PlayOptions {
         PlayOptions {
             rate: 1.0,
             repeat: false,
+            estimate: false,
             except: Vec::new(),
         }
     }
@@ -103,13 +107,22 @@ impl SessionContext {
         Ok(SessionContext {
             session: session.to_owned(),
             clock_offset_nanos: Clock::start().offset_nanos(),
+            ..SessionContext::in_virtual_time(loaded)
+        })
+    }
+
+    /// A context in virtual time, for which no clock is read.
+    pub fn in_virtual_time(loaded: Loaded) -> SessionContext {
+        SessionContext {
+            session: "lockstep".to_owned(),
+            clock_offset_nanos: 0,
             loaded,
             bag: None,
             play: PlayOptions::default(),
             console: None,
             foxglove: None,
             twin: None,
-        })
+        }
     }
 
     /// The session's clock.

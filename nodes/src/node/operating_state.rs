@@ -1,4 +1,4 @@
-//! From the laws' words to the messages'.
+//! Operating states and state commands: from the messages' form to that of `control`, and back.
 
 use ferntast_control::operating;
 use ferntast_msgs::{
@@ -9,8 +9,8 @@ use ferntast_msgs::{
 /// How often a state is published though it did not change \[ns\].
 const PERIOD_NANOS: i64 = 100_000_000;
 
-/// A state command as the laws know it.
-pub fn law_command(command: StateCommand) -> Option<operating::StateCommand> {
+/// A state command as `control` knows it; `None` for one that it does not have.
+pub fn to_law(command: StateCommand) -> Option<operating::StateCommand> {
     operating::StateCommand::from_name(command.name()?)
 }
 

@@ -10,7 +10,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 /// # Errors
 ///
 /// The operating system's reason when the handlers cannot be installed.
-pub fn on_signals() -> Result<Arc<AtomicBool>, std::io::Error> {
+pub fn stop_on_signals() -> Result<Arc<AtomicBool>, std::io::Error> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
         signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
