@@ -25,7 +25,8 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, builder::PossibleValue};
 
-use ferntast_nodes::{arm, graph::Graph, session_graph};
+use ferntast_drivers::simulated;
+use ferntast_nodes::{graph::Graph, session_graph};
 
 use output::Failure;
 
@@ -115,7 +116,7 @@ fn parse(graph: &Graph) -> Result<Arguments, clap::Error> {
 /// Runs the command line; gives the process's exit code: 0 when all is well,
 /// 2 when the input was refused, 1 when something failed on the way.
 fn main() -> ExitCode {
-    let graph = session_graph(arm::row());
+    let graph = session_graph(simulated::row());
     let arguments = match parse(&graph) {
         Ok(arguments) => arguments,
         Err(error) => error.exit(),

@@ -1,6 +1,5 @@
 //! The nodes, their configuration, and what runs them: supervisor, lockstep, replay.
 
-pub mod arm;
 pub mod carry;
 mod choice_parameter;
 pub mod config;

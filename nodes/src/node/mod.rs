@@ -7,11 +7,11 @@ mod operating_state;
 mod ports;
 mod runner;
 
+pub use crate::ports;
 pub use health::{HealthMeter, NodeHealth};
 pub use input::{BATCH, Batch, Newest};
 pub use input_watch::InputWatch;
 pub use operating_state::{StatePublisher, to_law};
-pub(crate) use ports::ports;
 pub use ports::{Ports, Receiver, Sender, receiver};
 pub use runner::{Runner, Ticking};
 

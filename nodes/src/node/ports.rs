@@ -103,6 +103,7 @@ impl<M: Message> Sender<M> for Publisher<M> {
 /// An input is `Newest<Sample>` (the newest message, kept) or `Batch<Sample>`
 /// (every message since the last step). `extra` fields are no topics; ports of
 /// the node's own fill them.
+#[macro_export]
 macro_rules! ports {
     (
         $(#[$doc:meta])*
@@ -195,4 +196,3 @@ macro_rules! ports {
         }
     };
 }
-pub(crate) use ports;

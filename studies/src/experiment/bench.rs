@@ -7,6 +7,7 @@ use std::{
 
 use ferntast_bus::{Bus, Depth, McapBus, Publisher, Subscriber, mcap::BagOptions};
 use ferntast_control::servo::ServoConfig;
+use ferntast_drivers::simulated;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Time,
@@ -17,7 +18,6 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_nodes::{
-    arm,
     carry::{Carrier, Carry, Stamp},
     config::Loaded,
     graph::STEP_NANOS,
@@ -187,13 +187,16 @@ impl Bench {
             path: folder.to_owned(),
             reason,
         };
-        let loaded =
-            Loaded::without_operator(arm::arm_file(&self.arm)?, self.servo.clone(), self.seed);
+        let loaded = Loaded::without_operator(
+            simulated::arm_file(&self.arm)?,
+            self.servo.clone(),
+            self.seed,
+        );
         let nodes = match self.contact {
             true => &["arm", "servo", "estimator"][..],
             false => &["arm", "servo"],
         };
-        let graph = session_graph(arm::row());
+        let graph = session_graph(simulated::row());
         let rows = graph.rows().filter(|row| nodes.contains(&row.name));
         let mut time = VirtualTime::new(self.start)?;
         time.add_nodes(rows, &SessionContext::in_virtual_time(loaded))?;

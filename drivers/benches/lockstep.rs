@@ -3,9 +3,8 @@
 
 use std::{path::Path, time::Instant};
 
-use ferntast_nodes::{
-    arm, config, lockstep::LockstepSession, process::SessionContext, session_graph,
-};
+use ferntast_drivers::simulated;
+use ferntast_nodes::{config, lockstep::LockstepSession, process::SessionContext, session_graph};
 
 /// Virtual time of one run \[s\].
 const SECONDS: f64 = 20.0;
@@ -41,11 +40,11 @@ fn report(name: &str, mut run: impl FnMut() -> Result<f64, String>) {
 /// Virtual seconds per second.
 fn run(record: Option<&Path>) -> Result<f64, String> {
     let mut loaded =
-        config::load_scenario("rokviss", arm::load_arm).map_err(|error| error.to_string())?;
+        config::load_scenario("rokviss", simulated::load_arm).map_err(|error| error.to_string())?;
     loaded.complete().map_err(|error| error.to_string())?;
     let mut context = SessionContext::in_virtual_time(loaded);
     context.bag = record.map(Path::to_owned);
-    let graph = session_graph(arm::row());
+    let graph = session_graph(simulated::row());
     let begun = Instant::now();
     let mut session = LockstepSession::new(&graph, &context).map_err(|error| error.to_string())?;
     session.run(SECONDS);

@@ -130,12 +130,12 @@ fn front(xml: &mut String, feature: &Feature) -> std::fmt::Result {
 mod tests {
     use ferntast_msgs::Message;
 
+    use super::super::load_config;
     use super::*;
-    use crate::config;
 
     #[test]
     fn the_shipped_arm_is_described_whole() {
-        let sample = describe(&config::load_model_only("rokviss").unwrap().model);
+        let sample = describe(&load_config("rokviss").unwrap().model());
         assert_eq!(sample.check(), Ok(()));
         let text = sample.urdf.as_str();
         assert!(text.trim_end().ends_with("</robot>"), "cut: {text}");
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_contour_without_end_is_left_out() {
-        let mut model = config::load_model_only("rokviss").unwrap().model;
+        let mut model = load_config("rokviss").unwrap().model();
         let edge = model.contour.edge[0];
         model.contour.edge = vec![edge; 200];
         let sample = describe(&model);

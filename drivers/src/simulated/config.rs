@@ -1,8 +1,7 @@
 //! The simulated arm's file: what is believed of it, and what is true.
 
+use ferntast_nodes::config::{ARM, ArmFile, ConfigError, load};
 use ferntast_sim::arm::ArmConfig;
-
-use crate::config::{ARM, ArmFile, ConfigError, load};
 
 /// Loads the arm `name`, shipped or a file.
 ///

@@ -10,13 +10,12 @@ use ferntast_msgs::{
     Time,
     sample::{Fault, JointFields, JointSample, Level, RobotDescriptionSample, TemperatureSample},
 };
-use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
-
-use crate::{
+use ferntast_nodes::{
     graph::{Build, NodeRow},
     node::{Node, Ticking, ports},
     process::NodeError,
 };
+use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
 
 /// A torque command older than this \[s\] no longer counts: the drives are off.
 const COMMAND_LIFE: f64 = 0.010;

@@ -4,13 +4,13 @@
 use std::{fs, path::Path};
 
 use ferntast_bus::{Depth, Subscriber};
+use ferntast_drivers::simulated::{self, arm_file, load_arm};
 use ferntast_emulation::hand::Motion;
 use ferntast_msgs::{
     sample::{Fault, FrictionCommand, JointSample},
     topics,
 };
 use ferntast_nodes::{
-    arm::{self, arm_file, load_arm},
     config::{self, Loaded},
     lockstep::LockstepSession,
     process::SessionContext,
@@ -93,7 +93,7 @@ fn session(loaded: &Loaded, bag: Option<&Path>, twin: Option<&Path>) -> Lockstep
     let mut context = SessionContext::in_virtual_time(loaded.clone());
     context.bag = bag.map(Path::to_owned);
     context.twin = twin.map(Path::to_owned);
-    LockstepSession::new(&session_graph(arm::row()), &context).expect("a session in lockstep")
+    LockstepSession::new(&session_graph(simulated::row()), &context).expect("a session in lockstep")
 }
 
 /// A session of `loaded` with a twin, fitted to 40 s of `fitted_to` with another seed.
