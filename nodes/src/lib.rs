@@ -1,27 +1,22 @@
 //! The nodes, their configuration, and what runs them: supervisor, lockstep, replay.
 
 pub mod arm;
-pub mod carry;
-mod choice_parameter;
+pub mod bridge;
 pub mod config;
 mod console;
 pub mod estimator;
-mod foxglove;
-pub mod gateway;
 pub mod graph;
 pub mod link;
 pub mod lockstep;
 pub mod master;
 pub mod node;
-mod player;
 pub mod process;
-mod recorder;
-mod relay;
 pub mod replay;
 pub mod servo;
 pub mod session;
 pub mod twin;
 
+use bridge::{foxglove, gateway, player, recorder};
 use graph::{Graph, NodeRow, always, never};
 
 /// The nodes of a session in the order in which they are stopped: first what

@@ -13,10 +13,12 @@ use ferntast_msgs::{
 };
 
 use crate::{
-    carry::{Carrier, Carry, Stamp},
+    bridge::{
+        forwarder::{Carrier, Carry, Stamp},
+        recorder::bag_options,
+    },
     graph::Graph,
     process::{NodeError, SessionContext},
-    recorder::bag_options,
     session::Monitor,
 };
 

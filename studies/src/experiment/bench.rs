@@ -18,7 +18,7 @@ use ferntast_msgs::{
 };
 use ferntast_nodes::{
     arm,
-    carry::{Carrier, Carry, Stamp},
+    bridge::forwarder::{Carrier, Carry, Stamp},
     config::Loaded,
     graph::STEP_NANOS,
     lockstep::VirtualTime,
