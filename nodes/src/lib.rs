@@ -6,6 +6,7 @@ pub mod config;
 mod console;
 pub mod estimator;
 pub mod graph;
+pub mod limits;
 pub mod link;
 pub mod lockstep;
 pub mod master;
@@ -74,6 +75,16 @@ pub fn session_graph(arm: NodeRow) -> Graph {
                 "gateway",
                 "Carries the topics to and from ROS 2",
                 gateway::run,
+            )
+        },
+        NodeRow {
+            period_nanos: 10_000_000,
+            realtime: false,
+            in_session: |session| session.loaded.scenario.limits.is_some(),
+            ..NodeRow::step::<limits::LimitsPorts>(
+                "limits",
+                "Warns before the arm comes to its limits",
+                limits::make,
             )
         },
         NodeRow {
