@@ -125,8 +125,7 @@ fn in_lockstep_the_warning_comes_and_goes() {
             sample.position[0] = upper - 0.01;
         }
         arm.publish(now, &sample).unwrap();
-    })
-    .unwrap();
+    });
     let queue = Depth::Queue(64);
     let mut health = time.bus().subscriber(topics::DIAGNOSTICS, queue).unwrap();
     let mut last = |time: &VirtualTime| {

@@ -75,11 +75,11 @@ pub fn run(
         .filter(|row| (row.in_replay)(&session))
         .collect();
 
-    let mut time = VirtualTime::new(recorded.start)?;
+    let mut time = VirtualTime::new(recorded.start).map_err(RunError::from)?;
     let mut carrier = recorded.inputs(&rows, time.bus())?;
     time.add(move |now| {
         carrier.carry(now);
-    })?;
+    });
     time.add_nodes(rows.iter().copied(), &session)?;
     let mut checks = check::checks(recorded.outputs(&rows), &recorded.bus, time.bus())?;
     let mut said = time
