@@ -104,7 +104,7 @@ impl Sources {
         if depth > 8 {
             return None;
         }
-        let path = self.from_root(module, path)?;
+        let path = self.absolute(module, path)?;
         let length = (0..=path.len()).rev();
         let length = length
             .into_iter()
@@ -121,7 +121,7 @@ impl Sources {
     }
 
     /// `path` as seen from `module`, from the crate's root on.
-    fn from_root(&self, module: &Module, path: &[String]) -> Option<Vec<String>> {
+    fn absolute(&self, module: &Module, path: &[String]) -> Option<Vec<String>> {
         let (first, rest) = path.split_first()?;
         let supers = path.iter().take_while(|name| *name == "super").count();
         let (base, rest) = match first.as_str() {
@@ -137,7 +137,7 @@ impl Sources {
                 match imported.filter(|import| import.first() != Some(first)) {
                     _ if self.paths.contains_key(&child) => (module.as_slice(), path),
                     Some(import) => {
-                        let base = self.from_root(module, import)?;
+                        let base = self.absolute(module, import)?;
                         return Some([base.as_slice(), rest].concat());
                     }
                     None => return None,
