@@ -1,26 +1,22 @@
 //! The nodes, their configuration, and what runs them: supervisor, lockstep, replay.
 
-pub mod carry;
-mod choice_parameter;
+pub mod bridge;
 pub mod config;
 mod console;
 pub mod estimator;
-mod foxglove;
-pub mod gateway;
 pub mod graph;
+pub mod limits;
 pub mod link;
 pub mod lockstep;
 pub mod master;
 pub mod node;
-mod player;
 pub mod process;
-mod recorder;
-mod relay;
 pub mod replay;
 pub mod servo;
 pub mod session;
 pub mod twin;
 
+use bridge::{foxglove, gateway, player, recorder};
 use graph::{Graph, NodeRow, always, never};
 
 /// The nodes of a session in the order in which they are stopped: first what
@@ -78,6 +74,16 @@ pub fn session_graph(arm: NodeRow) -> Graph {
                 "gateway",
                 "Carries the topics to and from ROS 2",
                 gateway::run,
+            )
+        },
+        NodeRow {
+            period_nanos: 10_000_000,
+            realtime: false,
+            in_session: |session| session.loaded.scenario.limits.is_some(),
+            ..NodeRow::step::<limits::LimitsPorts>(
+                "limits",
+                "Warns before the arm comes to its limits",
+                limits::make,
             )
         },
         NodeRow {

@@ -1,6 +1,5 @@
 //! All nodes in one process and virtual time.
 
-mod executor;
 mod virtual_time;
 
 use ferntast_bus::{Bus, CreateError, McapBus};
@@ -13,15 +12,16 @@ use ferntast_msgs::{
 };
 
 use crate::{
-    carry::{Carrier, Carry, Stamp},
+    bridge::{
+        forwarder::{Carrier, Carry, Stamp},
+        recorder::bag_options,
+    },
     graph::Graph,
     process::{NodeError, SessionContext},
-    recorder::bag_options,
     session::Monitor,
 };
 
-pub use executor::{Lockstep, LockstepError};
-pub use virtual_time::VirtualTime;
+pub use virtual_time::{VirtualTime, VirtualTimeError};
 
 /// When the arm is armed, after the start \[ns\].
 const ENABLE_AT_NANOS: i64 = 20_000_000;
@@ -35,9 +35,9 @@ pub enum RunError {
     /// A topic cannot be opened.
     #[error(transparent)]
     Create(#[from] CreateError),
-    /// The executor refused a task.
+    /// A start that is no valid time, a period that is none of virtual time.
     #[error(transparent)]
-    Executor(#[from] LockstepError),
+    Time(#[from] VirtualTimeError),
     /// The recording cannot be written.
     #[error("recording: {0}")]
     Recording(String),
@@ -74,7 +74,7 @@ impl LockstepSession {
                 let _ = follower.publish(now, &enable);
                 let _ = leader.publish(now, &enable);
             }
-        })?;
+        });
 
         let recording = match &session.bag {
             None => None,
@@ -88,7 +88,7 @@ impl LockstepSession {
                 })?;
                 time.add(move |now| {
                     carrier.carry(now);
-                })?;
+                });
                 Some(recording)
             }
         };
@@ -143,7 +143,8 @@ impl LockstepSession {
                 // Memory does not refuse what is valid.
                 let _ = publisher.publish(now, &message(now));
             }
-        })
+        });
+        Ok(())
     }
 
     /// Runs `seconds` \[s\] of virtual time.

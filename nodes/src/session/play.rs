@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ferntast_bus::{Bus, SharedMemoryBus, SharedMemoryConfig};
 use serde::Serialize;
 
-use super::{Monitor, Supervisor, place::Place, run::SessionError};
+use super::{Monitor, SessionError, Supervisor, host_resources::HostResources};
 use crate::{
+    bridge::player,
     graph::{Graph, NodeRow},
-    player,
     process::SessionContext,
     twin::{self, TwinSummary},
 };
@@ -51,8 +51,8 @@ pub fn play(
     let live = rows.iter().flat_map(|row| row.outputs());
     let live = live.map(|topic| (*topic).to_owned());
     context.play.except.extend(live);
-    let place = Place::take(&context)?;
-    let session_file = place.session_file.clone();
+    let resources = HostResources::acquire(&context)?;
+    let session_file = resources.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
     let mut listeners = Supervisor::new(executable.clone(), session_file.clone(), &nodes);
     listeners.start()?;
@@ -94,7 +94,7 @@ pub fn play(
     drop((monitor, bus));
     player.stop();
     listeners.stop();
-    place.leave()?;
+    resources.release()?;
     Ok(Played {
         recording: context
             .bag

@@ -18,10 +18,10 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_nodes::{
-    carry::{Carrier, Carry, Stamp},
+    bridge::forwarder::{Carrier, Carry, Stamp},
     config::Loaded,
     graph::STEP_NANOS,
-    lockstep::VirtualTime,
+    lockstep::{RunError, VirtualTime},
     process::SessionContext,
     session_graph,
 };
@@ -198,12 +198,12 @@ impl Bench {
         };
         let graph = session_graph(simulated::row());
         let rows = graph.rows().filter(|row| nodes.contains(&row.name));
-        let mut time = VirtualTime::new(self.start)?;
+        let mut time = VirtualTime::new(self.start).map_err(RunError::from)?;
         time.add_nodes(rows, &SessionContext::in_virtual_time(loaded))?;
         let program = std::mem::replace(&mut self.program, Box::new(Nothing));
         let duration = SETTLE + program.duration();
         let mut commander = self.commander(time.bus(), program)?;
-        time.add(move |now| commander.step(now))?;
+        time.add(move |now| commander.step(now));
 
         let recording = McapBus::create_with(folder, self.options())
             .map_err(|error| recording_error(error.to_string()))?;
@@ -217,7 +217,7 @@ impl Bench {
         )?;
         time.add(move |now| {
             carrier.carry(now);
-        })?;
+        });
 
         let operating_state = topics::FOLLOWER_OPERATING_STATE;
         let mut states = time.bus().subscriber(operating_state, Depth::Queue(64))?;

@@ -4,12 +4,12 @@
 
 use ferntast_bus::{Bus, FoxgloveBus, FoxgloveConfig};
 
-use crate::{
-    carry::{Carrier, Stamp},
+use super::{
+    forwarder::{Carrier, Stamp},
+    forwarding_loop::Relay,
     gateway::goes_out,
-    process::{NodeError, ProcessContext},
-    relay::Relay,
 };
+use crate::process::{NodeError, ProcessContext};
 
 /// Serves the WebSocket until it is told to stop.
 ///

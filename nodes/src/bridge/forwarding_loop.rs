@@ -8,8 +8,8 @@ use ferntast_msgs::{
     topics,
 };
 
+use super::forwarder::Carrier;
 use crate::{
-    carry::Carrier,
     node::{HealthMeter, InputWatch, NodeHealth},
     process::{ProcessContext, periodic::Wake},
 };

@@ -9,12 +9,14 @@ use ferntast_msgs::{
     topics::{self, Delivery},
 };
 
-use crate::{
-    carry::{Carrier, Carry, Stamp},
+use super::{
     choice_parameter::ChoiceParameter,
+    forwarder::{Carrier, Carry, Stamp},
+    forwarding_loop::Relay,
+};
+use crate::{
     config::{GatewaySection, HandSource, Middleware},
     process::{NodeError, ProcessContext},
-    relay::Relay,
 };
 
 /// Opens the ROS 2 side.

@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ferntast_bus::{Bus, McapBus, mcap};
 use ferntast_msgs::Time;
 
-use crate::{
-    carry::{Carrier, Carry, Stamp},
-    process::{NodeError, ProcessContext, periodic},
-    relay::Relay,
+use super::{
+    forwarder::{Carrier, Carry, Stamp},
+    forwarding_loop::Relay,
 };
+use crate::process::{NodeError, ProcessContext, periodic};
 
 /// Name of the node.
 pub const NAME: &str = "player";

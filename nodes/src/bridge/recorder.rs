@@ -15,11 +15,13 @@ use ferntast_msgs::{
     topics,
 };
 
+use super::{
+    forwarder::{Carrier, Carry, Stamp},
+    forwarding_loop::Relay,
+};
 use crate::{
-    carry::{Carrier, Carry, Stamp},
     config::Loaded,
     process::{NodeError, ProcessContext},
-    relay::Relay,
 };
 
 /// Name of the node.

@@ -4,7 +4,7 @@ use std::{fs, path::PathBuf};
 
 use ferntast_bus::SharedMemoryBus;
 
-use super::run::SessionError;
+use super::SessionError;
 use crate::process::SessionContext;
 
 /// Folder for the files of the sessions of this user.
@@ -16,51 +16,52 @@ pub fn runtime_folder() -> PathBuf {
     }
 }
 
-/// A session's place on this host. Every way out of the session frees it: to
-/// be made before, and so dropped after, all that uses the shared memory.
-pub struct Place {
+/// The shared memory and the file of a session. Every way out of the session
+/// frees them: to be made before, and so dropped after, all that uses the
+/// shared memory.
+pub struct HostResources {
     session: String,
     folder: PathBuf,
     /// What the nodes read.
     pub session_file: PathBuf,
 }
 
-impl Place {
-    /// Takes the place of `context`'s session and writes its file. What a
+impl HostResources {
+    /// Takes what the session of `context` needs and writes its file. What a
     /// session of the same name left behind when it was killed is removed.
     ///
     /// # Errors
     ///
     /// A session of that name runs; its file cannot be written.
-    pub fn take(context: &SessionContext) -> Result<Place, SessionError> {
+    pub fn acquire(context: &SessionContext) -> Result<HostResources, SessionError> {
         SharedMemoryBus::clean_up(&context.session)?;
         let folder = runtime_folder().join(&context.session);
         fs::create_dir_all(&folder).map_err(|source| SessionError::Folder {
             path: folder.clone(),
             source,
         })?;
-        let place = Place {
+        let resources = HostResources {
             session: context.session.clone(),
             session_file: folder.join("session.json"),
             folder,
         };
-        context.write(&place.session_file)?;
-        Ok(place)
+        context.write(&resources.session_file)?;
+        Ok(resources)
     }
 
-    /// Frees the place.
+    /// Frees them.
     ///
     /// # Errors
     ///
     /// Shared memory that is still in use.
-    pub fn leave(self) -> Result<(), SessionError> {
+    pub fn release(self) -> Result<(), SessionError> {
         SharedMemoryBus::clean_up(&self.session)?;
         // The folder goes when `self` is dropped.
         Ok(())
     }
 }
 
-impl Drop for Place {
+impl Drop for HostResources {
     fn drop(&mut self) {
         // Nothing can be said here any more, and the next session of this
         // name tries again.
