@@ -91,7 +91,7 @@ impl RawMessages {
     /// topic.
     fn named(&self, found: Found) -> Option<RawMessage> {
         let header = found.entry.header;
-        let topic = self.channels.get(found.file)?.get(&header.channel)?;
+        let topic = self.channels.get(found.file)?.get(&header.channel_id)?;
         Some(RawMessage {
             topic: topic.clone(),
             log_time: time(header.log_time),

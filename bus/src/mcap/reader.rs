@@ -262,7 +262,7 @@ pub(super) fn topic_of(layout: &Layout, channel: u16) -> Option<BagTopic> {
             .map(|schema| schema.encoding.clone())
             .unwrap_or_default(),
         schema_text: schema
-            .map(|schema| String::from_utf8_lossy(&schema.text).into_owned())
+            .map(|schema| String::from_utf8_lossy(&schema.data).into_owned())
             .unwrap_or_default(),
         message_encoding: channel.message_encoding.clone(),
         type_hash: entry("topic_type_hash"),

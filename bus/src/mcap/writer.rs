@@ -133,7 +133,7 @@ impl BagWriter {
         let metadata = BTreeMap::from([
             (
                 "offered_qos_profiles".to_owned(),
-                to_yaml(std::slice::from_ref(&qos), 0).trim_end().to_owned(),
+                to_yaml(std::slice::from_ref(&qos)).trim_end().to_owned(),
             ),
             ("topic_type_hash".to_owned(), type_hash.clone()),
         ]);

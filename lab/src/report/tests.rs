@@ -49,9 +49,16 @@ fn the_page_holds_the_data_and_asks_nothing_of_a_network() {
         .replace(&nasty.replace('<', "\\u003c"), "")
         .replace(&nasty.replace('<', "&lt;"), "");
     assert!(
-        ["@TITLE@", "@STYLE@", "@CHARTS@", "@SECTIONS@", "@DATA@"]
-            .iter()
-            .all(|mark| !without.contains(mark))
+        [
+            "@TITLE@",
+            "@STYLE@",
+            "@CHARTS@",
+            "@KIT@",
+            "@SECTIONS@",
+            "@DATA@"
+        ]
+        .iter()
+        .all(|mark| !without.contains(mark))
     );
 }
 
