@@ -57,7 +57,7 @@ pub struct RawMessages {
 }
 
 impl RawMessages {
-    /// `channels` says by file what topic each channel carries.
+    /// `channels` says by file the topic of each channel.
     pub(super) fn new(cursor: Cursor, channels: Vec<BTreeMap<u16, Arc<BagTopic>>>) -> RawMessages {
         RawMessages { cursor, channels }
     }

@@ -234,7 +234,7 @@ mod tests {
                 name: "/link/status".to_owned(),
                 schema_name: "ferntast_msgs/msg/LinkStatus".to_owned(),
                 message_encoding: "cdr".to_owned(),
-                qos: vec![QosProfile::of(Delivery::Stream)],
+                qos: vec![QosProfile::for_delivery(Delivery::Stream)],
                 type_hash: "RIHS01_00".to_owned(),
                 messages: 3,
             }],

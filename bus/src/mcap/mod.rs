@@ -10,7 +10,7 @@
 //!   time later, also when the process is killed,
 //! * [`BagReader`] reads any rosbag2 directory or MCAP file, its own or not,
 //!   in the order of log time and a chunk at a time,
-//! * [`info`] says what a recording holds, [`repair`] mends one that was cut
+//! * [`info`] says what a recording holds, [`repair`] restores one that was cut
 //!   off,
 //! * [`McapBus`] is a way across like the others: publish into a recording,
 //!   subscribe to one.

@@ -48,7 +48,7 @@ const LIVELINESS: &[&str] = &[
 
 impl QosProfile {
     /// What a topic of that delivery is offered with.
-    pub fn of(delivery: Delivery) -> QosProfile {
+    pub fn for_delivery(delivery: Delivery) -> QosProfile {
         let (depth, reliability, durability) = match delivery {
             Delivery::Stream => (1, "best_effort", "volatile"),
             Delivery::State => (1, "reliable", "transient_local"),
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         for delivery in [Delivery::Stream, Delivery::State, Delivery::Event] {
-            let profile = QosProfile::of(delivery);
+            let profile = QosProfile::for_delivery(delivery);
             let text = to_yaml(std::slice::from_ref(&profile));
             assert_eq!(QosProfile::parse(&text), [profile]);
         }
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn the_text_is_rosbag2s() {
-        let text = to_yaml(&[QosProfile::of(Delivery::State)]);
+        let text = to_yaml(&[QosProfile::for_delivery(Delivery::State)]);
         let expected = "- history: keep_last\n  depth: 1\n  reliability: reliable\n  \
             durability: transient_local\n  deadline:\n    sec: 9223372036\n    nsec: 854775807\n  \
             lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: automatic\n  \

@@ -129,7 +129,7 @@ impl BagWriter {
         };
         let schema = interface::schema(interface).map_err(no_schema)?;
         let type_hash = interface::type_hash(interface).map_err(no_schema)?;
-        let qos = QosProfile::of(topic.delivery);
+        let qos = QosProfile::for_delivery(topic.delivery);
         let metadata = BTreeMap::from([
             (
                 "offered_qos_profiles".to_owned(),

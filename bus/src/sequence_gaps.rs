@@ -2,18 +2,18 @@
 
 use std::hash::{DefaultHasher, Hasher};
 
-/// How many senders are told apart; of fixed size, as it is on the control path.
+/// How many senders are distinguished; of fixed size, as it is on the control path.
 const SENDERS: usize = 16;
 
 /// The number that each sender's next message has.
 #[derive(Debug, Default)]
-pub(crate) struct Gaps {
+pub(crate) struct SequenceGaps {
     next: Box<[Option<(u128, u64)>; SENDERS]>,
     /// Place given to the next new sender, once all are taken.
     oldest: usize,
 }
 
-impl Gaps {
+impl SequenceGaps {
     /// How many messages of `sender` are missing before `number`. What a
     /// sender sent before its first message here is not missing.
     pub(crate) fn before(&mut self, sender: u128, number: u64) -> u64 {
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn gaps_are_counted_for_each_sender_apart() {
-        let mut gaps = Gaps::default();
+        let mut gaps = SequenceGaps::default();
         assert_eq!(
             gaps.before(1, 5),
             0,
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn more_senders_than_places_never_panic() {
-        let mut gaps = Gaps::default();
+        let mut gaps = SequenceGaps::default();
         for sender in 0..100 {
             assert_eq!(gaps.before(sender, u64::MAX), 0);
         }
