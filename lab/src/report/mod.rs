@@ -59,12 +59,12 @@ pub fn page(title: &str, sections: &str, show: &str, data: &str) -> String {
 
 /// JSON as it may stand in a script element: nothing in it ends the element or
 /// begins a comment.
-pub fn in_script(json: &str) -> String {
+fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
 /// `template` with its marks, in the order of `parts`, replaced by content.
-pub fn fill(template: &str, parts: &[(&str, &str)]) -> String {
+fn fill(template: &str, parts: &[(&str, &str)]) -> String {
     let content: usize = parts.iter().map(|(_, content)| content.len()).sum();
     // Piece by piece, so that what is put in is never searched.
     let mut page = String::with_capacity(template.len() + content);
