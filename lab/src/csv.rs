@@ -194,7 +194,7 @@ fn open<R: Read>(
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .delimiter(delimiter(&head))
-        .from_reader(std::io::Cursor::new(head).chain(source));
+        .from_reader(io::Cursor::new(head).chain(source));
     let names: Vec<String> = reader
         .headers()
         .map_err(|error| format_error(path, &error))?
