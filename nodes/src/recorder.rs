@@ -109,7 +109,7 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         Some(bag) => Some(begin(around, &mut relay, folder(bag, around.generation))?),
         None => None,
     };
-    let mut status = RecorderStatusSample::idle(around.clock.now());
+    let mut status = RecorderStatusSample::initial(around.clock.now());
     let mut trouble = Text::<96>::EMPTY;
     let mut due = Time::INVALID;
     pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {
