@@ -26,6 +26,10 @@ pub trait Message: Sample {
     /// When the content was measured or commanded.
     fn stamp(&self) -> Time;
 
+    /// Notes who sent it, as the middleware tells senders apart, where the
+    /// message has a place for that.
+    fn set_source(&mut self, _source: u64) {}
+
     /// The ROS 2 form. Allocates: not for the control path.
     fn to_ros(&self) -> Self::Ros;
 

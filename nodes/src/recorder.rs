@@ -77,10 +77,8 @@ fn begin(
     let bag = create(&folder, options)?;
     let to = Bus::Mcap(bag.clone());
     let mut carrier = Carrier::default();
-    carrier.add_topics(&around.bus, &to, Stamp::Received, |_, delivery| {
-        Carry::Every {
-            queue: SharedMemoryBus::max_queue(delivery),
-        }
+    carrier.add_topics(&around.bus, &to, Stamp::Received, |topic| Carry::Every {
+        queue: SharedMemoryBus::max_queue(topic.delivery),
     })?;
     relay.begin(carrier);
     Ok(Recording { folder, bag })

@@ -47,6 +47,10 @@ impl Message for PoseSample {
         self.stamp
     }
 
+    fn set_source(&mut self, source: u64) {
+        self.source = source;
+    }
+
     fn to_ros(&self) -> PoseStamped {
         PoseStamped {
             header: self.frame.header(self.stamp),

@@ -5,7 +5,7 @@ mod description;
 
 use ferntast_msgs::{
     Time,
-    sample::{Fault, JointFields, JointSample, Level, RobotDescriptionSample, TemperatureSample},
+    sample::{Fault, JointSample, Level, RobotDescriptionSample, TemperatureSample},
 };
 use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
 
