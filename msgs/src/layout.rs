@@ -1,6 +1,6 @@
 //! What a sample is made of.
 
-use crate::{Text, Time};
+use crate::{text::Text, time::Time};
 
 /// Data that may be read from shared memory as found there.
 ///
