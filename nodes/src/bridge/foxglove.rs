@@ -30,8 +30,8 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let mut relay = Relay::new(process)?;
     let mut carrier = Carrier::default();
     let to = Bus::Foxglove(foxglove);
-    carrier.add_topics(&process.bus, &to, Stamp::Received, |topic, delivery| {
-        goes_out(topic, delivery, section)
+    carrier.add_topics(&process.bus, &to, Stamp::Received, |topic| {
+        goes_out(topic, section)
     })?;
     relay.begin(carrier);
     process.run(|wake| {

@@ -103,10 +103,8 @@ fn begin(
     let bag = create(&folder, options)?;
     let to = Bus::Mcap(bag.clone());
     let mut carrier = Carrier::default();
-    carrier.add_topics(&process.bus, &to, Stamp::Received, |_, delivery| {
-        Carry::Every {
-            queue: SharedMemoryBus::max_queue(delivery),
-        }
+    carrier.add_topics(&process.bus, &to, Stamp::Received, |topic| Carry::Every {
+        queue: SharedMemoryBus::max_queue(topic.delivery),
     })?;
     relay.begin(carrier);
     Ok(Recording { folder, bag })
@@ -135,7 +133,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         Some(bag) => Some(begin(process, &mut relay, folder(bag, process.generation))?),
         None => None,
     };
-    let mut status = RecorderStatusSample::idle(process.clock.now());
+    let mut status = RecorderStatusSample::initial(process.clock.now());
     let mut trouble = Text::<96>::EMPTY;
     let mut due = Time::INVALID;
     process.run(|wake| {

@@ -83,7 +83,7 @@ impl LockstepSession {
                     .map_err(|error| RunError::Recording(error.to_string()))?;
                 let mut carrier = Carrier::default();
                 let to = Bus::Mcap(recording.clone());
-                carrier.add_topics(time.bus(), &to, Stamp::Received, |_, _| Carry::Every {
+                carrier.add_topics(time.bus(), &to, Stamp::Received, |_| Carry::Every {
                     queue: 64,
                 })?;
                 time.add(move |now| {

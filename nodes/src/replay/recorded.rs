@@ -97,10 +97,11 @@ impl Recorded {
     /// A topic that cannot be opened.
     pub fn inputs(&self, rows: &[&NodeRow], to: &Bus) -> Result<Carrier, CreateError> {
         let mut carrier = Carrier::default();
-        carrier.add_topics(&self.bus, to, Stamp::Received, |topic, _| {
-            let taken = rows.iter().any(|row| row.inputs().contains(&topic));
-            let published = rows.iter().any(|row| row.outputs().contains(&topic));
-            match taken && !published && self.has(topic) {
+        carrier.add_topics(&self.bus, to, Stamp::Received, |topic| {
+            let name = topic.name;
+            let taken = rows.iter().any(|row| row.inputs().contains(&name));
+            let published = rows.iter().any(|row| row.outputs().contains(&name));
+            match taken && !published && self.has(name) {
                 true => Carry::Every { queue: 64 },
                 false => Carry::Not,
             }

@@ -213,7 +213,7 @@ impl Bench {
             time.bus(),
             &Bus::Mcap(recording.clone()),
             Stamp::Received,
-            |topic, _| carry(topic, contact),
+            |topic| carry(topic.name, contact),
         )?;
         time.add(move |now| {
             carrier.carry(now);
