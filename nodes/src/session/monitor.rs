@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
+use ferntast_identification::statistics::quantile;
 use ferntast_msgs::{
     Message, Time,
     sample::{
@@ -12,7 +13,7 @@ use ferntast_msgs::{
     topics::{self, Topic},
 };
 
-use crate::{node_name::NodeName, servo::FrictionSummary, twin::TwinSummary};
+use crate::{servo::FrictionSummary, twin::TwinSummary};
 
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
@@ -150,10 +151,8 @@ impl Monitor {
     }
 
     /// Whether `node` was heard of lately.
-    pub fn is_alive(&self, node: NodeName, now: Time) -> bool {
-        self.nodes
-            .get(node.as_str())
-            .is_some_and(|view| view.is_alive(now))
+    pub fn is_alive(&self, node: &str, now: Time) -> bool {
+        self.nodes.get(node).is_some_and(|view| view.is_alive(now))
     }
 
     /// Takes in what arrived until `now`.
@@ -252,11 +251,8 @@ impl Monitor {
 
     /// The link.
     pub fn link(&mut self) -> LinkSummary {
-        self.round_trips.sort_by(f64::total_cmp);
-        let percentile = |share: f64| {
-            let last = self.round_trips.len().checked_sub(1)?;
-            let index = (last as f64 * share).round() as usize;
-            self.round_trips.get(index).map(|seconds| seconds * 1e3)
+        let mut percentile = |share: f64| {
+            quantile(&mut self.round_trips, share, f64::total_cmp).map(|seconds| seconds * 1e3)
         };
         let status = self.link_status.as_ref();
         LinkSummary {
