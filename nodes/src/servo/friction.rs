@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use ferntast_control::servo::{FeedForward, FoundParameter, Servo, TakeOverRefusal};
+use ferntast_control::servo::{FeedForward, FoundParameter, Servo, TakeOverRefusal, TakenOver};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -141,14 +141,17 @@ fn take_over(
 /// A take-over in words.
 struct Words<'a> {
     joint: usize,
-    taken: usize,
+    taken: TakenOver<'a>,
     own: &'a FeedForward,
 }
 
 impl fmt::Display for Words<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = JOINT_NAMES.get(self.joint).copied().unwrap_or_default();
-        write!(f, "{name} takes {} of the twin's", self.taken)?;
+        write!(f, "{name} takes {} of the twin's", self.taken.count)?;
+        if let Some((name, why)) = self.taken.left_out {
+            write!(f, ", not {name}: {why}")?;
+        }
         for own in self.own.parameters() {
             if own.target != own.configured {
                 write!(f, ", {} {:.4}", own.name, own.target)?;
