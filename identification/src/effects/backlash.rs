@@ -1,8 +1,8 @@
 //! A gap between the motor and the gear with its load.
 
-use ferntast_model::friction::{AtReversal, Contrast, Proposal, ANGLE, ONE};
+use ferntast_model::friction::{ANGLE, AtReversal, Contrast, ONE, Proposal};
 
-use super::{Effect, Facts, Memory, Point, logarithmic, sign, free, row};
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row, sign};
 
 row!(
     Backlash,

@@ -1,6 +1,6 @@
 //! One channel stamped late.
 
-use ferntast_model::friction::{Contrast, Proposal, Unit, ONE};
+use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
 
 use super::{Effect, Facts, Memory, Point, free, row};
 use crate::signals::Channels;

@@ -1,8 +1,8 @@
 //! The tip rests until what carries it has wound up.
 
-use ferntast_model::friction::{Contrast, Proposal, Subject, ONE, STIFFNESS};
+use ferntast_model::friction::{Contrast, ONE, Proposal, STIFFNESS, Subject};
 
-use super::{Effect, Facts, Memory, Point, logarithmic, free, row};
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
 
 row!(
     ContactCompliance,

@@ -1,8 +1,8 @@
 //! Motor torque clipped: by the drive, while the log has what was asked for, or by the range of the current sensor.
 
-use ferntast_model::friction::{Proposal, ONE, TORQUE};
+use ferntast_model::friction::{ONE, Proposal, TORQUE};
 
-use super::{Effect, Facts, Memory, Point, sign, free, row};
+use super::{Effect, Facts, Memory, Point, free, row, sign};
 
 row!(
     CurrentSaturation,

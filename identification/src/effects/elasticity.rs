@@ -1,8 +1,8 @@
 //! A joint that winds up between motor and measured position.
 
-use ferntast_model::friction::{Contrast, Proposal, Unit, TORQUE};
+use ferntast_model::friction::{Contrast, Proposal, TORQUE, Unit};
 
-use super::{Effect, Facts, Memory, Point, logarithmic, free, row};
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
 use crate::filter::{Kernel, least_width};
 use crate::signals::Channels;
 

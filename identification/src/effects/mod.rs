@@ -8,10 +8,20 @@
 //! what the joint is doing now, have row and law in `ferntast_model::friction`,
 //! where the servo has them too. The others are here, one a file.
 //!
-//! To add one of these: copy a neighbour, add its line to `effects!` below.
+//! To add one of these: copy a neighbour, and name it here and in [`all`].
 
+mod backlash;
+mod channel_delay;
+mod contact_compliance;
+mod current_saturation;
 mod description;
+mod elasticity;
+mod inertia;
+mod motor_constant;
+mod presliding_hysteresis;
 mod static_law;
+mod torque_sensor_gain;
+mod torque_sensor_offset;
 
 use std::{ops::Range, sync::Arc};
 
@@ -26,30 +36,6 @@ use crate::signals::Channels;
 pub(crate) use description::row;
 pub use description::{EffectDescription, Quantity};
 pub use inertia::Inertia;
-
-/// Declares the modules of effects that are no static law, and lists them.
-macro_rules! effects {
-    ($($module:ident: $new:expr,)*) => {
-        $(mod $module;)*
-
-        fn others() -> Vec<EffectHandle> {
-            vec![$(Arc::new($new)),*]
-        }
-    };
-}
-
-effects! {
-    presliding_hysteresis: presliding_hysteresis::PreslidingHysteresis::default(),
-    inertia: Inertia::correction(),
-    elasticity: elasticity::Elasticity::default(),
-    backlash: backlash::Backlash::default(),
-    motor_constant: motor_constant::MotorConstant::default(),
-    torque_sensor_gain: torque_sensor_gain::TorqueSensorGain::default(),
-    torque_sensor_offset: torque_sensor_offset::TorqueSensorOffset::default(),
-    channel_delay: channel_delay::ChannelDelay::default(),
-    current_saturation: current_saturation::CurrentSaturation::default(),
-    contact_compliance: contact_compliance::ContactCompliance::default(),
-}
 
 /// State of the joint at one sample. For a prismatic joint read m for rad and N
 /// for Nm. For a contact, too: then q is the place along the contour, τ_m and
@@ -244,8 +230,22 @@ pub type EffectHandle = Arc<dyn Effect>;
 /// Every effect of the catalogue, of joints and of contacts.
 #[must_use]
 pub fn all() -> Vec<EffectHandle> {
-    let known = static_law::all().map(|own| -> EffectHandle { Arc::new(own) });
-    known.chain(others()).collect()
+    let mut effects: Vec<EffectHandle> = static_law::all()
+        .map(|own| -> EffectHandle { Arc::new(own) })
+        .collect();
+    effects.extend([
+        Arc::new(presliding_hysteresis::PreslidingHysteresis::default()) as EffectHandle,
+        Arc::new(Inertia::correction()),
+        Arc::new(elasticity::Elasticity::default()),
+        Arc::new(backlash::Backlash::default()),
+        Arc::new(motor_constant::MotorConstant::default()),
+        Arc::new(torque_sensor_gain::TorqueSensorGain::default()),
+        Arc::new(torque_sensor_offset::TorqueSensorOffset::default()),
+        Arc::new(channel_delay::ChannelDelay::default()),
+        Arc::new(current_saturation::CurrentSaturation::default()),
+        Arc::new(contact_compliance::ContactCompliance::default()),
+    ]);
+    effects
 }
 
 /// The effects of the catalogue that are about `subject`.

@@ -1,6 +1,6 @@
 //! A motor constant other than the one given: recorded motor torque too large by a share.
 
-use ferntast_model::friction::{Contrast, Direction, Exact, OwnSignals, Proposal, ONE};
+use ferntast_model::friction::{Contrast, Direction, Exact, ONE, OwnSignals, Proposal};
 
 use super::{Effect, Facts, Memory, Point, free, row};
 

@@ -1,8 +1,8 @@
 //! Friction that builds up over travel after a reversal.
 
-use ferntast_model::friction::{AtReversal, Contrast, Proposal, ANGLE, ONE, TORQUE};
+use ferntast_model::friction::{ANGLE, AtReversal, Contrast, ONE, Proposal, TORQUE};
 
-use super::{Effect, Facts, Memory, Point, logarithmic, free, row};
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
 
 row!(
     PreslidingHysteresis,

@@ -1,6 +1,6 @@
 //! A joint torque sensor whose gain is off.
 
-use ferntast_model::friction::{Contrast, Direction, Exact, OwnSignals, Proposal, ONE};
+use ferntast_model::friction::{Contrast, Direction, Exact, ONE, OwnSignals, Proposal};
 
 use super::{Effect, Facts, Memory, Point, free, row};
 

@@ -2,7 +2,7 @@
 
 use ferntast_model::friction::{ConstantOf, Contrast, Direction, OwnSignals, Proposal, TORQUE};
 
-use super::{Effect, Facts, Memory, Point, sign, free, row};
+use super::{Effect, Facts, Memory, Point, free, row, sign};
 
 row!(
     TorqueSensorOffset,

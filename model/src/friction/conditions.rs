@@ -6,7 +6,7 @@ use super::row::{EffectParameter, OwnSignals, Row, Unit};
 use super::static_effect::{Signal, StaticEffect};
 
 /// All of them.
-pub(super) static EFFECTS: [StaticEffect; 3] = [
+pub(super) static EFFECTS: &[StaticEffect] = &[
     StaticEffect {
         row: Row {
             id: "temperature_coulomb",

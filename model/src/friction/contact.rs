@@ -16,7 +16,7 @@ const NONE: Row = Row {
 const OVER_SPEED: OwnSignals = OwnSignals::new(&["tip_velocity"], Direction::Opposite);
 
 /// All of them.
-pub(super) static EFFECTS: [StaticEffect; 5] = [
+pub(super) static EFFECTS: &[StaticEffect] = &[
     StaticEffect {
         row: Row {
             id: "contact_coulomb",

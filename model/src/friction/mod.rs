@@ -43,9 +43,9 @@ pub const REFERENCE_TEMPERATURE: &str = "T0";
 pub fn all() -> impl Iterator<Item = &'static StaticEffect> {
     speed::EFFECTS
         .iter()
-        .chain(&place::EFFECTS)
-        .chain(&conditions::EFFECTS)
-        .chain(&contact::EFFECTS)
+        .chain(place::EFFECTS)
+        .chain(conditions::EFFECTS)
+        .chain(contact::EFFECTS)
 }
 
 /// The static effects of a joint.

@@ -14,7 +14,7 @@ const fn torque(name: &'static str) -> EffectParameter {
 }
 
 /// All of them.
-pub(super) static EFFECTS: [StaticEffect; 4] = [
+pub(super) static EFFECTS: &[StaticEffect] = &[
     StaticEffect {
         row: Row {
             id: "ripple",

@@ -14,7 +14,7 @@ const CUBIC: EffectParameter =
     EffectParameter::new("b3", Unit::new("Nm s³/rad³", "N s³/m³"), -1e4, 1e4).key("b_3");
 
 /// All of them.
-pub(super) static EFFECTS: [StaticEffect; 9] = [
+pub(super) static EFFECTS: &[StaticEffect] = &[
     StaticEffect {
         row: Row {
             id: "coulomb",
