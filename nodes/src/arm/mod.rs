@@ -1,7 +1,10 @@
 //! The simulated arm as a node; hardware takes its place by speaking the same
 //! topics.
 
+mod config;
 mod description;
+
+pub use config::{arm_file, load_arm, load_config};
 
 use ferntast_msgs::{
     Time,
