@@ -4,7 +4,7 @@ use ferntast_control::servo::{
     FeedForward, FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal,
 };
 use ferntast_identification::Subject;
-use ferntast_identification::effects::{self, Effect, Point};
+use ferntast_identification::effects::{self, Point};
 use ferntast_model::friction::{self, Signal};
 use ferntast_msgs::sample::{Faults, FrictionCommand, FrictionSource};
 
@@ -171,7 +171,7 @@ fn what_must_not_be_taken_over_is_refused_with_a_reason() {
 /// A feed-forward of joint 2 that takes over whatever is not absurd, and what it
 /// is configured with: name in the catalogue and value.
 fn willing() -> (FeedForward, Vec<(&'static str, f64)>) {
-    let joint = config::load_arm("rokviss").unwrap().model().joint[1].clone();
+    let joint = config::load_model_only("rokviss").unwrap().model.joint[1].clone();
     let config = TakeOverConfig {
         torque_share: 0.95,
         ..TakeOverConfig::default()

@@ -32,8 +32,8 @@ fn a_stribeck_effect_that_the_twin_follows_is_fed_forward() {
     });
     let mut word = *published.last();
 
-    let arm = config::load_arm("rokviss").unwrap();
-    let mut servo = ServoNode::new(&arm.model(), &ServoConfig::default()).unwrap();
+    let arm = config::load_model_only("rokviss").unwrap();
+    let mut servo = ServoNode::new(&arm.model, &ServoConfig::default()).unwrap();
     let mut status = None;
     for k in 1..3_000 {
         let now = START.plus_nanos(k * 1_000_000);
