@@ -4,13 +4,13 @@ use std::process::ExitCode;
 
 use ferntast_msgs::{
     Message, RosMessage, interface,
-    topics::{self, Topic, Visitor},
+    topics::{self, Authority, Topic, Visitor},
 };
 use serde::Serialize;
 
 use super::{Failure, output::print_json};
 
-/// List the topics with their types, and the types with hash and schema.
+/// List the topics with their types and whether peers on ROS 2 may publish them, and the types with hash and schema.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {}
 
@@ -25,6 +25,17 @@ struct TopicLine {
     name: &'static str,
     r#type: &'static str,
     delivery: String,
+    publishers: &'static [&'static str],
+    from_ros_2: &'static str,
+}
+
+/// Whether peers on ROS 2 may publish a topic into a session.
+fn from_ros_2(authority: Authority) -> &'static str {
+    match authority {
+        Authority::Never => "never",
+        Authority::Always => "always",
+        Authority::ByScenario(switch) => switch.setting(),
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -42,6 +53,8 @@ impl Visitor for List {
             name: topic.name,
             r#type: M::Ros::INTERFACE,
             delivery: format!("{:?}", topic.delivery).to_lowercase(),
+            publishers: topic.publishers,
+            from_ros_2: from_ros_2(topic.authority),
         });
     }
 }
@@ -67,7 +80,14 @@ pub fn run(_: Arguments, json: bool) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     for topic in &listing.topics {
-        println!("{:34} {:36} {}", topic.name, topic.r#type, topic.delivery);
+        let TopicLine {
+            name,
+            r#type,
+            delivery,
+            from_ros_2,
+            ..
+        } = topic;
+        println!("{name:34} {type:36} {delivery:8} from ROS 2: {from_ros_2}");
     }
     println!();
     for interface in &listing.interfaces {

@@ -203,12 +203,9 @@ impl LockstepSession {
                 let recording = McapBus::create_with(folder, bag_options(loaded, "lockstep"))
                     .map_err(|error| RunError::Recording(error.to_string()))?;
                 let mut carrier = Carrier::default();
-                carrier.add_topics(
-                    &bus,
-                    &Bus::Mcap(recording.clone()),
-                    Stamp::Received,
-                    |_, _| Carry::Every { queue: 64 },
-                )?;
+                carrier.add_topics(&bus, &Bus::Mcap(recording.clone()), Stamp::Received, |_| {
+                    Carry::Every { queue: 64 }
+                })?;
                 executor.add(PERIOD_NANOS, move |now: Time, _: &mut Bus| {
                     carrier.carry(now);
                 })?;

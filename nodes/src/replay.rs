@@ -11,7 +11,7 @@ use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Message, Time,
     sample::Faults,
-    topics::{self, Delivery, Topic},
+    topics::{self, Topic},
 };
 use serde::Serialize;
 
@@ -183,7 +183,8 @@ pub fn run(
     };
     let there = |name: &str| topics_there.iter().any(|own| own == name);
     let mut carrier = Carrier::default();
-    carrier.add_topics(&recording, &bus, Stamp::Received, |topic, _: Delivery| {
+    carrier.add_topics(&recording, &bus, Stamp::Received, |topic| {
+        let topic = topic.name;
         let wanted = INPUTS.contains(&topic)
             || match twin.is_some() {
                 true => OF_THE_TWIN.contains(&topic),

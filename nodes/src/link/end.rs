@@ -10,7 +10,7 @@ use ferntast_control::{
 };
 use ferntast_msgs::{
     Text, Time,
-    sample::{LinkEnd, LinkStatusSample, RefusedFrames},
+    sample::{LinkEnd, LinkStatusSample},
 };
 
 use super::{FrameInput, FrameOutput};
@@ -189,20 +189,19 @@ impl End {
             sent: measured.sent,
             received: measured.received.saturating_sub(self.late),
             lost: measured.lost,
-            refused: RefusedFrames {
-                length: refused.length,
-                version: refused.version,
-                session: refused.session,
-                checksum: refused.checksum,
-                time: refused.time,
-                value: refused.value,
-                replayed: refused.replayed,
-                late: refused.late + self.late,
-            },
+            refused_length: refused.length,
+            refused_version: refused.version,
+            refused_session: refused.session,
+            refused_checksum: refused.checksum,
+            refused_time: refused.time,
+            refused_value: refused.value,
+            refused_replayed: refused.replayed,
+            refused_late: refused.late + self.late,
             law: Text::new(law),
             session: self.session,
             connected: u8::from(connected),
-            ..LinkStatusSample::idle(now, self.which)
+            end: self.which,
+            ..LinkStatusSample::initial(now)
         })
     }
 

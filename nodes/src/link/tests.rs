@@ -1,12 +1,13 @@
 //! What comes in over the link is judged before anything is done with it.
 
+use ferntast_control::meter::RefusedCounts;
 use ferntast_control::{
     delay::{Law, Packet},
     frame::{self, FRAME_LENGTH, Frame},
     operating::OperatingState,
     switching::Laws,
 };
-use ferntast_msgs::{Time, sample::RefusedFrames};
+use ferntast_msgs::Time;
 use proptest::prelude::*;
 
 use super::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, transport::FrameInput};
@@ -21,7 +22,7 @@ struct Rig {
     node: FollowerLinkNode,
     now: Time,
     sequence: u32,
-    refused: RefusedFrames,
+    refused: RefusedCounts,
     received: u64,
 }
 
@@ -35,7 +36,7 @@ impl Rig {
             node: FollowerLinkNode::new(Laws::new(Law::default()), SESSION, buffer),
             now: START,
             sequence: 0,
-            refused: RefusedFrames::default(),
+            refused: RefusedCounts::default(),
             received: 0,
         }
     }
@@ -71,7 +72,16 @@ impl Rig {
         self.node.step(self.now, &input, &mut output);
         self.now = self.now.plus_nanos(TICK_NANOS);
         if let Some(status) = output.status {
-            self.refused = status.refused;
+            self.refused = RefusedCounts {
+                length: status.refused_length,
+                version: status.refused_version,
+                session: status.refused_session,
+                checksum: status.refused_checksum,
+                time: status.refused_time,
+                value: status.refused_value,
+                replayed: status.refused_replayed,
+                late: status.refused_late,
+            };
             self.received = status.received;
         }
         let command = output.servo_cp;
@@ -80,7 +90,7 @@ impl Rig {
     }
 
     /// Refused so far; the status comes every 10 ms.
-    fn counts(&mut self) -> RefusedFrames {
+    fn counts(&mut self) -> RefusedCounts {
         for _ in 0..12 {
             self.step(&[]);
         }
@@ -121,13 +131,13 @@ fn good_frames_are_acted_on() {
     let frame = rig.good();
     assert!(rig.step(&[&bytes(&frame)]));
     assert!(!rig.step(&[]), "nothing is repeated");
-    assert_eq!(rig.counts(), RefusedFrames::default());
+    assert_eq!(rig.counts(), RefusedCounts::default());
 }
 
 #[test]
 fn each_kind_of_bad_frame_is_counted_and_never_acted_on() {
     type Spoil = fn(&mut Rig) -> Vec<u8>;
-    type Count = fn(&RefusedFrames) -> u64;
+    type Count = fn(&RefusedCounts) -> u64;
     let kinds: [(&str, Spoil, Count); 9] = [
         (
             "short",

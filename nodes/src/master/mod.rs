@@ -113,7 +113,7 @@ impl MasterNode {
             holder: authority.holder().unwrap_or(0),
             refused: authority.refused().unwrap_or(0),
             refused_count: authority.refused_count(),
-            ..AuthoritySample::nobody(now)
+            ..AuthoritySample::initial(now)
         };
         let (holder, refused) = (sample.holder, sample.refused);
         let changed = self

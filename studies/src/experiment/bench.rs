@@ -216,7 +216,7 @@ impl Bench {
             &bus,
             &Bus::Mcap(recording.clone()),
             Stamp::Received,
-            |topic, _| carry(topic, contact),
+            |topic| carry(topic.name, contact),
         )?;
         executor.add(PERIOD_NANOS, move |now: Time, _: &mut Bus| {
             carrier.carry(now);
