@@ -213,7 +213,7 @@ impl FeedForward {
             count: next.take_configured(found)?,
             left_out: None,
         };
-        for own in found {
+        for own in found.iter().filter(|own| own.value.is_finite()) {
             match next.take_new(own.name, found) {
                 Ok(count) => taken.count += count,
                 Err(Declined::LeftOut(why)) => {
