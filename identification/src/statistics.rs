@@ -1,8 +1,24 @@
-//! Tests of significance.
+//! Quantiles and tests of significance.
+
+use std::cmp::Ordering;
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::gram::pseudo_inverse;
+
+/// The quantile of n numbers at `share` (0: the least, 1: the largest): the one
+/// of rank round((n − 1) · share), not interpolated, so that the median of an
+/// even count is the larger of the middle two. `None` of no numbers, which are
+/// left in another order.
+pub fn quantile<T: Copy>(
+    numbers: &mut [T],
+    share: f64,
+    order: impl FnMut(&T, &T) -> Ordering,
+) -> Option<T> {
+    let last = numbers.len().checked_sub(1)?;
+    let rank = (last as f64 * share).round() as usize;
+    Some(*numbers.select_nth_unstable_by(rank.min(last), order).1)
+}
 
 /// Probability that an F-distributed number with `numerator` and
 /// `denominator` degrees of freedom exceeds `f`.
@@ -61,6 +77,23 @@ pub fn mean_error(numbers: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_quantile_is_the_number_of_the_nearest_rank() {
+        let mut numbers = [4, 1, 3, 2];
+        for (share, expected) in [
+            (0.0, 1),
+            (0.16, 1),
+            (0.17, 2),
+            (0.5, 3),
+            (0.83, 3),
+            (1.0, 4),
+        ] {
+            assert_eq!(quantile(&mut numbers, share, i32::cmp), Some(expected));
+        }
+        assert_eq!(quantile(&mut [7.0], 0.99, f64::total_cmp), Some(7.0));
+        assert_eq!(quantile(&mut [], 0.5, f64::total_cmp), None);
+    }
 
     #[test]
     fn tail_of_f_agrees_with_tables() {
