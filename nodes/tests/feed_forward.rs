@@ -22,16 +22,18 @@ fn willing() -> (FeedForward, Vec<(&'static str, f64)>) {
         position_lower: -1.6,
         position_upper: 2.6,
         velocity_limit: 2.0,
-        friction: Preset::named("spring_2005_03_24").unwrap().parameters(),
+        friction: Preset::named("spring_2005_03_24")
+            .expect("Table 1 has it")
+            .parameters(),
     };
     let config = TakeOverConfig {
         torque_share: 0.95,
         ..TakeOverConfig::default()
     };
-    let configured = friction::Friction::new(&joint.friction).unwrap();
+    let configured = friction::Friction::new(&joint.friction).expect("a valid joint");
     let terms = configured.terms().iter();
     let values = terms.map(|term| (term.effect.row.coefficients[0].name, term.values[0]));
-    let mut own = FeedForward::new(&joint, config).unwrap();
+    let mut own = FeedForward::new(&joint, config).expect("a valid joint");
     own.set_temperature(15.0);
     (own, values.collect())
 }
@@ -39,12 +41,19 @@ fn willing() -> (FeedForward, Vec<(&'static str, f64)>) {
 /// τ_F of some effects of the lab with coefficients by name.
 fn by_the_lab(ids: &[&str], shape: &[f64], values: &[(&str, f64)], point: &Point) -> f64 {
     let torque = |id: &&str| -> f64 {
-        let effect = effects::find(id).unwrap();
+        let effect = effects::find(id).expect("an effect of the catalogue");
         let mut columns = [0.0; effects::MOST_COLUMNS];
         let names = effect.row().coefficients;
         let columns = &mut columns[..names.len()];
         effect.evaluate(shape, point, &mut [0.0; 4], columns);
-        let value = |name| values.iter().rev().find(|(own, _)| *own == name).unwrap().1;
+        let value = |name| {
+            values
+                .iter()
+                .rev()
+                .find(|(own, _)| *own == name)
+                .expect("a value")
+                .1
+        };
         let both = names.iter().zip(columns);
         both.map(|(own, x)| *x * value(own.name)).sum()
     };
