@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
 use crate::design::Design;
+use crate::effects;
 use crate::error::PrepareError;
 use crate::fit::{Parameter, fit};
 use crate::setup::Setup;
@@ -42,7 +43,7 @@ pub struct Addition {
 pub fn add(dataset: &Dataset, spec: &ModelSpec, effect: &Term) -> Result<Addition, PrepareError> {
     let mut model = spec.clone();
     match effect {
-        Term::Catalogue(id) if id == "inertia" => {
+        Term::Catalogue(id) if effects::find(id).is_some_and(|own| own.row().corrects_inertia) => {
             if spec.inertia == Inertia::Fit {
                 return Err(PrepareError::Twice(id.clone()));
             }

@@ -1,7 +1,7 @@
 //! Every effect that the model lacks, tried on the same rows.
 
 use crate::design::{BlockGrams, Design};
-use crate::effects::{self, EffectHandle, parts};
+use crate::effects::{self, EffectHandle, Row};
 use crate::periodic;
 use crate::refine;
 use crate::scatter::trend;
@@ -54,13 +54,15 @@ impl Trial {
     /// sessions is counted apart: there are few of these.
     #[must_use]
     pub fn corrected(&self, candidate: &Candidate) -> f64 {
-        let between = candidate.effect.between_sessions();
+        let between = candidate.effect.row().is_between_sessions();
         let p_value = candidate.score.p_value;
         let factor = match between {
             true => self.variants_between as f64,
             false => {
                 let effects = self.candidates.iter();
-                let effects = effects.filter(|c| !c.effect.between_sessions()).count();
+                let effects = effects
+                    .filter(|c| !c.effect.row().is_between_sessions())
+                    .count();
                 let by_effect = 1.0 / (effects * candidate.variants).max(1) as f64;
                 let by_shape = 1.0 / self.variants.max(1) as f64;
                 2.0 / (by_effect + by_shape)
@@ -74,17 +76,16 @@ impl Trial {
 /// part of one it has.
 #[must_use]
 pub fn missing(setup: &Setup) -> Vec<EffectHandle> {
-    let has_whole = |id: &str| {
-        let mut own = setup.terms.iter().map(|t| &t.effect.description().id);
-        own.any(|whole| parts::has(whole, id))
+    let has_whole = |part: &Row| {
+        let mut own = setup.terms.iter().map(|t| t.effect.row());
+        own.any(|whole| whole.has(part))
     };
-    // The step from equation (3) to (4) of the paper is both or one of them.
-    let has_part = |id: &str| id == "nonlinear_viscous" && parts::of(id).any(|p| setup.has(p));
+    let has_part = |whole: &Row| whole.is_sum && whole.parts().any(|p| setup.has(p));
     effects::of(setup.facts.joint.subject())
         .into_iter()
         .filter(|effect| {
-            let id = effect.description().id.as_str();
-            let there = setup.has(id) || has_whole(id) || has_part(id);
+            let row = effect.row();
+            let there = setup.has(row.id) || has_whole(row) || has_part(row);
             !there && effect.unavailable(&setup.facts).is_none()
         })
         .collect()
@@ -99,11 +100,11 @@ pub fn score(
     shape: &[f64],
 ) -> (Score, BlockGrams) {
     let grams = design.with(&design.extra_columns(setup, effect, shape));
-    let score = if effect.between_sessions() && setup.facts.sessions >= 3 {
+    let score = if effect.row().is_between_sessions() && setup.facts.sessions >= 3 {
         let mut score = between(design, &grams);
         // What a session does to a coefficient is one number a session: a line
         // through these is the honest test.
-        let varied = effect.varies();
+        let varied = effect.row().varies;
         if let Some(p) = varied.and_then(|id| trend(setup, design, &grams, id)) {
             score.p_value = p;
         }
@@ -131,16 +132,16 @@ pub fn try_all(setup: &Setup, design: &Design, progress: &mut dyn FnMut(f64)) ->
     for (done, effect) in effects.iter().enumerate() {
         let mut shapes = refine::grid(setup, effect);
         let mut searched = 0;
-        if effect.description().id == "ripple" {
+        if effect.row().is_periodic {
             shapes.extend(
-                periodic::peaks(setup, design, 3)
+                periodic::peaks(setup, design, effect, 3)
                     .into_iter()
                     .map(|k| vec![k]),
             );
-            searched = periodic::tried(setup);
+            searched = periodic::tried(setup, effect);
         }
         let variants = shapes.len() + searched;
-        match effect.between_sessions() {
+        match effect.row().is_between_sessions() {
             true => trial.variants_between += variants,
             false => trial.variants += variants,
         }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use ferntast_model::friction::{JointType, Subject};
+
 use crate::stated_filter::StatedFilter;
 
 /// One session: channels sampled together at a uniform period, no gap inside.
@@ -36,86 +38,6 @@ pub struct Session {
     /// nothing but the link, so that the sensor's own zero shows.
     #[serde(default)]
     pub unloaded: bool,
-}
-
-/// What was recorded: it decides the catalogue of effects, and the names and
-/// units in which results are told.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum JointType {
-    /// rad, Nm, kg m².
-    #[default]
-    Revolute,
-    /// m, N, kg.
-    Prismatic,
-    /// No joint, but the same to a fit: a tip that slides along a contour. m and
-    /// N, no inertia; F_T stands in the place of τ_F, F_N in that of the load:
-    /// F_T = Σ effects (equation 6).
-    Contact,
-}
-
-impl JointType {
-    /// The catalogue that applies.
-    #[must_use]
-    pub const fn subject(self) -> Subject {
-        match self {
-            Self::Revolute | Self::Prismatic => Subject::Joint,
-            Self::Contact => Subject::Contact,
-        }
-    }
-
-    /// Whether a contact was recorded.
-    #[must_use]
-    pub const fn is_contact(self) -> bool {
-        matches!(self, Self::Contact)
-    }
-
-    /// What a signal of a joint is called here, in files and results.
-    #[must_use]
-    pub fn signal(self, of_joint: &str) -> &str {
-        if !self.is_contact() {
-            return of_joint;
-        }
-        match of_joint {
-            "position" => "place",
-            "velocity" => "tip_velocity",
-            "acceleration" => "tip_acceleration",
-            "load" => "normal_force",
-            "load_rate" => "normal_force_rate",
-            "motor_torque" => "tangential_force",
-            other => other,
-        }
-    }
-
-    /// Unit of forces or torques.
-    #[must_use]
-    pub const fn force_unit(self) -> &'static str {
-        match self {
-            Self::Revolute => "Nm",
-            Self::Prismatic | Self::Contact => "N",
-        }
-    }
-}
-
-/// What a catalogue of effects is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Subject {
-    /// τ_F of a joint.
-    Joint,
-    /// F_T of a tip in contact.
-    Contact,
-}
-
-impl Subject {
-    /// With an article, for messages.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Joint => "a joint",
-            Self::Contact => "a contact",
-        }
-    }
 }
 
 /// The recordings of one joint, or of one contact.

@@ -13,11 +13,11 @@ use crate::error::PrepareError;
 use crate::family;
 use crate::fit::{Fit, Parameter, fit};
 use crate::noise_floor::{self, NoiseFloor};
-use crate::proposal::Proposal;
 use crate::reversal;
 use crate::sensor_zero;
 use crate::setup::{BoundTerm, Setup};
 use crate::turns;
+use ferntast_model::friction::Proposal;
 
 /// A named effect explains this share of the mean square at least.
 const LEAST_SHARE: f64 = 0.01;
@@ -210,9 +210,10 @@ fn passing(trial: &Trial) -> Vec<Candidate> {
 fn passes(candidate: &Candidate, trial: &Trial) -> bool {
     candidate.plausible
         && candidate.score.share() > LEAST_SHARE
-        && (candidate.score.certainty > LEAST_CERTAINTY || candidate.effect.between_sessions())
+        && (candidate.score.certainty > LEAST_CERTAINTY
+            || candidate.effect.row().is_between_sessions())
         && trial.corrected(candidate)
-            < match candidate.effect.between_sessions() {
+            < match candidate.effect.row().is_between_sessions() {
                 true => SIGNIFICANCE_BETWEEN,
                 false => SIGNIFICANCE,
             }
@@ -223,7 +224,7 @@ fn passes(candidate: &Candidate, trial: &Trial) -> bool {
 /// signal is the map's name, and as certain.
 fn named_by_map(trial: &Trial, maps: &[Dependence]) -> Option<Candidate> {
     let best = family::suspects(&trial.candidates).next()?;
-    let names = best.effect.own_signals().names;
+    let names = best.effect.row().own_signals.names;
     let map = maps.iter().find(|map| {
         let own = |signal: &String| names.contains(&signal.as_str());
         map.signals.iter().any(own) && best.score.gain > SAME_AS_MAP * map.gain
@@ -312,7 +313,7 @@ fn describe(
 ) -> NamedCandidate {
     let term = BoundTerm::new(candidate.effect.clone(), candidate.shape.clone());
     // Before and after are told on the rows that a model with it is fitted to.
-    let extended = match candidate.effect.shows_at_turns() {
+    let extended = match candidate.effect.row().shows_at_turns {
         true => setup.with_reversals().extended(term),
         false => setup.extended(term),
     };

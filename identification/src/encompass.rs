@@ -4,7 +4,7 @@
 
 use crate::candidates::Candidate;
 use crate::design::Design;
-use crate::effects::{Effect, EffectDescription, EffectHandle, MOST_COLUMNS, Memory, Point, parts};
+use crate::effects::{Effect, EffectDescription, EffectHandle, MOST_COLUMNS, Memory, Point};
 use crate::family::as_good;
 use crate::setup::Setup;
 use crate::validation::beside;
@@ -54,7 +54,7 @@ fn adds(
 }
 
 fn beyond(whole: &Candidate, part: &Candidate) -> Option<usize> {
-    parts::column_beyond(whole.id(), part.id())
+    whole.effect.row().column_beyond(part.id())
 }
 
 /// Leaves out of `passing` what is one of the others with a term too many: a
@@ -82,13 +82,13 @@ pub fn settle(setup: &Setup, design: &Design, passing: &mut Vec<Candidate>) {
     let Some(first) = passing.first().cloned() else {
         return;
     };
-    if first.effect.between_sessions() {
+    if first.effect.row().is_between_sessions() {
         return;
     }
     let rivals: Vec<Candidate> = passing
         .iter()
         .skip(1)
-        .filter(|other| !other.effect.between_sessions() && as_good(design, &first, other))
+        .filter(|other| !other.effect.row().is_between_sessions() && as_good(design, &first, other))
         .filter(|other| beyond(&first, other).is_none() && beyond(other, &first).is_none())
         .cloned()
         .collect();

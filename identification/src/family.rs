@@ -1,9 +1,9 @@
 //! Effects that these data cannot tell apart.
 
+use ferntast_model::friction::Proposal;
+
 use crate::candidates::Candidate;
 use crate::design::{Design, columns};
-use crate::effects::parts;
-use crate::proposal::Proposal;
 use crate::setup::Setup;
 use crate::statistics::mean_error;
 
@@ -96,7 +96,7 @@ pub fn order(design: &Design, passing: &mut Vec<Candidate>) {
 /// proven: a handful of sessions proves little.
 pub fn suspects(tried: &[Candidate]) -> impl Iterator<Item = &Candidate> {
     tried.iter().filter(|c| {
-        c.effect.between_sessions()
+        c.effect.row().is_between_sessions()
             && c.plausible
             && c.score.share() > SUSPECT_SHARE
             && c.score.p_value < SUSPECT_CHANCE
@@ -105,7 +105,7 @@ pub fn suspects(tried: &[Candidate]) -> impl Iterator<Item = &Candidate> {
 
 /// Whether scatter between sessions may have put `other` behind `best`.
 fn may_be(design: &Design, best: &Candidate, other: &Candidate) -> bool {
-    best.effect.between_sessions()
+    best.effect.row().is_between_sessions()
         && other.score.gain > SUSPECT_RATIO * best.score.gain
         && difference(design, best, other).abs() < SUSPECT_SAME
 }
@@ -118,10 +118,10 @@ pub fn of<'a>(
     passing: &'a [Candidate],
     tried: &'a [Candidate],
 ) -> Vec<&'a Candidate> {
-    // The step from equation (3) to (4) of the paper is these two together.
-    let parts: Vec<&str> = match candidate.id() {
-        whole @ "nonlinear_viscous" => parts::of(whole).collect(),
-        _ => Vec::new(),
+    let row = candidate.effect.row();
+    let parts: Vec<&str> = match row.is_sum {
+        true => row.parts().collect(),
+        false => Vec::new(),
     };
     let mut like: Vec<&Candidate> = passing
         .iter()
@@ -144,9 +144,10 @@ pub fn of<'a>(
 /// What to record next.
 #[must_use]
 pub fn proposal(candidate: &Candidate, like: &[&Candidate]) -> Proposal {
-    let rivals: Vec<&str> = like.iter().map(|c| c.id()).collect();
+    let contrasts = |c: &Candidate| c.effect.row().contrasts;
+    let rivals: Vec<_> = like.iter().map(|c| contrasts(c)).collect();
     let alone = candidate.effect.description().shown_by;
-    Proposal::between(candidate.id(), &rivals, alone)
+    Proposal::between(contrasts(candidate), &rivals, alone)
 }
 
 /// The same in words.
@@ -201,4 +202,54 @@ fn farthest_apart(setup: &Setup, a: &Candidate, b: &Candidate) -> String {
         named("load"),
         best.1.load
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Proposal::{
+        Accelerations, FastUnloaded, LoadSteps, SlowReversals, TemperatureSweep, WidePosition,
+        WideSpeedRange,
+    };
+    use super::*;
+    use crate::effects;
+
+    #[test]
+    fn a_family_is_put_to_the_motion_that_tells_most_of_it_apart() {
+        let contrasts = |id: &str| effects::find(id).map_or(&[][..], |own| own.row().contrasts);
+        let between = |own: &str, rivals: &[&str]| {
+            let rivals: Vec<_> = rivals.iter().map(|id| contrasts(id)).collect();
+            Proposal::between(contrasts(own), &rivals, LoadSteps)
+        };
+        assert_eq!(
+            between("wear_drift", &["temperature_coulomb"]),
+            TemperatureSweep
+        );
+        assert_eq!(between("gravity", &["cable_spring"]), WidePosition);
+        assert_eq!(
+            between("quadratic_viscous", &["cubic_viscous", "nonlinear_viscous"]),
+            WideSpeedRange
+        );
+        assert_eq!(
+            between("backlash", &["presliding_hysteresis"]),
+            SlowReversals
+        );
+        assert_eq!(between("inertia", &["channel_delay"]), Accelerations);
+        assert_eq!(
+            between(
+                "torque_sensor_gain",
+                &["cable_spring", "gravity", "motor_constant"]
+            ),
+            FastUnloaded
+        );
+        // One rival each way: the first.
+        assert_eq!(
+            between("load_coulomb", &["motor_constant", "cable_spring"]),
+            FastUnloaded
+        );
+        assert_eq!(between("ripple", &[]), LoadSteps);
+        assert_eq!(
+            between("ripple", &["an effect of the user's own"]),
+            LoadSteps
+        );
+    }
 }

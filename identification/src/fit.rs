@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use crate::design::{Design, SessionDesign};
-use crate::effects;
+use crate::effects::with_columns;
 use crate::gram::{Gram, pseudo_inverse};
 use crate::setup::{BoundTerm, Setup};
 use crate::validation::left_out;
@@ -49,9 +49,9 @@ impl Setup {
     /// This setup with one more effect in the model.
     #[must_use]
     pub fn extended(&self, term: BoundTerm) -> Self {
-        let acts_on_channels = term.effect.acts_on_channels();
+        let acts_on_channels = term.effect.row().acts_on_channels;
         let mut extended = self.clone();
-        extended.facts.load_coulomb |= effects::is_load_coulomb(&term.effect.description().id);
+        extended.facts.load_coulomb |= term.effect.row().is_load_coulomb();
         extended.terms.push(term);
         extended.predict();
         if acts_on_channels {
@@ -111,14 +111,9 @@ fn name(
 ) -> Named {
     let mut parameters = BTreeMap::new();
     let mut not_excited = Vec::new();
-    let mut at = 0;
-    for term in &setup.terms {
+    for (term, columns) in with_columns(&setup.terms) {
         let description = term.effect.description();
-        let effect = if description.id == "inertia_fit" {
-            "inertia"
-        } else {
-            &description.id
-        };
+        let effect = &description.id;
         let mut insert = |name: &str, parameter: Parameter| {
             // Two effects of the user's own may share a name.
             let name = if parameters.contains_key(name) {
@@ -129,7 +124,7 @@ fn name(
             parameters.insert(name.clone(), parameter);
             name
         };
-        for quantity in &description.coefficients {
+        for (quantity, at) in description.coefficients.iter().zip(columns) {
             let (value, error) = (coefficients[at], covariance[(at, at)].max(0.0).sqrt());
             let name = insert(
                 &quantity.name,
@@ -137,13 +132,12 @@ fn name(
                     value,
                     std_error: Some(error),
                     unit: quantity.unit.of(setup.facts.joint).to_owned(),
-                    effect: effect.to_owned(),
+                    effect: effect.clone(),
                 },
             );
             if error >= value.abs() || total.products[(at, at)] <= 0.0 {
                 not_excited.push(name);
             }
-            at += 1;
         }
         for (quantity, value) in description.shape.iter().zip(&term.shape) {
             insert(
@@ -152,7 +146,7 @@ fn name(
                     value: *value,
                     std_error: None,
                     unit: quantity.unit.of(setup.facts.joint).to_owned(),
-                    effect: effect.to_owned(),
+                    effect: effect.clone(),
                 },
             );
         }

@@ -35,7 +35,6 @@ pub mod gram;
 pub mod noise_floor;
 pub mod periodic;
 mod prediction;
-pub mod proposal;
 pub mod refine;
 pub mod regression;
 pub mod residual_map;
@@ -59,7 +58,7 @@ pub use data::{CustomEffect, Dataset, Inertia, JointType, ModelSpec, Session, Su
 pub use diagnose::{Diagnosis, Suspect, Verdict, diagnose};
 pub use effects::EffectDescription;
 pub use error::{ExpressionError, PrepareError};
-pub use proposal::Proposal;
+pub use ferntast_model::friction::Proposal;
 pub use stated_filter::StatedFilter;
 
 /// Every effect that a model can be given by id, and that [`diagnose()`] tries.

@@ -1,23 +1,22 @@
 //! Which period in position the residual has.
 
 use crate::design::Design;
+use crate::effects::EffectHandle;
 use crate::setup::Setup;
 
 /// Bins of position for each period of the finest ripple.
 const BINS_A_PERIOD: f64 = 8.0;
 const MOST_BINS: usize = 1 << 15;
 
-/// The strongest wave numbers k \[1/rad\] of the residual over position, at most
-/// `count`, strongest first.
+/// The strongest wave numbers k \[1/rad\] of the residual over position within
+/// the bounds of a periodic `effect`, at most `count`, strongest first.
 ///
 /// The residual (each session with parameters of its own) is averaged in narrow
 /// bins of position, apart for slow and fast rows, because the filter takes the
 /// ripple out of fast ones; then sine and cosine are projected on the bins.
 #[must_use]
-pub fn peaks(setup: &Setup, design: &Design, count: usize) -> Vec<f64> {
-    let bounds = crate::effects::find("ripple")
-        .map(|e| e.bounds(&setup.facts))
-        .unwrap_or_default();
+pub fn peaks(setup: &Setup, design: &Design, effect: &EffectHandle, count: usize) -> Vec<f64> {
+    let bounds = effect.bounds(&setup.facts);
     let Some([lowest, highest]) = bounds.first().copied() else {
         return Vec::new();
     };
@@ -77,10 +76,8 @@ pub fn peaks(setup: &Setup, design: &Design, count: usize) -> Vec<f64> {
 /// Number of wave numbers that the search goes through, for the correction of
 /// p-values.
 #[must_use]
-pub fn tried(setup: &Setup) -> usize {
-    let bounds = crate::effects::find("ripple")
-        .map(|e| e.bounds(&setup.facts))
-        .unwrap_or_default();
+pub fn tried(setup: &Setup, effect: &EffectHandle) -> usize {
+    let bounds = effect.bounds(&setup.facts);
     bounds.first().map_or(0, |b| {
         ((b[1] - b[0]) * setup.facts.travel() / std::f64::consts::PI).clamp(0.0, MOST_BINS as f64)
             as usize

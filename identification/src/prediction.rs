@@ -4,7 +4,7 @@
 use nalgebra::DVector;
 
 use crate::design::{Design, columns};
-use crate::effects::{EffectHandle, Point};
+use crate::effects::{EffectHandle, Point, Row, with_columns};
 use crate::setup::{BoundTerm, Setup};
 use crate::signals::Signals;
 
@@ -27,7 +27,7 @@ impl Setup {
             let (inertia, terms) = (self.facts.inertia, &self.terms);
             for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
                 let load = working(signals, terms, &coefficients, |effect| {
-                    effect.is_load() || effect.description().id == "inertia_fit"
+                    effect.row().is_modelled_load()
                 });
                 for (point, load) in signals.points.iter_mut().zip(load) {
                     point.load = load + inertia.unwrap_or(0.0) * point.acceleration;
@@ -48,7 +48,7 @@ impl Setup {
     /// that changes by them, they are fitted again.
     pub(crate) fn predict(&mut self) {
         let mut own = self.terms.clone();
-        own.retain(|t| !t.effect.needs_prediction());
+        own.retain(|t| !t.effect.row().needs_prediction);
         let all = std::mem::replace(&mut self.terms, own.clone());
         let mut predicted = Design::new(self).shared;
         self.spread(&predicted, &own);
@@ -88,49 +88,34 @@ impl Setup {
 
     /// Columns of the terms that need no prediction.
     fn predicting_columns(&self) -> Vec<usize> {
-        let mut at = 0;
-        let mut kept = Vec::new();
-        for term in &self.terms {
-            let columns = at..at + term.effect.columns();
-            at = columns.end;
-            if !term.effect.needs_prediction() {
-                kept.extend(columns);
-            }
-        }
-        kept
+        with_columns(&self.terms)
+            .filter(|(term, _)| !term.effect.row().needs_prediction)
+            .flat_map(|(_, columns)| columns)
+            .collect()
     }
 
     fn spread(&mut self, coefficients: &DVector<f64>, terms: &[BoundTerm]) {
         self.predicted.clone_from(coefficients);
         let sensor = self.facts.joint_torque;
-        let fitted = terms
-            .iter()
-            .position(|t| t.effect.description().id == "inertia_fit");
+        let first_of = |is: fn(&Row) -> bool| {
+            let (_, columns) = with_columns(terms).find(|(term, _)| is(term.effect.row()))?;
+            coefficients.get(columns.start).copied()
+        };
         let given = self.facts.inertia;
-        let inertia = given.or_else(|| coefficients.get(fitted?).copied());
+        let inertia = given.or_else(|| first_of(|row| row.is_inertia));
         let (given, inertia) = (given.unwrap_or(0.0), inertia.unwrap_or(0.0));
-        let mut before = 0;
-        let mut load_slope = 0.0;
-        for term in terms {
-            if term.effect.description().id == "load_coulomb" {
-                load_slope = coefficients.get(before).copied().unwrap_or(0.0);
-            }
-            before += term.effect.columns();
-        }
+        let load_slope = first_of(Row::is_load_coulomb).unwrap_or(0.0);
+        let is_friction = |effect: &EffectHandle| !effect.row().is_inertia;
         let nudge = 1e-3 * self.facts.speed[1];
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
-            let friction = working(signals, terms, coefficients, |e| {
-                e.description().id != "inertia_fit"
-            });
+            let friction = working(signals, terms, coefficients, is_friction);
             let total = working(signals, terms, coefficients, |_| true);
             let mut other = signals.clone();
             let mut friction_at = |velocity: fn(&Point, f64) -> f64| {
                 for (point, measured) in other.points.iter_mut().zip(&signals.points) {
                     point.velocity = velocity(measured, nudge);
                 }
-                working(&other, terms, coefficients, |e| {
-                    e.description().id != "inertia_fit"
-                })
+                working(&other, terms, coefficients, is_friction)
             };
             let faster = friction_at(|point, nudge| point.velocity + nudge * point.sign());
             let slowest = friction_at(|point, nudge| nudge * point.sign());
@@ -159,19 +144,11 @@ pub(crate) fn working(
     which: impl Fn(&EffectHandle) -> bool,
 ) -> Vec<f64> {
     let mut sum = vec![0.0; signals.points.len()];
-    let mut first = 0;
-    for term in terms {
-        let count = term.effect.columns();
-        if which(&term.effect) {
-            for (k, column) in columns::working(signals, &term.effect, &term.shape)
-                .iter()
-                .enumerate()
-            {
-                let c = coefficients.get(first + k).copied().unwrap_or(0.0);
-                sum.iter_mut().zip(column).for_each(|(s, x)| *s += c * x);
-            }
+    for (term, places) in with_columns(terms).filter(|(term, _)| which(&term.effect)) {
+        for (k, column) in places.zip(columns::working(signals, &term.effect, &term.shape)) {
+            let c = coefficients.get(k).copied().unwrap_or(0.0);
+            sum.iter_mut().zip(column).for_each(|(s, x)| *s += c * x);
         }
-        first += count;
     }
     sum
 }

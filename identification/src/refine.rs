@@ -35,7 +35,7 @@ pub fn within(design: &Design, grams: &BlockGrams) -> Gram {
 #[must_use]
 pub fn error_of(setup: &Setup, design: &Design, effect: &EffectHandle, shape: &[f64]) -> f64 {
     let grams = design.with(&design.extra_columns(setup, effect, shape));
-    let reduced = if effect.between_sessions() {
+    let reduced = if effect.row().is_between_sessions() {
         let flat: Vec<Gram> = grams.into_iter().flatten().collect();
         let Some(first) = flat.first() else {
             return f64::INFINITY;
@@ -187,9 +187,9 @@ fn spacing(grid: &[Vec<f64>], shape: &[f64]) -> Vec<f64> {
 #[must_use]
 pub fn search(setup: &Setup, design: &Design, effect: &EffectHandle) -> Option<Vec<f64>> {
     let mut candidates = grid(setup, effect);
-    if effect.description().id == "ripple" {
+    if effect.row().is_periodic {
         candidates.extend(
-            crate::periodic::peaks(setup, design, 3)
+            crate::periodic::peaks(setup, design, effect, 3)
                 .into_iter()
                 .map(|k| vec![k]),
         );

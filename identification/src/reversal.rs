@@ -11,14 +11,13 @@ use std::sync::Arc;
 
 use crate::candidates::{Candidate, score};
 use crate::design::Design;
-use crate::effects::{self, Effect, EffectDescription, EffectHandle, Facts, Memory, Point};
+use crate::effects::{
+    self, AtReversal, Effect, EffectDescription, EffectHandle, Facts, Memory, Part, Point,
+};
 use crate::family;
 use crate::refine;
-use crate::setup::Setup;
+use crate::setup::{BoundTerm, Setup};
 use crate::validation::left_out;
-
-const BRISTLES: &str = "presliding_hysteresis";
-const GAP: &str = "backlash";
 
 /// Bristles that carry the Coulomb friction found in sliding.
 struct Bristles {
@@ -63,16 +62,19 @@ impl Effect for Bristles {
 /// rows. The one that explains more of them comes first; the other stays only
 /// where these data cannot tell, and then at second place.
 pub fn settle(setup: &Setup, passing: &mut Vec<Candidate>, tried: &[Candidate]) {
-    let first = passing.first().map(Candidate::id);
-    if !first.is_some_and(|id| [BRISTLES, GAP].contains(&id)) || setup.has(BRISTLES) {
+    let is_either = |c: &Candidate| c.effect.row().at_reversal.is_some();
+    let in_model = |term: &BoundTerm| term.effect.row().at_reversal.is_some();
+    if !passing.first().is_some_and(is_either) || setup.terms.iter().any(in_model) {
         return;
     }
-    let (Some(bristles), Some(gap)) = (effects::find(BRISTLES), effects::find(GAP)) else {
+    let [Some(bristles), Some(gap)] = [AtReversal::Bristles, AtReversal::Gap]
+        .map(|own| effects::with(|row| row.at_reversal == Some(own)))
+    else {
         return;
     };
-    let level = setup.coefficient("coulomb");
-    let by_load = setup.coefficient("load_coulomb");
-    if setup.has(GAP) || level <= 0.0 || gap.unavailable(&setup.facts).is_some() {
+    let level = setup.coefficient(Part::Constant);
+    let by_load = setup.coefficient(Part::ByLoad);
+    if level <= 0.0 || gap.unavailable(&setup.facts).is_some() {
         return;
     }
     let bristles: EffectHandle = Arc::new(Bristles {
@@ -101,7 +103,7 @@ pub fn settle(setup: &Setup, passing: &mut Vec<Candidate>, tried: &[Candidate]) 
     let (Some(best), Some(other)) = (told(&best), told(&other)) else {
         return;
     };
-    passing.retain(|c| ![BRISTLES, GAP].contains(&c.id()));
+    passing.retain(|c| !is_either(c));
     if undecided {
         passing.insert(0, other);
     }

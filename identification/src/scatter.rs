@@ -12,23 +12,11 @@
 use nalgebra::DMatrix;
 
 use crate::design::{BlockGrams, Design};
+use crate::effects::{Part, with_columns};
 use crate::gram::{Gram, pseudo_inverse};
 use crate::setup::Setup;
 use crate::statistics::{f_tail, mean_error};
 
-/// What scales together.
-const PARTS: [&[&str]; 5] = [
-    &["coulomb"],
-    &["load_coulomb"],
-    &[
-        "viscous",
-        "quadratic_viscous",
-        "cubic_viscous",
-        "nonlinear_viscous",
-    ],
-    &["contact_coulomb"],
-    &["contact_viscous"],
-];
 /// A part whose scale a session says no better than this counts for nothing there.
 const MOST_ERROR: f64 = 0.1;
 /// Degrees of freedom that the scatter of the other parts is worth: they
@@ -43,27 +31,23 @@ const FEWEST: usize = 4;
 /// Scale of each part in each session, less 1; `None` where a session does not
 /// say it.
 struct Scales {
-    /// Place in [`PARTS`] of each.
-    parts: Vec<usize>,
+    /// What scales together.
+    parts: Vec<Part>,
     /// One row a session.
     sessions: Vec<Vec<Option<f64>>>,
 }
 
 impl Scales {
     fn of(setup: &Setup, design: &Design) -> Self {
-        let mut members: Vec<(usize, Vec<usize>)> = Vec::new();
-        let mut column = 0;
-        for term in &setup.terms {
-            let id = term.effect.description().id.as_str();
-            let columns = term.effect.columns();
-            if let Some(part) = PARTS.iter().position(|ids| ids.contains(&id)) {
-                let own = column..column + columns;
-                match members.iter_mut().find(|(p, _)| *p == part) {
-                    Some((_, all)) => all.extend(own),
-                    None => members.push((part, own.collect())),
-                }
+        let mut members: Vec<(Part, Vec<usize>)> = Vec::new();
+        for (term, own) in with_columns(&setup.terms) {
+            let Some(part) = term.effect.row().part else {
+                continue;
+            };
+            match members.iter_mut().find(|(p, _)| *p == part) {
+                Some((_, all)) => all.extend(own),
+                None => members.push((part, own.collect())),
             }
-            column += columns;
         }
         let mut shapes = DMatrix::zeros(design.base, members.len());
         for (at, (_, columns)) in members.iter().enumerate() {
@@ -114,9 +98,9 @@ fn scales(own: &Gram, design: &Design, shapes: &DMatrix<f64>) -> Vec<Option<f64>
 #[must_use]
 pub fn trend(setup: &Setup, design: &Design, grams: &BlockGrams, varied: &str) -> Option<f64> {
     let scales = Scales::of(setup, design);
-    let part = PARTS.iter().position(|ids| ids.contains(&varied))?;
+    let (varied, column) = setup.first_column(varied)?;
+    let part = varied.effect.row().part?;
     let at = scales.parts.iter().position(|own| *own == part)?;
-    let column = setup.first_column(varied)?;
     let points: Vec<(f64, f64)> = grams
         .iter()
         .zip(&scales.sessions)

@@ -5,12 +5,11 @@
 use nalgebra::DVector;
 
 use crate::candidates::Candidate;
+use crate::effects::ConstantOf;
 use crate::gram::Gram;
 use crate::setup::Setup;
 use crate::statistics::mean_error;
 
-const OFFSET: &str = "torque_sensor_offset";
-const ASYMMETRY: &str = "asymmetric_coulomb";
 /// The offset that the fit asks for has to be this many standard errors of the
 /// sensor's zero.
 const CERTAIN: f64 = 4.0;
@@ -51,11 +50,12 @@ pub fn settle(setup: &Setup, passing: &mut Vec<Candidate>) {
     let Some((zero, error)) = reading(setup) else {
         return;
     };
-    let wanted = |id: &str| {
-        let candidate = passing.iter().find(|c| c.id() == id)?;
+    let constant = |c: &Candidate| c.effect.row().constant;
+    let wanted = |of: ConstantOf| {
+        let candidate = passing.iter().find(|c| constant(c) == Some(of))?;
         candidate.score.coefficients.first().copied()
     };
-    let (Some(offset), Some(_)) = (wanted(OFFSET), wanted(ASYMMETRY)) else {
+    let (Some(offset), Some(_)) = (wanted(ConstantOf::Sensor), wanted(ConstantOf::Friction)) else {
         return;
     };
     // y = τ_m − J q̈ − τ: a reading that is too large leaves a constant below zero.
@@ -64,8 +64,8 @@ pub fn settle(setup: &Setup, passing: &mut Vec<Candidate>) {
         return;
     }
     let wrong = match (zero - expected).abs() < zero.abs() {
-        true => ASYMMETRY,
-        false => OFFSET,
+        true => ConstantOf::Friction,
+        false => ConstantOf::Sensor,
     };
-    passing.retain(|c| c.id() != wrong);
+    passing.retain(|c| constant(c) != Some(wrong));
 }

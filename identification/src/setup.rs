@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use crate::check::check;
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
 use crate::design::Design;
-use crate::effects::{self, EffectHandle, Facts};
+use crate::effects::{self, EffectHandle, Facts, Part, Row, with_columns};
 use crate::error::PrepareError;
 use crate::expression::Compiled;
 use crate::filter::Kernel;
@@ -100,7 +100,7 @@ impl Setup {
             predicted: DVector::zeros(0),
         };
         setup.terms = setup.bind(spec)?;
-        if setup.terms.iter().any(|t| t.effect.shows_at_turns()) {
+        if setup.terms.iter().any(|t| t.effect.row().shows_at_turns) {
             setup.keep_reversals();
         }
         let parameters = setup.terms.iter().map(|t| t.effect.columns()).sum();
@@ -120,20 +120,20 @@ impl Setup {
     fn bind(&self, spec: &ModelSpec) -> Result<Vec<BoundTerm>, PrepareError> {
         let mut terms: Vec<BoundTerm> = Vec::new();
         if spec.inertia == Inertia::Fit {
-            let inertia = Arc::new(effects::FittedInertia::default());
+            let inertia = Arc::new(effects::Inertia::fitted());
             terms.push(BoundTerm::new(inertia, Vec::new()));
         }
         for term in &spec.effects {
             let effect = self.resolve(term)?;
             let id = &effect.description().id;
-            if terms.iter().any(|t| &t.effect.description().id == id) {
-                return Err(PrepareError::Twice(id.clone()));
-            }
             if let Some(why) = effect.unavailable(&self.facts) {
                 return Err(PrepareError::Unavailable {
                     id: id.clone(),
                     why,
                 });
+            }
+            if terms.iter().any(|t| &t.effect.description().id == id) {
+                return Err(PrepareError::Twice(id.clone()));
             }
             // A start for the search: the middle of the grid, else of the bounds.
             let shapes = effect.shapes(&self.facts);
@@ -189,22 +189,21 @@ impl Setup {
         self.terms.iter().any(|t| t.effect.description().id == id)
     }
 
-    /// Place of the first column of the model's effect `id`.
+    /// The model's effect `id`, and the place of its first column.
     #[must_use]
-    pub fn first_column(&self, id: &str) -> Option<usize> {
-        let at = self
-            .terms
-            .iter()
-            .position(|t| t.effect.description().id == id)?;
-        Some(self.terms[..at].iter().map(|t| t.effect.columns()).sum())
+    pub fn first_column(&self, id: &str) -> Option<(&BoundTerm, usize)> {
+        let mut terms = with_columns(&self.terms);
+        let (term, columns) = terms.find(|(t, _)| t.effect.description().id == id)?;
+        Some((term, columns.start))
     }
 
-    /// First coefficient of the model's effect `id`, fitted to everything; 0
-    /// where the model does not have it.
+    /// First coefficient of the model's effect that is this part of friction,
+    /// fitted to everything; 0 where the model does not have it.
     #[must_use]
-    pub fn coefficient(&self, id: &str) -> f64 {
-        self.first_column(id)
-            .and_then(|at| Design::new(self).shared.get(at).copied())
+    pub fn coefficient(&self, part: Part) -> f64 {
+        let mut terms = with_columns(&self.terms);
+        let own = terms.find(|(term, _)| term.effect.row().part == Some(part));
+        own.and_then(|(_, columns)| Design::new(self).shared.get(columns.start).copied())
             .unwrap_or(0.0)
     }
 
@@ -287,7 +286,7 @@ impl Setup {
         let searched: Vec<usize> = (0..self.terms.len())
             .filter(|i| !self.terms[*i].shape.is_empty())
             .collect();
-        let predicts = self.terms.iter().any(|t| t.effect.needs_prediction());
+        let predicts = self.terms.iter().any(|t| t.effect.row().needs_prediction);
         let most = match (predicts, searched.len()) {
             (true, _) => MOST_ROUNDS,
             (false, 0 | 1) => 1,
@@ -296,7 +295,7 @@ impl Setup {
         for round in 0..most {
             let mut moved = 0.0;
             for &at in &searched {
-                if self.terms[at].effect.needs_prediction() {
+                if self.terms[at].effect.row().needs_prediction {
                     self.predict();
                 }
                 let mut term = self.terms.remove(at);
@@ -322,6 +321,12 @@ fn farthest(before: &[f64], after: &[f64]) -> f64 {
     let both = before.iter().zip(after);
     both.map(|(before, after)| (after - before).abs() / before.abs().max(1e-300))
         .fold(0.0, f64::max)
+}
+
+/// Whether a model has an effect of the catalogue whose row is like this.
+fn has_row(spec: &ModelSpec, is: impl Fn(&Row) -> bool) -> bool {
+    let ids = spec.effects.iter().map(Term::name);
+    ids.filter_map(effects::find).any(|effect| is(effect.row()))
 }
 
 fn gather(dataset: &Dataset, spec: &ModelSpec, sessions: &[Signals], filters: &Filters) -> Facts {
@@ -378,16 +383,10 @@ fn gather(dataset: &Dataset, spec: &ModelSpec, sessions: &[Signals], filters: &F
         loaded: dataset.joint.is_contact()
             || dataset.sessions.iter().all(|s| s.joint_torque.is_some())
             || spec.inertia != Inertia::Given(0.0)
-            || spec
-                .effects
-                .iter()
-                .any(|t| ["gravity", "cable_spring"].contains(&t.name())),
+            || has_row(spec, |row| row.is_load),
         period: sessions
             .first()
             .map_or(filters.thinning as f64, |s| s.period),
-        load_coulomb: spec
-            .effects
-            .iter()
-            .any(|t| effects::is_load_coulomb(t.name())),
+        load_coulomb: has_row(spec, Row::is_load_coulomb),
     }
 }

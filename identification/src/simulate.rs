@@ -10,7 +10,7 @@
 use nalgebra::DVector;
 use serde::Serialize;
 
-use crate::effects::{MOST_COLUMNS, Memory, Point};
+use crate::effects::{MOST_COLUMNS, Memory, Point, with_columns};
 use crate::setup::Setup;
 use crate::signals::Signals;
 
@@ -101,12 +101,10 @@ fn torque(
         still += point.load;
     }
     let mut columns = [0.0; MOST_COLUMNS];
-    let mut first = 0;
-    for ((term, memory), extra) in setup.terms.iter().zip(memories).zip(extra) {
-        let width = term.effect.columns();
+    for (((term, places), memory), extra) in with_columns(&setup.terms).zip(memories).zip(extra) {
+        let width = places.len();
         // The channels are already without it.
         if !term.undone.is_empty() {
-            first += width;
             continue;
         }
         let mut sum = |acceleration: f64, memory: &mut Memory| {
@@ -118,8 +116,8 @@ fn torque(
                 .evaluate_with(&term.shape, &point, extra, memory, &mut columns[..width]);
             columns[..width]
                 .iter()
-                .enumerate()
-                .map(|(k, c)| c * coefficients.get(first + k).copied().unwrap_or(0.0))
+                .zip(places.clone())
+                .map(|(c, k)| c * coefficients.get(k).copied().unwrap_or(0.0))
                 .sum::<f64>()
         };
         let mut copy = *memory;
@@ -127,7 +125,6 @@ fn torque(
         let at_zero = sum(0.0, memory);
         still += at_zero;
         moving += at_one - at_zero;
-        first += width;
     }
     (still, moving)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::bench::{INERTIA, State, model, plain, recording};
 use crate::{
     CustomEffect, Dataset, Diagnosis, ExpressionError, Inertia, PrepareError, Term, Verdict, add,
-    catalogue, compare, diagnose,
+    compare, diagnose, effects,
 };
 
 fn ask(torque: impl Fn(&State) -> f64) -> Diagnosis {
@@ -282,14 +282,29 @@ fn bad_input_is_refused_with_its_place() {
 
 #[test]
 fn the_catalogue_describes_every_effect_once() {
-    let all = catalogue();
+    let all = effects::all();
+    let known = |id: &str| all.iter().any(|effect| effect.row().id == id);
     for (i, effect) in all.iter().enumerate() {
-        assert!(!effect.equation.is_empty() && !effect.excited_by.is_empty());
-        assert!(!effect.coefficients.is_empty(), "{}", effect.id);
-        assert!(all[..i].iter().all(|other| other.id != effect.id));
-        for other in &effect.taken_for {
-            assert!(all.iter().any(|e| &e.id == other), "{other}");
+        let (row, own) = (effect.row(), effect.description());
+        assert!(!own.equation.is_empty() && !own.excited_by.is_empty());
+        assert!(!own.coefficients.is_empty(), "{}", own.id);
+        assert!(all[..i].iter().all(|other| other.row().id != row.id));
+        for other in row.taken_for.iter().copied().chain(row.parts()) {
+            assert!(known(other), "{}: {other}", row.id);
+        }
+        assert!(row.varies.is_none_or(known), "{}", row.id);
+        for (_, column) in row.contains {
+            assert!(*column < effect.columns(), "{}", row.id);
         }
     }
-    assert_eq!(all.len(), 31);
+}
+
+#[test]
+fn a_whole_knows_its_parts() {
+    let row = |id: &str| effects::find(id).unwrap().row();
+    let offset = row("torque_sensor_offset");
+    assert!(row("asymmetric_coulomb").has(offset) && row("cable_spring").has(offset));
+    assert!(!row("coulomb").has(row("coulomb")) && !offset.has(offset));
+    let parts = row("nonlinear_viscous").parts();
+    assert!(parts.eq(["quadratic_viscous", "cubic_viscous"]));
 }

@@ -21,7 +21,7 @@ const SIGNIFICANCE: f64 = 1e-4;
 /// An effect that shows at turns is looked for there. Where it is there, and
 /// explains more of all rows than what is named first, it comes first.
 pub fn settle(setup: &Setup, design: &Design, passing: &mut Vec<Candidate>) {
-    let Some(effect) = missing(setup).into_iter().find(|e| e.shows_at_turns()) else {
+    let Some(effect) = missing(setup).into_iter().find(|e| e.row().shows_at_turns) else {
         return;
     };
     let whole = setup.with_reversals();

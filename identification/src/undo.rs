@@ -10,6 +10,7 @@ use std::iter::repeat;
 use nalgebra::DVector;
 
 use crate::design::Design;
+use crate::effects::with_columns;
 use crate::prediction::working;
 use crate::refine;
 use crate::setup::{BoundTerm, Setup};
@@ -31,7 +32,7 @@ impl Setup {
     /// Takes the model's effects that act on channels out of these, if that leaves
     /// less than their columns do.
     pub(crate) fn undo(&mut self) {
-        if !self.terms.iter().any(|t| t.effect.acts_on_channels()) {
+        if !self.terms.iter().any(|t| t.effect.row().acts_on_channels) {
             return;
         }
         let mut design = Design::new(self);
@@ -59,11 +60,8 @@ impl Setup {
     /// Coefficients of each effect that acts on channels, `share` of the way to the
     /// fitted ones; none for other effects. `None` where they make no sense.
     fn next(&self, fitted: &DVector<f64>, share: f64) -> Option<Vec<Vec<f64>>> {
-        let mut first = 0;
-        let each = self.terms.iter().map(|term| {
-            let columns = first..first + term.effect.columns();
-            first = columns.end;
-            if !term.effect.acts_on_channels() {
+        let each = with_columns(&self.terms).map(|(term, columns)| {
+            if !term.effect.row().acts_on_channels {
                 return Some(Vec::new());
             }
             let before = term.undone.iter().copied().chain(repeat(0.0));
@@ -77,15 +75,12 @@ impl Setup {
     }
 
     fn is_settled(&self, design: &Design) -> bool {
-        let mut first = 0;
-        self.terms.iter().all(|term| {
-            let columns = first..first + term.effect.columns();
-            first = columns.end;
-            let settled = columns.zip(&term.undone).all(|(k, before)| {
+        with_columns(&self.terms).all(|(term, mut columns)| {
+            let settled = columns.by_ref().zip(&term.undone).all(|(k, before)| {
                 let error = design.covariance[(k, k)].max(0.0).sqrt();
                 (design.shared[k] - before).abs() <= SETTLED * error
             });
-            settled && (!term.effect.acts_on_channels() || !term.undone.is_empty())
+            settled && (!term.effect.row().acts_on_channels || !term.undone.is_empty())
         })
     }
 
@@ -111,7 +106,7 @@ impl Setup {
     /// with their coefficients.
     fn differentiate(&mut self) {
         let mut own = self.terms.clone();
-        own.retain(|t| !t.effect.needs_prediction());
+        own.retain(|t| !t.effect.row().needs_prediction);
         let (facts, predicted) = (&self.facts, &self.predicted);
         let inertia = facts.inertia.unwrap_or(0.0);
         // τ + J q̈ + τ_F − τ_m.

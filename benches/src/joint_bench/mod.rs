@@ -41,7 +41,7 @@ mod without_hidden;
 
 pub use crate::bench::{BenchError, Hideable, LOG_PERIOD};
 pub use config::BenchConfig;
-pub use hidden::HiddenEffect;
+pub use effect::HiddenEffect;
 pub use motion::Motion;
 pub use recording::{BenchRecording, BenchSession, TrueParameter, TrueSignals};
 pub use residual::Residual;

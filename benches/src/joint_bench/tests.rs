@@ -1,4 +1,4 @@
-mod signatures;
+pub(super) mod signatures;
 mod without_hidden;
 
 use super::*;

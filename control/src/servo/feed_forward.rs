@@ -1,124 +1,47 @@
 //! Friction fed forward, and friction found elsewhere taken over into it.
 //!
-//! What is fed forward is linear in the parameters θ of equations (3) and (4),
-//! so that a straight way from one set of them to another,
+//! What is fed forward is a sum of static effects of the catalogue, linear in
+//! their coefficients θ, so that a straight way from one set of them to another,
 //!
 //! θ(t) = θ_from + s(t) (θ_to − θ_from), s from 0 to 1 within
 //! [`TakeOverConfig::time`],
 //!
-//! leads the torque over without a jump. Parameters are taken over where they
-//! are certain, the others stay as configured; all of it is refused when one
+//! leads the torque over without a jump. A shape parameter does not enter
+//! linearly: an effect with another shape is another term, which comes up from
+//! zero while the old one goes down to it. Coefficients are taken over where
+//! they are certain, the others stay as configured; all of it is refused when one
 //! of them, or the torque that they give together, is too far from what is
 //! configured.
 
-use ferntast_model::friction::{Friction, FrictionParameters, FrictionState};
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::ParameterError;
+use ferntast_model::friction::{
+    Friction, FrictionState, FrictionTerm, MAX_PARAMETERS, REFERENCE_TEMPERATURE, Signal,
+    StaticEffect, effect_with,
+};
+use ferntast_model::joint::JointParameters;
 
-/// Parameters that can be taken over; what a model has beyond stays as configured.
-pub const MOST_PARAMETERS: usize = 16;
-/// Speeds at which the torque is held against the configured one.
+use super::take_over::{
+    FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, TakenOver, unknown_signal, value_of,
+};
+
+/// Effects that are fed forward at most, those on their way out included.
+pub const MAX_TERMS: usize = 16;
+/// Speeds at which the torque is held against the configured one, …
 const SPEEDS: u32 = 40;
+/// … and positions, where an effect goes with position.
+const POSITIONS: u32 = 40;
+/// How far \[K\] from where it was taken over the temperature counts: beyond, friction
+/// stays as it is there.
+const TEMPERATURE_REACH: f64 = 10.0;
 
-type Values = [f64; MOST_PARAMETERS];
-
-/// How far the servo lets itself be told other friction. Every key may be left out.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct TakeOverConfig {
-    /// Largest change of a parameter, as a share of what is configured \[-\].
-    pub parameter_share: f64,
-    /// Largest change of the unloaded friction torque at any speed of its
-    /// range, as a share of the configured one \[-\]. Below 1, so that friction
-    /// stays friction.
-    pub torque_share: f64,
-    /// Largest standard error of a parameter that is taken over, as a share of
-    /// what is configured \[-\].
-    pub std_error_share: f64,
-    /// Least excitation of a parameter that is taken over, 0 … 1 \[-\].
-    pub least_excitation: f64,
-    /// Time from one set of parameters to the other \[s\].
-    pub time: f64,
-}
-
-impl Default for TakeOverConfig {
-    fn default() -> Self {
-        TakeOverConfig {
-            parameter_share: 0.5,
-            torque_share: 0.5,
-            std_error_share: 0.05,
-            least_excitation: 0.9,
-            time: 2.0,
-        }
-    }
-}
-
-impl TakeOverConfig {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("parameter_share", self.parameter_share, 0.0, 10.0, "-")?;
-        check("torque_share", self.torque_share, 0.0, 0.95, "-")?;
-        check("std_error_share", self.std_error_share, 0.0, 1.0, "-")?;
-        check("least_excitation", self.least_excitation, 0.0, 1.0, "-")?;
-        check("time", self.time, 0.1, 600.0, "s")
-    }
-}
-
-/// A parameter as it was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FoundParameter<'a> {
-    /// Its name; underscores do not count (`b0` is `b_0`).
-    pub name: &'a str,
-    /// Its value.
-    pub value: f64,
-    /// Its standard error.
-    pub std_error: f64,
-    /// 0 where the motion told nothing of it, towards 1 where it told all \[1\].
-    pub excitation: f64,
-}
-
-/// Why nothing is taken over.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum TakeOverRefusal {
-    /// No parameter of the servo's model is certain.
-    #[error("no friction parameter is excited with a small standard error; move the joint longer")]
-    NothingCertain,
-    /// A parameter is too far from the configured one.
-    #[error("{name} = {value:.4} is outside {lower:.4} … {upper:.4}")]
-    Parameter {
-        /// Which.
-        name: &'static str,
-        /// As found.
-        value: f64,
-        /// Least value allowed.
-        lower: f64,
-        /// Largest value allowed.
-        upper: f64,
-    },
-    /// The torque is too far from the configured one.
-    #[error("{torque:.2} Nm at {speed:.3} rad/s is outside {lower:.2} … {upper:.2} Nm")]
-    Torque {
-        /// At this speed \[rad/s\].
-        speed: f64,
-        /// With what was found \[Nm\].
-        torque: f64,
-        /// Least torque allowed \[Nm\].
-        lower: f64,
-        /// Largest torque allowed \[Nm\].
-        upper: f64,
-    },
-}
+type Values = [f64; MAX_PARAMETERS];
 
 /// One parameter of the friction that is fed forward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FedForward {
     /// Its name in the arm's file.
     pub name: &'static str,
-    /// By the arm's file.
+    /// By the arm's file; 0 where that has it not.
     pub configured: f64,
     /// In use now.
     pub value: f64,
@@ -126,16 +49,89 @@ pub struct FedForward {
     pub target: f64,
 }
 
-/// Friction of one joint as it is fed forward. Allocates when made, never afterwards.
-#[derive(Clone, Debug)]
-pub struct FeedForward {
-    friction: Friction,
-    config: TakeOverConfig,
-    names: [&'static str; MOST_PARAMETERS],
-    count: usize,
+/// What is fed forward at one moment \[Nm\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FedTorque {
+    /// What goes with the motion, and is none at rest.
+    pub sliding: f64,
+    /// What a joint at rest feels as well: a spring, a weight, a ripple.
+    pub standing: f64,
+}
+
+/// One effect on its way; `term` holds the coefficients in use.
+#[derive(Clone, Copy, Debug)]
+struct Fed {
+    term: FrictionTerm,
+    is_configured: bool,
     configured: Values,
     from: Values,
     target: Values,
+}
+
+impl Fed {
+    fn configured(term: FrictionTerm) -> Self {
+        Self {
+            is_configured: true,
+            configured: term.values,
+            from: term.values,
+            target: term.values,
+            term,
+        }
+    }
+
+    fn new(effect: &'static StaticEffect, shape: Values) -> Self {
+        let none = [0.0; MAX_PARAMETERS];
+        Self {
+            is_configured: false,
+            ..Self::configured(FrictionTerm {
+                effect,
+                shape,
+                values: none,
+            })
+        }
+    }
+
+    /// Its torque with other coefficients \[Nm\].
+    fn torque(&self, values: Values, state: &FrictionState) -> f64 {
+        FrictionTerm {
+            values,
+            ..self.term
+        }
+        .torque(state)
+    }
+
+    fn parameters(&self) -> impl Iterator<Item = FedForward> + '_ {
+        let row = &self.term.effect.row;
+        let coefficients = row.coefficients.iter().enumerate();
+        let coefficients = coefficients.map(|(i, own)| FedForward {
+            name: own.key,
+            configured: self.configured[i],
+            value: self.term.values[i],
+            target: self.target[i],
+        });
+        let shape = row.shape.iter().zip(self.term.shape);
+        coefficients.chain(shape.map(|(own, value)| FedForward {
+            name: own.key,
+            configured: if self.is_configured { value } else { 0.0 },
+            value,
+            target: value,
+        }))
+    }
+}
+
+/// Friction of one joint as it is fed forward. Allocates when made, never afterwards.
+#[derive(Clone, Debug)]
+pub struct FeedForward {
+    terms: [Option<Fed>; MAX_TERMS],
+    speed_range: [f64; 2],
+    position_range: [f64; 2],
+    config: TakeOverConfig,
+    /// T \[degC\], where it is measured.
+    temperature: Option<f64>,
+    /// T₀ \[degC\].
+    reference_temperature: f64,
+    /// Temperatures \[degC\] within which friction follows.
+    temperature_range: [f64; 2],
     /// s \[1\].
     share: f64,
     taken_over: bool,
@@ -148,85 +144,100 @@ impl FeedForward {
     ///
     /// Friction that the model does not know, a value out of bounds.
     pub fn new(
-        parameters: &FrictionParameters,
+        joint: &JointParameters,
         config: TakeOverConfig,
     ) -> Result<FeedForward, ParameterError> {
         config
             .validate()
             .map_err(|error| error.within("take_over"))?;
-        let friction = Friction::new(parameters).map_err(|error| error.within("friction"))?;
-        let mut configured = [0.0; MOST_PARAMETERS];
-        friction.values(&mut configured);
-        let mut names = [""; MOST_PARAMETERS];
-        for (place, name) in names.iter_mut().zip(friction.names()) {
-            *place = name;
+        let friction = Friction::new(&joint.friction).map_err(|error| error.within("friction"))?;
+        let mut terms = [None; MAX_TERMS];
+        for (place, term) in terms.iter_mut().zip(friction.terms()) {
+            *place = Some(Fed::configured(*term));
         }
         Ok(FeedForward {
-            count: friction.parameter_count().min(MOST_PARAMETERS),
-            friction,
+            terms,
+            speed_range: friction.speed_range(),
+            position_range: [joint.position_lower, joint.position_upper],
             config,
-            names,
-            configured,
-            from: configured,
-            target: configured,
+            temperature: None,
+            reference_temperature: 0.0,
+            temperature_range: [0.0; 2],
             share: 1.0,
             taken_over: false,
         })
     }
 
-    /// τ_F at `velocity` \[rad/s\] under the load `load` \[Nm\], the velocity
-    /// held at the end of the range that friction is known in \[Nm\].
-    pub fn torque(&self, velocity: f64, load: f64) -> f64 {
-        let state = FrictionState {
-            velocity,
-            load,
-            ..FrictionState::default()
-        };
-        self.friction.torque_within_range(&state).torque
+    /// What the joint's temperature is now \[degC\].
+    pub fn set_temperature(&mut self, temperature: f64) {
+        self.temperature = Some(temperature);
     }
 
-    /// Sets out for what was `found`; gives the number of parameters that are
-    /// taken over. The others go back to what is configured.
+    /// τ_F at `position` \[rad\] and `velocity` \[rad/s\] under the load `load`
+    /// \[Nm\], the velocity held at the end of the range that friction is known in.
+    pub fn torque(&self, position: f64, velocity: f64, load: f64) -> FedTorque {
+        let [_, fastest] = self.speed_range;
+        let [coldest, warmest] = self.temperature_range;
+        let temperature = self.temperature.unwrap_or(coldest);
+        let state = FrictionState {
+            position,
+            velocity: velocity.clamp(-fastest, fastest),
+            load,
+            temperature: temperature.clamp(coldest, warmest) - self.reference_temperature,
+            days: 0.0,
+        };
+        let part = |at_rest: bool| {
+            let terms = self.terms.iter().flatten().map(|fed| &fed.term);
+            terms
+                .filter(move |term| term.effect.acts_at_rest() == at_rest)
+                .map(|term| term.torque(&state))
+        };
+        FedTorque {
+            sliding: part(false).sum(),
+            standing: part(true).fold(-0.0, |sum, torque| sum + torque),
+        }
+    }
+
+    /// Sets out for what was `found`; gives what of it is taken over. Other
+    /// coefficients go back to what is configured.
     ///
     /// # Errors
     ///
     /// [`TakeOverRefusal`]; nothing changes then.
-    pub fn take_over(&mut self, found: &[FoundParameter<'_>]) -> Result<usize, TakeOverRefusal> {
-        let mut target = self.configured;
-        let mut taken = 0;
-        for (place, name) in target.iter_mut().zip(self.names).take(self.count) {
-            let configured = *place;
-            let certain = found
-                .iter()
-                .find(|own| is_same(own.name, name) && self.is_certain(own, configured));
-            let Some(own) = certain else {
-                continue;
-            };
-            let reach = self.config.parameter_share * configured.abs();
-            let (lower, upper) = (configured - reach, configured + reach);
-            if !(lower..=upper).contains(&own.value) {
-                return Err(TakeOverRefusal::Parameter {
-                    name,
-                    value: own.value,
-                    lower,
-                    upper,
-                });
+    pub fn take_over<'a>(
+        &mut self,
+        found: &[FoundParameter<'a>],
+    ) -> Result<TakenOver<'a>, TakeOverRefusal> {
+        let mut next = self.clone_for(found);
+        let mut taken = TakenOver {
+            count: next.take_configured(found)?,
+            left_out: None,
+        };
+        for own in found.iter().filter(|own| own.value.is_finite()) {
+            match next.take_new(own.name, found) {
+                Ok(count) => taken.count += count,
+                Err(Declined::LeftOut(why)) => {
+                    taken.left_out = taken.left_out.or(Some((own.name, why)));
+                }
+                Err(Declined::Refused(refusal)) => return Err(refusal),
             }
-            *place = own.value;
-            taken += 1;
         }
-        if taken == 0 {
-            return Err(TakeOverRefusal::NothingCertain);
+        match (taken.count, taken.left_out) {
+            (0, Some((_, why))) => return Err(TakeOverRefusal::NothingStatic(why)),
+            (0, None) => return Err(TakeOverRefusal::NothingCertain),
+            _ => {}
         }
-        self.check_torque(&target)?;
-        self.set_out(target);
+        next.check_torque()?;
+        *self = next;
+        self.share = 0.0;
         self.taken_over = true;
         Ok(taken)
     }
 
     /// Sets out for what is configured.
     pub fn give_back(&mut self) {
-        self.set_out(self.configured);
+        self.head_for_configured();
+        self.share = 0.0;
         self.taken_over = false;
     }
 
@@ -236,8 +247,18 @@ impl FeedForward {
             return;
         }
         self.share = (self.share + dt.max(0.0) / self.config.time).min(1.0);
-        let values = self.values();
-        self.friction.set_values(&values[..self.count]);
+        let share = self.share;
+        for fed in self.terms.iter_mut().flatten() {
+            fed.term.values = fed.target;
+            if share < 1.0 {
+                for (value, from) in fed.term.values.iter_mut().zip(fed.from) {
+                    *value = from + share * (*value - from);
+                }
+            }
+        }
+        if share >= 1.0 {
+            self.drop_idle();
+        }
     }
 
     /// Whether what was found elsewhere is in use, or on its way.
@@ -250,233 +271,246 @@ impl FeedForward {
         self.share < 1.0
     }
 
-    /// The parameters.
+    /// The parameters, effect by effect: coefficients, then shape.
     pub fn parameters(&self) -> impl Iterator<Item = FedForward> + '_ {
-        let values = self.values();
-        (0..self.count).map(move |i| FedForward {
-            name: self.names[i],
-            configured: self.configured[i],
-            value: values[i],
-            target: self.target[i],
-        })
+        self.terms.iter().flatten().flat_map(Fed::parameters)
     }
 
-    fn is_certain(&self, own: &FoundParameter<'_>, configured: f64) -> bool {
-        let most = self.config.std_error_share * configured.abs();
-        // A number that is none fails every comparison.
-        own.value.is_finite()
-            && (0.0..=most).contains(&own.std_error)
-            && own.excitation >= self.config.least_excitation
+    /// A copy that heads for what is configured, with T₀ as found.
+    fn clone_for(&self, found: &[FoundParameter<'_>]) -> Self {
+        // Arrays only: nothing is allocated.
+        let mut next = self.clone();
+        next.head_for_configured();
+        let reference = value_of(found, REFERENCE_TEMPERATURE);
+        if let (Some(reference), Some(now)) = (reference, self.temperature) {
+            next.reference_temperature = reference;
+            next.temperature_range = [now - TEMPERATURE_REACH, now + TEMPERATURE_REACH];
+        }
+        next
     }
 
-    fn check_torque(&self, target: &Values) -> Result<(), TakeOverRefusal> {
-        let [lower, upper] = self.friction.speed_range();
+    fn head_for_configured(&mut self) {
+        for fed in self.terms.iter_mut().flatten() {
+            fed.from = fed.term.values;
+            fed.target = fed.configured;
+        }
+    }
+
+    /// Lets go of effects that are not configured and have faded out.
+    fn drop_idle(&mut self) {
+        for place in &mut self.terms {
+            let idle = |fed: &mut Fed| !fed.is_configured && fed.target == [0.0; MAX_PARAMETERS];
+            if place.as_mut().is_some_and(idle) {
+                *place = None;
+            }
+        }
+    }
+
+    /// Heads for what was found of the configured effects, coefficient by
+    /// coefficient; gives their number.
+    fn take_configured(&mut self, found: &[FoundParameter<'_>]) -> Result<usize, TakeOverRefusal> {
+        let config = self.config;
+        let mut taken = 0;
+        for fed in self
+            .terms
+            .iter_mut()
+            .flatten()
+            .filter(|fed| fed.is_configured)
+        {
+            let coefficients = fed.term.effect.row.coefficients.iter();
+            for (place, parameter) in fed.target.iter_mut().zip(coefficients) {
+                let configured = *place;
+                let certain = found
+                    .iter()
+                    .find(|own| own.name == parameter.name && config.is_certain(own, configured));
+                let Some(own) = certain else {
+                    continue;
+                };
+                let reach = config.parameter_share * configured.abs();
+                let (lower, upper) = (configured - reach, configured + reach);
+                check_bounds(parameter.key, own.value, lower, upper)?;
+                *place = own.value;
+                taken += 1;
+            }
+        }
+        Ok(taken)
+    }
+
+    /// Heads for the effect that is not configured and whose first coefficient is
+    /// `name`: all of it, or nothing; gives the number of its coefficients.
+    fn take_new(&mut self, name: &str, found: &[FoundParameter<'_>]) -> Result<usize, Declined> {
+        let Some((effect, index)) = effect_with(name) else {
+            let is_shape = ferntast_model::friction::of_joint()
+                .any(|effect| effect.row.shape.iter().any(|own| own.name == name));
+            return match is_shape || name == REFERENCE_TEMPERATURE {
+                true => Ok(0),
+                false => Err(LeftOut::NotStatic.into()),
+            };
+        };
+        let mut terms = self.terms.iter().flatten();
+        let configured = terms.any(|fed| fed.is_configured && same(fed.term.effect, effect));
+        if index > 0 || configured {
+            return Ok(0);
+        }
+        let has_temperature = self.temperature.is_some();
+        if let Some(signal) = unknown_signal(effect, has_temperature) {
+            return Err(LeftOut::Unknown(signal).into());
+        }
+        let no_reference = value_of(found, REFERENCE_TEMPERATURE).is_none();
+        if effect.reads(Signal::Temperature) && no_reference {
+            return Err(LeftOut::NoShape.into());
+        }
+        let Some(values) = self.certain(effect, found) else {
+            return Ok(0);
+        };
+        let mut shape = [0.0; MAX_PARAMETERS];
+        for (place, own) in shape.iter_mut().zip(effect.row.shape) {
+            *place = value_of(found, own.name).ok_or(LeftOut::NoShape)?;
+        }
+        let own = effect.row.coefficients.iter().chain(effect.row.shape);
+        let count = effect.row.coefficients.len();
+        for (own, value) in own.zip(values[..count].iter().chain(&shape)) {
+            check_bounds(own.key, *value, own.lower, own.upper)?;
+        }
+        self.place_for(effect, shape)?.target = values;
+        Ok(count)
+    }
+
+    /// The coefficients of `effect` as found, where all of them are certain.
+    fn certain(
+        &self,
+        effect: &'static StaticEffect,
+        found: &[FoundParameter<'_>],
+    ) -> Option<Values> {
+        let mut values = [0.0; MAX_PARAMETERS];
+        let own = |name: &str| found.iter().find(|own| own.name == name);
+        for (place, parameter) in values.iter_mut().zip(effect.row.coefficients) {
+            *place = own(parameter.name)?.value;
+        }
+        let size = values
+            .iter()
+            .fold(0.0, |size: f64, value| size.max(value.abs()));
+        let mut all = effect.row.coefficients.iter();
+        let certain =
+            all.all(|each| own(each.name).is_some_and(|own| self.config.is_certain(own, size)));
+        certain.then_some(values)
+    }
+
+    /// The term of `effect` with this shape, a new one where there is none.
+    fn place_for(
+        &mut self,
+        effect: &'static StaticEffect,
+        shape: Values,
+    ) -> Result<&mut Fed, TakeOverRefusal> {
+        let is_own = |fed: &Fed| {
+            !fed.is_configured && same(fed.term.effect, effect) && fed.term.shape == shape
+        };
+        let mut places = self.terms.iter();
+        let at = places
+            .position(|place| place.as_ref().is_some_and(is_own))
+            .or_else(|| self.terms.iter().position(Option::is_none));
+        let place = at.and_then(|at| self.terms.get_mut(at));
+        let id = effect.row.id;
+        let place = place.ok_or(TakeOverRefusal::TooMany { effect: id })?;
+        Ok(place.get_or_insert_with(|| Fed::new(effect, shape)))
+    }
+
+    /// Holds the unloaded torque of the target against the configured one.
+    fn check_torque(&self) -> Result<(), TakeOverRefusal> {
+        let reads = |signal| {
+            let mut terms = self.terms.iter().flatten();
+            terms.any(|fed| fed.term.effect.reads(signal))
+        };
+        let positions = if reads(Signal::Position) {
+            POSITIONS
+        } else {
+            0
+        };
+        let [lower, upper] = self.speed_range;
         for step in 0..=SPEEDS {
-            let share = f64::from(step) / f64::from(SPEEDS);
-            let speed = lower + share * (upper - lower);
+            let speed = between(lower, upper, step, SPEEDS);
             if speed <= 0.0 {
                 continue;
             }
-            let (configured, torque) = (
-                self.unloaded(&self.configured, speed),
-                self.unloaded(target, speed),
-            );
-            let reach = self.config.torque_share * configured.abs();
-            if (torque - configured).abs() > reach {
-                return Err(TakeOverRefusal::Torque {
-                    speed,
-                    torque,
-                    lower: configured - reach,
-                    upper: configured + reach,
-                });
+            for place in 0..=positions {
+                let [low, high] = self.position_range;
+                for temperature in self.temperature_range {
+                    for velocity in [speed, -speed] {
+                        self.check_torque_at(&FrictionState {
+                            position: between(low, high, place, POSITIONS),
+                            velocity,
+                            temperature: temperature - self.reference_temperature,
+                            ..FrictionState::default()
+                        })?;
+                    }
+                }
             }
         }
         Ok(())
     }
 
-    /// τ_F of other `values` without load \[Nm\].
-    fn unloaded(&self, values: &Values, speed: f64) -> f64 {
-        let state = FrictionState {
-            velocity: speed,
-            ..FrictionState::default()
-        };
-        let mut row = [0.0; MOST_PARAMETERS];
-        self.friction.regressor(&state, &mut row);
-        let terms = row.iter().zip(values).take(self.count);
-        terms.map(|(x, value)| x * value).sum()
-    }
-
-    fn values(&self) -> Values {
-        let mut values = self.target;
-        if self.share < 1.0 {
-            for (value, from) in values.iter_mut().zip(&self.from) {
-                *value = from + self.share * (*value - from);
-            }
+    fn check_torque_at(&self, state: &FrictionState) -> Result<(), TakeOverRefusal> {
+        let terms = || self.terms.iter().flatten();
+        let configured: f64 = terms().map(|fed| fed.torque(fed.configured, state)).sum();
+        let torque: f64 = terms().map(|fed| fed.torque(fed.target, state)).sum();
+        let reach = self.config.torque_share * configured.abs();
+        if (torque - configured).abs() <= reach {
+            return Ok(());
         }
-        values
-    }
-
-    fn set_out(&mut self, target: Values) {
-        self.from = self.values();
-        self.target = target;
-        self.share = 0.0;
+        Err(TakeOverRefusal::Torque {
+            speed: state.velocity,
+            torque,
+            lower: configured - reach,
+            upper: configured + reach,
+        })
     }
 }
 
-/// Whether two names are the same but for underscores.
-fn is_same(a: &str, b: &str) -> bool {
-    let letters = |text: &'_ str| -> [u8; 24] {
-        let mut letters = [0; 24];
-        let bytes = text.bytes().filter(|byte| *byte != b'_');
-        for (place, byte) in letters.iter_mut().zip(bytes) {
-            *place = byte;
-        }
-        letters
-    };
-    letters(a) == letters(b)
+/// Why an effect is not among what is taken over.
+enum Declined {
+    /// It alone is left out.
+    LeftOut(LeftOut),
+    /// All is refused for it.
+    Refused(TakeOverRefusal),
+}
+
+impl From<LeftOut> for Declined {
+    fn from(why: LeftOut) -> Self {
+        Self::LeftOut(why)
+    }
+}
+
+impl From<TakeOverRefusal> for Declined {
+    fn from(refusal: TakeOverRefusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
+
+fn same(one: &StaticEffect, other: &StaticEffect) -> bool {
+    one.row.id == other.row.id
+}
+
+/// Value number `step` of `steps` from `lower` to `upper`.
+fn between(lower: f64, upper: f64, step: u32, steps: u32) -> f64 {
+    lower + f64::from(step) / f64::from(steps) * (upper - lower)
+}
+
+fn check_bounds(
+    name: &'static str,
+    value: f64,
+    lower: f64,
+    upper: f64,
+) -> Result<(), TakeOverRefusal> {
+    match (lower..=upper).contains(&value) {
+        true => Ok(()),
+        false => Err(TakeOverRefusal::Parameter {
+            name,
+            value,
+            lower,
+            upper,
+        }),
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    const CONFIGURED: [(&str, &str, f64); 5] = [
-        ("coulomb", "b_0", 12.372),
-        ("load_coulomb", "b_0T", 0.146),
-        ("viscous", "b_1", 163.301),
-        ("quadratic_viscous", "b_2", -578.954),
-        ("cubic_viscous", "b_3", 547.449),
-    ];
-    const NAMES: [&str; 5] = ["b0", "b0T", "b1", "b2", "b3"];
-
-    fn feed_forward() -> FeedForward {
-        let effects = CONFIGURED
-            .iter()
-            .map(|(effect, name, value)| {
-                ((*effect).to_owned(), [((*name).to_owned(), *value)].into())
-            })
-            .collect();
-        let parameters = FrictionParameters {
-            speed_range: [0.0175, 0.698],
-            effects,
-        };
-        FeedForward::new(&parameters, TakeOverConfig::default()).unwrap()
-    }
-
-    fn found(factor: f64) -> [FoundParameter<'static>; 5] {
-        std::array::from_fn(|i| FoundParameter {
-            name: NAMES[i],
-            value: factor * CONFIGURED[i].2,
-            std_error: 0.01 * CONFIGURED[i].2.abs(),
-            excitation: 0.99,
-        })
-    }
-
-    fn settle(own: &mut FeedForward) {
-        for _ in 0..2_010 {
-            own.step(1e-3);
-        }
-    }
-
-    #[test]
-    fn what_was_found_is_used_and_given_back_without_a_jump() {
-        let mut own = feed_forward();
-        let torque = |own: &FeedForward| own.torque(0.3, 5.0);
-        let configured = torque(&own);
-        assert_eq!(own.take_over(&found(1.3)), Ok(5));
-        assert!(own.is_taken_over() && own.is_on_the_way());
-        let mut last = torque(&own);
-        assert_eq!(last, configured);
-        for step in 0..4_000 {
-            if step == 900 {
-                // Back before it is there.
-                own.give_back();
-            }
-            own.step(1e-3);
-            let now = torque(&own);
-            // 30 % of some 16 Nm in two seconds.
-            assert!((now - last).abs() < 0.01, "{now} after {last}");
-            last = now;
-        }
-        assert_eq!(last, configured);
-        own.take_over(&found(1.3)).unwrap();
-        settle(&mut own);
-        assert!((torque(&own) / configured - 1.3).abs() < 1e-12);
-        assert!(!own.is_on_the_way());
-        own.give_back();
-        settle(&mut own);
-        assert_eq!(torque(&own), configured);
-        assert!(own.parameters().all(|one| one.value == one.configured));
-    }
-
-    #[test]
-    fn only_what_is_certain_is_taken_over() {
-        let mut own = feed_forward();
-        let mut some = found(1.2);
-        some[1].excitation = 0.5;
-        some[2].std_error = 0.2 * some[2].value;
-        some[3].std_error = f64::NAN;
-        some[4].value = f64::INFINITY;
-        assert_eq!(own.take_over(&some), Ok(1));
-        let targets: Vec<f64> = own.parameters().map(|one| one.target).collect();
-        assert_eq!(targets[0], 1.2 * CONFIGURED[0].2);
-        for i in 1..5 {
-            assert_eq!(targets[i], CONFIGURED[i].2);
-        }
-        let before = own.clone();
-        for all in [&mut some[..], &mut []] {
-            for one in all.iter_mut() {
-                one.excitation = 0.0;
-            }
-            assert_eq!(own.take_over(all), Err(TakeOverRefusal::NothingCertain));
-        }
-        assert_eq!(own.target, before.target);
-    }
-
-    #[test]
-    fn what_is_too_far_away_is_refused_as_a_whole_and_by_name() {
-        let mut own = feed_forward();
-        let mut far = found(1.2);
-        far[2].value = 1.6 * CONFIGURED[2].2;
-        far[2].std_error = 0.0;
-        match own.take_over(&far) {
-            Err(TakeOverRefusal::Parameter { name: "b_1", .. }) => {}
-            other => panic!("{other:?}"),
-        }
-        // Each within its bounds, together too much: less of what slows down.
-        let mut together = found(1.0);
-        together[2].value = 1.45 * CONFIGURED[2].2;
-        together[3].value = 0.55 * CONFIGURED[3].2;
-        let error = own.take_over(&together).unwrap_err();
-        assert!(matches!(error, TakeOverRefusal::Torque { .. }), "{error}");
-        assert!(error.to_string().contains("rad/s"));
-        assert!(!own.is_taken_over() && !own.is_on_the_way());
-    }
-
-    proptest! {
-        /// Whatever is found, what is fed forward is finite and against the motion.
-        #[test]
-        fn friction_stays_friction(
-            values in prop::array::uniform5(0.4..1.6_f64),
-            errors in prop::array::uniform5(0.0..0.1_f64),
-            steps in 0..3_000,
-        ) {
-            let mut own = feed_forward();
-            let all: [FoundParameter<'_>; 5] = std::array::from_fn(|i| FoundParameter {
-                value: values[i] * CONFIGURED[i].2,
-                std_error: errors[i] * CONFIGURED[i].2.abs(),
-                ..found(1.0)[i]
-            });
-            let _ = own.take_over(&all);
-            for _ in 0..steps {
-                own.step(1e-3);
-            }
-            for step in 1..40 {
-                let speed = 0.02 * f64::from(step);
-                prop_assert!(own.torque(speed, 0.0) > 0.0);
-                prop_assert!(own.torque(-speed, 0.0) < 0.0);
-            }
-        }
-    }
-}
+mod tests;

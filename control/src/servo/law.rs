@@ -56,7 +56,7 @@ impl PositionLaw {
     ) -> Result<PositionLaw, ParameterError> {
         let index = index.min(JOINTS - 1);
         Ok(PositionLaw {
-            friction: FeedForward::new(&joint.friction, config.take_over)?,
+            friction: FeedForward::new(joint, config.take_over)?,
             inertia: joint.motor_inertia,
             stiffness: config.stiffness[index],
             pressing_limit: config.pressing_limit[index],
@@ -92,8 +92,7 @@ impl PositionLaw {
         let limited = pressing.abs() > self.pressing_limit;
         let feedback = pressing.clamp(-self.pressing_limit, self.pressing_limit)
             + self.damping * (setpoint.velocity - velocity);
-        let feed_forward =
-            self.inertia * setpoint.acceleration + self.friction(setpoint.velocity, load);
+        let feed_forward = self.inertia * setpoint.acceleration + self.friction(setpoint, load);
         let torque = self.limit(feedback + feed_forward);
         LimitedTorque {
             limited: torque.limited || limited,
@@ -106,13 +105,14 @@ impl PositionLaw {
         self.limit(self.hold_stiffness * (hold - position) - self.hold_damping * velocity)
     }
 
-    /// c τ_F at the setpoint's velocity. Below the smoothing speed it goes
-    /// linearly through zero: no step when the setpoint turns.
-    fn friction(&self, velocity: f64, load: f64) -> f64 {
-        let speed = velocity.abs();
-        let sliding = speed.max(self.smoothing).copysign(velocity);
+    /// c τ_F at the setpoint. Below the smoothing speed what goes with the motion
+    /// goes linearly through zero: no step when the setpoint turns.
+    fn friction(&self, setpoint: &Setpoint, load: f64) -> f64 {
+        let speed = setpoint.velocity.abs();
+        let velocity = speed.max(self.smoothing).copysign(setpoint.velocity);
         let fade = (speed / self.smoothing).min(1.0);
-        self.compensation * fade * self.friction.torque(sliding, load)
+        let torque = self.friction.torque(setpoint.position, velocity, load);
+        self.compensation * fade * torque.sliding + self.compensation * torque.standing
     }
 
     fn limit(&self, torque: f64) -> LimitedTorque {

@@ -22,17 +22,17 @@ mod feed_forward;
 mod law;
 mod setpoint;
 mod stall;
+mod take_over;
 #[cfg(test)]
 mod tests;
 
 pub use command::{Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target};
 pub use compliance::{stiffest, tip_compliance};
 pub use config::ServoConfig;
-pub use feed_forward::{
-    FedForward, FeedForward, FoundParameter, MOST_PARAMETERS, TakeOverConfig, TakeOverRefusal,
-};
+pub use feed_forward::{FedForward, FedTorque, FeedForward, MAX_TERMS};
 pub use law::{LimitedTorque, PositionLaw};
 pub use setpoint::{Setpoint, SetpointGenerator, SetpointLimits};
+pub use take_over::{FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, TakenOver};
 
 use self::stall::Stall;
 use crate::operating::{Event, OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
@@ -204,6 +204,13 @@ impl Servo {
     /// The same at joint number `joint` (from 0), to be told other friction.
     pub fn feed_forward_mut(&mut self, joint: usize) -> Option<&mut FeedForward> {
         self.laws.get_mut(joint).map(PositionLaw::feed_forward_mut)
+    }
+
+    /// What the temperature of joint number `joint` (from 0) is now \[degC\].
+    pub fn set_temperature(&mut self, joint: usize, temperature: f64) {
+        if let Some(own) = self.feed_forward_mut(joint) {
+            own.set_temperature(temperature);
+        }
     }
 
     /// One period at `now_ns` \[ns since the UNIX epoch\].

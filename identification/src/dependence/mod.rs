@@ -112,7 +112,7 @@ pub fn find(setup: &Setup, design: &Design) -> Vec<Dependence> {
 /// own symmetry, still explains; 0 if nothing for certain.
 #[must_use]
 pub fn on_own_signals(setup: &Setup, design: &Design, effect: &EffectHandle) -> f64 {
-    let own = effect.own_signals();
+    let own = effect.row().own_signals;
     let channels = channels(setup);
     let is_own = |c: &Channel| own.names.contains(&c.name.as_str());
     let mut choices: Vec<Vec<&Channel>> = channels

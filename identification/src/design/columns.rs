@@ -1,6 +1,6 @@
 //! Columns of an effect on a session.
 
-use crate::effects::{EffectHandle, Exact, ExactSignal, MOST_COLUMNS};
+use crate::effects::{EffectHandle, Exact, ExactSignal, MOST_COLUMNS, constant_of, parts_of};
 use crate::filter::Kernel;
 use crate::setup::BoundTerm;
 use crate::signals::{Filters, Signals};
@@ -44,7 +44,7 @@ pub fn filtered(
     rows: &[usize],
 ) -> Vec<Vec<f64>> {
     let kernel = |order| Kernel::gaussian(filters.column, order, signals.period);
-    let exact = effect.exact();
+    let exact = effect.row().exact;
     if exact.is_empty() || filters.stated.is_some() {
         let smooth = &signals.column;
         return working(signals, effect, shape)
@@ -53,8 +53,8 @@ pub fn filtered(
             .collect();
     }
     let column = |channel: &Exact| {
-        let mut sum = vec![channel.constant(); rows.len()];
-        for (signal, order, factor) in channel.parts(inertia) {
+        let mut sum = vec![constant_of(*channel); rows.len()];
+        for (signal, order, factor) in parts_of(*channel, inertia) {
             let signal = match signal {
                 ExactSignal::Position => &signals.raw.position,
                 ExactSignal::JointTorque => &signals.raw.joint_torque,

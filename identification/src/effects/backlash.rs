@@ -1,20 +1,23 @@
 //! A gap between the motor and the gear with its load.
 
-use super::{
-    ANGLE, Effect, EffectDescription, Facts, Memory, ONE, Point, describe, logarithmic, sign,
-};
+use ferntast_model::friction::{ANGLE, AtReversal, Contrast, ONE, Proposal};
 
-describe!(
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row, sign};
+
+row!(
     Backlash,
-    "backlash",
-    "in the gap τ_m = J q̈: τ and τ_F do not reach the motor",
-    "dead zone (play) between bodies with dry friction",
-    coefficients: ["c": ONE],
-    shape: ["gap": ANGLE, "bend": ANGLE],
+    id: "backlash",
+    equation: "in the gap τ_m = J q̈: τ and τ_F do not reach the motor",
+    source: "dead zone (play) between bodies with dry friction",
+    coefficients: &[free("c", ONE)],
+    shape: &[free("gap", ANGLE), free("bend", ANGLE)],
     shows_as: "jump after reversal of load",
     excited_by: "reversals of the load at low speed",
-    shown_by: SlowReversals,
-    taken_for: ["presliding_hysteresis"]
+    shown_by: Proposal::SlowReversals,
+    contrasts: &[Contrast::SlowReversals],
+    taken_for: &["presliding_hysteresis"],
+    at_reversal: Some(AtReversal::Gap),
+    needs_prediction: true,
 );
 
 /// Places in the memory: friction that reaches the motor \[Nm\]; place in the
@@ -53,9 +56,7 @@ fn gear_speed(point: &Point) -> f64 {
 }
 
 impl Effect for Backlash {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+    row!(methods);
 
     // The gear stands still until the torque through its teeth, τ + F, leaves
     // τ ± τ_F. As the motor turns back, F falls towards −τ_F over the travel `bend`
@@ -140,10 +141,6 @@ impl Effect for Backlash {
             [0.004 * travel, 0.15 * travel],
             [0.0005 * travel, 0.006 * travel],
         ]
-    }
-
-    fn needs_prediction(&self) -> bool {
-        true
     }
 
     // All of the torque is missing in the gap, not a part of it.

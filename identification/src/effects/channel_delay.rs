@@ -1,19 +1,26 @@
 //! One channel stamped late.
 
-use super::{Effect, EffectDescription, Facts, Memory, ONE, Point, Unit, describe};
+use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
+
+use super::{Effect, Facts, Memory, Point, free, row};
 use crate::signals::Channels;
 
-describe!(
+row!(
     ChannelDelay,
-    "channel_delay",
-    "x_measured(t) = x(t − d) for one channel: 0 motor torque, 1 joint torque, 2 position (3 where τ is modelled)",
-    "time stamps",
-    coefficients: ["delay": Unit::new("s", "s")],
-    shape: ["channel": ONE, "shift": Unit::new("s", "s")],
+    id: "channel_delay",
+    equation: "x_measured(t) = x(t − d) for one channel: 0 motor torque, 1 joint torque, 2 position (3 where τ is modelled)",
+    source: "time stamps",
+    coefficients: &[free("delay", Unit::new("s", "s"))],
+    shape: &[free("channel", ONE), free("shift", Unit::new("s", "s"))],
     shows_as: "proportional to d(signal)/dt",
     excited_by: "fast accelerations and changes of load",
-    shown_by: Accelerations,
-    taken_for: ["inertia", "viscous", "elasticity"]
+    shown_by: Proposal::Accelerations,
+    contrasts: &[Contrast::Accelerations],
+    taken_for: &["inertia", "viscous", "elasticity"],
+    // The fitted delay is the shift, and the channel one of three.
+    freedom: Some(1),
+    needs_prediction: true,
+    acts_on_channels: true,
 );
 
 /// What `signal` is `samples` later, by cubics through four samples; at the end
@@ -34,9 +41,7 @@ fn advanced(signal: &[f64], samples: f64) -> Vec<f64> {
 }
 
 impl Effect for ChannelDelay {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+    row!(methods);
 
     // Replaced by `whole`: the true value of a late channel lies ahead.
     fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
@@ -98,10 +103,6 @@ impl Effect for ChannelDelay {
         vec![[0.0, 0.0], [0.0002, 0.2]]
     }
 
-    fn acts_on_channels(&self) -> bool {
-        true
-    }
-
     fn undo(
         &self,
         shape: &[f64],
@@ -120,15 +121,6 @@ impl Effect for ChannelDelay {
         let samples = delay / period;
         *late = advanced(late, samples);
         samples.abs().ceil() as usize + 1
-    }
-
-    // The fitted delay is the shift, and the channel one of three.
-    fn freedom(&self) -> usize {
-        1
-    }
-
-    fn needs_prediction(&self) -> bool {
-        true
     }
 
     // The channel is late as a whole, not by a part: fitted delay and shift agree.

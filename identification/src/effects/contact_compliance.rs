@@ -1,21 +1,24 @@
 //! The tip rests until what carries it has wound up.
 
-use super::{
-    Effect, EffectDescription, Facts, Memory, ONE, Point, STIFFNESS, describe, logarithmic,
-};
+use ferntast_model::friction::{Contrast, ONE, Proposal, STIFFNESS, Subject};
 
-describe!(
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
+
+row!(
     ContactCompliance,
-    "contact_compliance",
-    of: Contact,
-    "dF_T/dr = k while |F_T| is below what friction holds, else the tip slides",
-    "ROKVISS, lessons learned, Fig. 16; Prandtl 1928 (spring and dry friction in series)",
-    coefficients: ["wound_up": ONE],
-    shape: ["k": STIFFNESS],
+    id: "contact_compliance",
+    of: Subject::Contact,
+    equation: "dF_T/dr = k while |F_T| is below what friction holds, else the tip slides",
+    source: "ROKVISS, lessons learned, Fig. 16; Prandtl 1928 (spring and dry friction in series)",
+    coefficients: &[free("wound_up", ONE)],
+    shape: &[free("k", STIFFNESS)],
     shows_as: "wrong sign of F_T near rest, after each reversal over the same travel",
     excited_by: "reversals at several normal forces, slow and fast",
-    shown_by: ContactTurns,
-    taken_for: ["contact_stribeck"]
+    shown_by: Proposal::ContactTurns,
+    contrasts: &[Contrast::ContactTurns],
+    taken_for: &["contact_stribeck"],
+    shows_at_turns: true,
+    needs_prediction: true,
 );
 
 /// Places in the memory: force in the spring \[N\]; place of the last sample
@@ -25,9 +28,7 @@ const PLACE: usize = 1;
 const BEGUN: usize = 2;
 
 impl Effect for ContactCompliance {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+    row!(methods);
 
     // The measured place is that of the motors. The spring takes the friction
     // that the model predicts for sliding, and no more; the column is what it
@@ -66,14 +67,6 @@ impl Effect for ContactCompliance {
         let soft = 5.0 * facts.motor_torque / facts.travel().max(1e-9);
         let stiff = facts.motor_torque / facts.resolved.max(1e-9);
         vec![[soft, stiff.max(2.0 * soft)]]
-    }
-
-    fn shows_at_turns(&self) -> bool {
-        true
-    }
-
-    fn needs_prediction(&self) -> bool {
-        true
     }
 
     // All of the friction goes through the spring, not a part of it.

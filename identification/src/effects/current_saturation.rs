@@ -1,24 +1,24 @@
 //! Motor torque clipped: by the drive, while the log has what was asked for, or by the range of the current sensor.
 
-use super::{Effect, EffectDescription, Facts, Memory, ONE, Point, TORQUE, describe, sign};
+use ferntast_model::friction::{ONE, Proposal, TORQUE};
 
-describe!(
+use super::{Effect, Facts, Memory, Point, free, row, sign};
+
+row!(
     CurrentSaturation,
-    "current_saturation",
-    "0, drive: τ_m,log − τ_m = c · sign(τ_m,log)(|τ_m,log| − L)₊; 1, sensor: −c · sign(τ_m)(|τ_m| − L)₊; c = 1",
-    "amplifier, magnetic saturation, sensor range",
-    coefficients: ["c": ONE],
-    shape: ["L": TORQUE, "place": ONE],
+    id: "current_saturation",
+    equation: "0, drive: τ_m,log − τ_m = c · sign(τ_m,log)(|τ_m,log| − L)₊; 1, sensor: −c · sign(τ_m)(|τ_m| − L)₊; c = 1",
+    source: "amplifier, magnetic saturation, sensor range",
+    coefficients: &[free("c", ONE)],
+    shape: &[free("L", TORQUE), free("place", ONE)],
     shows_as: "only at the limit",
     excited_by: "torque up to the limit and well below it",
-    shown_by: FastUnloaded,
-    taken_for: []
+    shown_by: Proposal::FastUnloaded,
+    needs_prediction: true,
 );
 
 impl Effect for CurrentSaturation {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+    row!(methods);
 
     fn evaluate(&self, shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
         let ([c], [limit, place, ..]) = (columns, shape) else {
@@ -50,10 +50,6 @@ impl Effect for CurrentSaturation {
             [0.4 * facts.motor_torque, 1.05 * facts.motor_torque],
             [0.0, 0.0],
         ]
-    }
-
-    fn needs_prediction(&self) -> bool {
-        true
     }
 
     // Measured torque as a column explains its own noise with a small

@@ -1,54 +1,7 @@
 //! How an effect describes itself.
 
+use ferntast_model::friction::{EffectParameter, Proposal, Row, Subject, Unit};
 use serde::Serialize;
-
-use crate::data::{JointType, Subject};
-use crate::proposal::Proposal;
-
-/// A unit, for both kinds of joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Unit {
-    /// With rad and Nm.
-    pub revolute: &'static str,
-    /// With m and N: of a contact, too.
-    pub prismatic: &'static str,
-}
-
-impl Unit {
-    /// The same for both.
-    #[must_use]
-    pub const fn same(unit: &'static str) -> Self {
-        Self {
-            revolute: unit,
-            prismatic: unit,
-        }
-    }
-
-    /// One unit each.
-    #[must_use]
-    pub const fn new(revolute: &'static str, prismatic: &'static str) -> Self {
-        Self {
-            revolute,
-            prismatic,
-        }
-    }
-
-    /// The one for this joint.
-    #[must_use]
-    pub fn of(&self, joint: JointType) -> &'static str {
-        match joint {
-            JointType::Revolute => self.revolute,
-            JointType::Prismatic | JointType::Contact => self.prismatic,
-        }
-    }
-}
-
-pub(crate) const TORQUE: Unit = Unit::new("Nm", "N");
-pub(crate) const ANGLE: Unit = Unit::new("rad", "m");
-pub(crate) const SPEED: Unit = Unit::new("rad/s", "m/s");
-pub(crate) const STIFFNESS: Unit = Unit::new("Nm/rad", "N/m");
-pub(crate) const DAY: Unit = Unit::same("d");
-pub(crate) const ONE: Unit = Unit::same("1");
 
 /// A parameter's name and unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,7 +12,8 @@ pub struct Quantity {
     pub unit: Unit,
 }
 
-/// What an effect is and how it shows.
+/// What an effect is and how it shows: its row in the catalogue in words, or
+/// that of an effect of the user's own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectDescription {
     /// Name in files, on the command line and in results.
@@ -84,37 +38,58 @@ pub struct EffectDescription {
     pub taken_for: Vec<String>,
 }
 
-/// Makes the struct of an effect whose only field is its description.
-/// After the id, `of: Contact` says that it is one of a contact.
-macro_rules! describe {
-    (@subject) => { $crate::data::Subject::Joint };
-    (@subject $of:ident) => { $crate::data::Subject::$of };
-    ($name:ident, $id:literal, $(of: $of:ident,)? $equation:literal, $source:literal,
-     coefficients: [$($coefficient:literal: $coefficient_unit:expr),* $(,)?],
-     shape: [$($shape:literal: $shape_unit:expr),* $(,)?],
-     shows_as: $shows:literal, excited_by: $excited:literal, shown_by: $shown:ident,
-     taken_for: [$($other:literal),* $(,)?]) => {
-        #[doc = $equation]
+impl EffectDescription {
+    /// Of an effect of the catalogue.
+    #[must_use]
+    pub fn of(row: &Row) -> Self {
+        let quantities = |parameters: &[EffectParameter]| {
+            let quantity = |own: &EffectParameter| Quantity {
+                name: own.name.to_owned(),
+                unit: own.unit,
+            };
+            parameters.iter().map(quantity).collect()
+        };
+        Self {
+            id: row.id.to_owned(),
+            of: row.of,
+            equation: row.equation.to_owned(),
+            source: row.source.to_owned(),
+            coefficients: quantities(row.coefficients),
+            shape: quantities(row.shape),
+            shows_as: row.shows_as.to_owned(),
+            excited_by: row.excited_by.to_owned(),
+            shown_by: row.shown_by,
+            taken_for: row.taken_for.iter().map(|id| (*id).to_owned()).collect(),
+        }
+    }
+}
+
+/// Makes the struct of an effect that is no static law, out of its row; within
+/// its `impl Effect`, `row!(methods)` gives the two methods that say what it is.
+macro_rules! row {
+    (methods) => {
+        fn description(&self) -> &$crate::effects::EffectDescription {
+            &self.0
+        }
+
+        fn row(&self) -> &'static ferntast_model::friction::Row {
+            &ROW
+        }
+    };
+    ($name:ident, $($field:ident: $value:expr),* $(,)?) => {
+        static ROW: ferntast_model::friction::Row = ferntast_model::friction::Row {
+            $($field: $value,)*
+            ..ferntast_model::friction::Row::NONE
+        };
+
+        #[doc = concat!("The effect of this row: ", stringify!($name), ".")]
         pub struct $name($crate::effects::EffectDescription);
 
         impl Default for $name {
             fn default() -> Self {
-                Self($crate::effects::EffectDescription {
-                    id: $id.to_owned(),
-                    of: $crate::effects::describe!(@subject $($of)?),
-                    equation: $equation.to_owned(),
-                    source: $source.to_owned(),
-                    coefficients: vec![$($crate::effects::Quantity {
-                        name: $coefficient.to_owned(), unit: $coefficient_unit }),*],
-                    shape: vec![$($crate::effects::Quantity {
-                        name: $shape.to_owned(), unit: $shape_unit }),*],
-                    shows_as: $shows.to_owned(),
-                    excited_by: $excited.to_owned(),
-                    shown_by: $crate::proposal::Proposal::$shown,
-                    taken_for: vec![$($other.to_owned()),*],
-                })
+                Self($crate::effects::EffectDescription::of(&ROW))
             }
         }
     };
 }
-pub(crate) use describe;
+pub(crate) use row;

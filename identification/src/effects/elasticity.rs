@@ -1,20 +1,25 @@
 //! A joint that winds up between motor and measured position.
 
-use super::{Effect, EffectDescription, Facts, Memory, Point, TORQUE, Unit, describe, logarithmic};
+use ferntast_model::friction::{Contrast, Proposal, TORQUE, Unit};
+
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
 use crate::filter::{Kernel, least_width};
 use crate::signals::Channels;
 
-describe!(
+row!(
     Elasticity,
-    "elasticity",
-    "q_m = q + δ with K δ + K3 δ³ = τ, K = 1/inverse_K, K3 = K/(inverse_K τ_s)²: τ_F and J feel q_m",
-    "stiffness of the flex spline, ROKVISS, lessons learned, Fig. 15",
-    coefficients: ["inverse_K": Unit::new("rad/Nm", "m/N")],
-    shape: ["tau_s": TORQUE],
+    id: "elasticity",
+    equation: "q_m = q + δ with K δ + K3 δ³ = τ, K = 1/inverse_K, K3 = K/(inverse_K τ_s)²: τ_F and J feel q_m",
+    source: "stiffness of the flex spline, ROKVISS, lessons learned, Fig. 15",
+    coefficients: &[free("inverse_K", Unit::new("rad/Nm", "m/N"))],
+    shape: &[free("tau_s", TORQUE)],
     shows_as: "over τ and τ̇",
     excited_by: "load that changes fast while the joint hardly moves",
-    shown_by: Accelerations,
-    taken_for: ["presliding_hysteresis", "channel_delay"]
+    shown_by: Proposal::Accelerations,
+    contrasts: &[Contrast::SlowReversals, Contrast::Accelerations],
+    taken_for: &["presliding_hysteresis", "channel_delay"],
+    needs_prediction: true,
+    acts_on_channels: true,
 );
 
 /// Steps of Newton's method, which converges from above.
@@ -32,9 +37,7 @@ fn wound_up(load: f64) -> f64 {
 }
 
 impl Effect for Elasticity {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+    row!(methods);
 
     fn evaluate(&self, shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
         // To first order: ∂τ_F/∂q̇ times the speed of winding up, J times its
@@ -63,14 +66,6 @@ impl Effect for Elasticity {
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
         (!facts.joint_torque).then(|| "no joint torque sensor".to_owned())
-    }
-
-    fn needs_prediction(&self) -> bool {
-        true
-    }
-
-    fn acts_on_channels(&self) -> bool {
-        true
     }
 
     fn undo(

@@ -1,46 +1,82 @@
-//! An inertia other than the one given.
+//! The inertia: a correction to the one given, or itself a parameter.
 
-use super::{
-    Direction, Effect, EffectDescription, Exact, Facts, Memory, OwnSignals, Point, Unit, describe,
+use ferntast_model::friction::{
+    Contrast, Direction, Exact, OwnSignals, Proposal, Row, Subject, Unit,
 };
 
-describe!(
-    InertiaError,
-    "inertia",
-    "τ_m = … + ΔJ · q̈",
-    "rigid body",
-    coefficients: ["dJ": Unit::new("kg m²", "kg")],
-    shape: [],
+use super::{Effect, EffectDescription, Facts, Memory, Point, free};
+
+const KILOGRAMS: Unit = Unit::new("kg m²", "kg");
+
+const COMMON: Row = Row {
+    id: "inertia",
+    of: Subject::Joint,
+    source: "rigid body",
     shows_as: "slope over q̈",
     excited_by: "fast accelerations at low speed",
-    shown_by: FastUnloaded,
-    taken_for: ["channel_delay"]
-);
+    shown_by: Proposal::FastUnloaded,
+    contrasts: &[Contrast::FastByLoad, Contrast::Accelerations],
+    taken_for: &["channel_delay"],
+    exact: &[Exact::Acceleration],
+    ..Row::NONE
+};
 
-impl Effect for InertiaError {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+static CORRECTION: Row = Row {
+    equation: "τ_m = … + ΔJ · q̈",
+    coefficients: &[free("dJ", KILOGRAMS)],
+    corrects_inertia: true,
+    own_signals: OwnSignals::new(&["acceleration"], Direction::Same),
+    ..COMMON
+};
 
-    fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
-        if let [c] = columns {
-            *c = point.acceleration;
+static FITTED: Row = Row {
+    equation: "τ_m = J · q̈ + …",
+    coefficients: &[free("inertia", KILOGRAMS)],
+    is_inertia: true,
+    ..COMMON
+};
+
+/// A torque that goes with q̈.
+pub struct Inertia {
+    row: &'static Row,
+    description: EffectDescription,
+}
+
+impl Inertia {
+    fn new(row: &'static Row) -> Self {
+        Self {
+            row,
+            description: EffectDescription::of(row),
         }
     }
 
-    fn exact(&self) -> &'static [Exact] {
-        &[Exact::Acceleration]
+    /// An inertia other than the one given: the effect of the catalogue.
+    #[must_use]
+    pub fn correction() -> Self {
+        Self::new(&CORRECTION)
+    }
+
+    /// J itself, in a model where it is a parameter.
+    #[must_use]
+    pub fn fitted() -> Self {
+        Self::new(&FITTED)
+    }
+}
+
+impl Effect for Inertia {
+    fn description(&self) -> &EffectDescription {
+        &self.description
+    }
+
+    fn row(&self) -> &'static Row {
+        self.row
+    }
+
+    fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
+        columns.fill(point.acceleration);
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
         (facts.inertia.is_none()).then(|| "the inertia is fitted already".to_owned())
-    }
-
-    fn own_signals(&self) -> OwnSignals {
-        OwnSignals {
-            names: &["acceleration"],
-            direction: Direction::Same,
-            any_pair: false,
-        }
     }
 }

@@ -1,56 +1,41 @@
-//! The catalogue of physical effects, one file each.
+//! The catalogue of physical effects.
 //!
 //! An effect is a sum of columns, each times a coefficient that is fitted:
 //! τ_m − J q̈ − τ = Σ c_i φ_i(state; shape). The *shape* holds the parameters
 //! that do not enter linearly (a velocity, a width); it is searched.
 //!
-//! To add one: copy a neighbour, add it to [`all`].
+//! What an effect is stands in its [`Row`]. Static effects, which are a function of
+//! what the joint is doing now, have row and law in `ferntast_model::friction`,
+//! where the servo has them too. The others are here, one a file.
+//!
+//! To add one of these: copy a neighbour, and name it here and in [`all`].
 
-mod asymmetric_coulomb;
-mod asymmetric_viscous;
 mod backlash;
-mod cable_spring;
 mod channel_delay;
 mod contact_compliance;
-mod contact_coulomb;
-mod contact_spot;
-mod contact_stribeck;
-mod contact_viscous;
-mod contact_wear;
-mod coulomb;
-mod cubic_viscous;
 mod current_saturation;
 mod description;
 mod elasticity;
-mod fitted_inertia;
-mod gravity;
 mod inertia;
-mod load_coulomb;
-mod local_friction;
 mod motor_constant;
-mod nonlinear_viscous;
-pub(crate) mod parts;
 mod presliding_hysteresis;
-mod quadratic_viscous;
-mod ripple;
-mod stribeck;
-mod temperature_coulomb;
-mod temperature_viscous;
+mod static_law;
 mod torque_sensor_gain;
 mod torque_sensor_offset;
-mod viscous;
-mod wear_drift;
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
-use serde::Serialize;
+use ferntast_model::friction::EffectParameter;
+pub use ferntast_model::friction::{
+    ANGLE, AtReversal, ConstantOf, Direction, Exact, Facts, Part, Row, Unit, logarithmic, sign,
+};
 
-use crate::data::{JointType, Subject};
+use crate::data::Subject;
+use crate::setup::BoundTerm;
 use crate::signals::Channels;
-pub(crate) use description::describe;
-pub(crate) use description::{ANGLE, DAY, ONE, SPEED, STIFFNESS, TORQUE};
-pub use description::{EffectDescription, Quantity, Unit};
-pub use fitted_inertia::FittedInertia;
+pub(crate) use description::row;
+pub use description::{EffectDescription, Quantity};
+pub use inertia::Inertia;
 
 /// State of the joint at one sample. For a prismatic joint read m for rad and N
 /// for Nm. For a contact, too: then q is the place along the contour, τ_m and
@@ -101,96 +86,10 @@ impl Point {
     }
 }
 
-/// sign(x), zero at zero.
-#[must_use]
-pub fn sign(x: f64) -> f64 {
-    if x > 0.0 {
-        1.0
-    } else if x < 0.0 {
-        -1.0
-    } else {
-        0.0
-    }
-}
-
-/// What is known of the recordings as a whole.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Facts {
-    /// Kind of joint.
-    pub joint: JointType,
-    /// J \[kg m²\], where it is given.
-    pub inertia: Option<f64>,
-    /// Motor turns in one turn of the joint.
-    pub gear_ratio: Option<f64>,
-    /// Whether τ is measured.
-    pub joint_torque: bool,
-    /// Whether the temperature is measured.
-    pub temperature: bool,
-    /// T₀ \[degC\], the mean.
-    pub reference_temperature: f64,
-    /// Range of T \[K\].
-    pub temperature_range: f64,
-    /// Number of sessions.
-    pub sessions: usize,
-    /// Days from the first session to the last.
-    pub days: f64,
-    /// Range of q \[rad\] (second to 98th percentile).
-    pub position: [f64; 2],
-    /// Second and 98th percentile of |q̇| while moving \[rad/s\].
-    pub speed: [f64; 2],
-    /// Top of |τ_m| \[Nm\].
-    pub motor_torque: f64,
-    /// Travel \[rad\] that is seen for certain, for the position's noise.
-    pub resolved: f64,
-    /// Whether there is a load: a torque sensor, gravity, a spring or an inertia.
-    pub loaded: bool,
-    /// Working period \[s\].
-    pub period: f64,
-    /// Whether the model has Coulomb friction that grows with the load.
-    pub load_coulomb: bool,
-}
-
-impl Facts {
-    /// Why nothing can be said of temperature, if nothing can.
-    #[must_use]
-    pub fn no_temperature(&self) -> Option<String> {
-        (!self.temperature || self.temperature_range < 2.0)
-            .then(|| "the temperature is not measured or varies by less than 2 K".to_owned())
-    }
-}
-
-impl Facts {
-    /// Length \[rad\] of the range of positions.
-    #[must_use]
-    pub fn travel(&self) -> f64 {
-        self.position[1] - self.position[0]
-    }
-}
-
 /// Longest list of columns of one effect.
 pub const MOST_COLUMNS: usize = 12;
 /// What an effect with a state remembers from sample to sample.
 pub type Memory = [f64; 4];
-
-/// A channel that passes the column filter as it is, so that its column and
-/// the measured torque are smoothed alike to the last digit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Exact {
-    /// 1.
-    One,
-    /// q.
-    Position,
-    /// q̇.
-    Velocity,
-    /// q̈.
-    Acceleration,
-    /// τ, measured.
-    JointTorque,
-    /// τ̇, measured.
-    JointTorqueRate,
-    /// J q̈ + τ with J given.
-    Driven,
-}
 
 /// A signal that an [`Exact`] channel is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,55 +100,40 @@ pub enum ExactSignal {
     JointTorque,
 }
 
-impl Exact {
-    /// What it is where no signal takes part.
-    pub(crate) fn constant(self) -> f64 {
-        f64::from(u8::from(self == Exact::One))
-    }
-
-    /// Signals, the order of their derivative, and factors that add up to it;
-    /// `inertia` is J.
-    pub(crate) fn parts(self, inertia: f64) -> impl Iterator<Item = (ExactSignal, u8, f64)> {
-        use ExactSignal::{JointTorque, Position};
-        let (first, second) = match self {
-            Exact::One => (None, None),
-            Exact::Position => (Some((Position, 0, 1.0)), None),
-            Exact::Velocity => (Some((Position, 1, 1.0)), None),
-            Exact::Acceleration => (Some((Position, 2, 1.0)), None),
-            Exact::JointTorque => (Some((JointTorque, 0, 1.0)), None),
-            Exact::JointTorqueRate => (Some((JointTorque, 1, 1.0)), None),
-            Exact::Driven => (Some((JointTorque, 0, 1.0)), Some((Position, 2, inertia))),
-        };
-        first.into_iter().chain(second)
-    }
+/// What `channel` is where no signal takes part.
+pub(crate) fn constant_of(channel: Exact) -> f64 {
+    f64::from(u8::from(channel == Exact::One))
 }
 
-/// How an effect goes with the direction of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// As it is in both directions.
-    Same,
-    /// Times sign(q̇).
-    Opposite,
-    /// Either.
-    Either,
-}
-
-/// Signals that an effect speaks for, see [`Effect::own_signals`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OwnSignals {
-    /// Names as in [`crate::dependence::Dependence::signals`].
-    pub names: &'static [&'static str],
-    /// Symmetry.
-    pub direction: Direction,
-    /// Whether it speaks for every pair with one of these signals, too.
-    pub any_pair: bool,
+/// Signals, the order of their derivative, and factors that add up to `channel`;
+/// `inertia` is J.
+pub(crate) fn parts_of(
+    channel: Exact,
+    inertia: f64,
+) -> impl Iterator<Item = (ExactSignal, u8, f64)> {
+    use ExactSignal::{JointTorque, Position};
+    let (first, second) = match channel {
+        Exact::One => (None, None),
+        Exact::Position => (Some((Position, 0, 1.0)), None),
+        Exact::Velocity => (Some((Position, 1, 1.0)), None),
+        Exact::Acceleration => (Some((Position, 2, 1.0)), None),
+        Exact::JointTorque => (Some((JointTorque, 0, 1.0)), None),
+        Exact::JointTorqueRate => (Some((JointTorque, 1, 1.0)), None),
+        Exact::Driven => (Some((JointTorque, 0, 1.0)), Some((Position, 2, inertia))),
+    };
+    first.into_iter().chain(second)
 }
 
 /// A physical effect.
 pub trait Effect: Send + Sync {
     /// What it is.
     fn description(&self) -> &EffectDescription;
+
+    /// Its row in the catalogue: all its properties. An effect of the user's own
+    /// has none.
+    fn row(&self) -> &'static Row {
+        &Row::NONE
+    }
 
     /// Number of columns.
     fn columns(&self) -> usize {
@@ -287,59 +171,11 @@ pub trait Effect: Send + Sync {
         None
     }
 
-    /// Channels to which the columns are equal, where they are.
-    fn exact(&self) -> &'static [Exact] {
-        &[]
-    }
-
-    /// Whether it shows mainly from one session to the next.
-    fn between_sessions(&self) -> bool {
-        false
-    }
-
-    /// Id of the effect whose coefficient it lets vary from session to session.
-    fn varies(&self) -> Option<&'static str> {
-        None
-    }
-
-    /// Signals over which its shape is fixed: a residual that still depends on
-    /// them after it has been added says that the shape is not the right one.
-    fn own_signals(&self) -> OwnSignals {
-        OwnSignals {
-            names: &[],
-            direction: Direction::Either,
-            any_pair: false,
-        }
-    }
-
-    /// Whether it is a load on the joint (spring, weight) rather than friction.
-    fn is_load(&self) -> bool {
-        false
-    }
-
-    /// Whether it shows mainly just after reversals, where other rows are left
-    /// out: a model that has it is fitted to these rows too.
-    fn shows_at_turns(&self) -> bool {
-        false
-    }
-
     /// Samples at which what it does depends on more than is measured: rows of
     /// the regression that reach there are left out of a model that has it.
     fn breaks(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
         let _ = (shape, points);
         Vec::new()
-    }
-
-    /// Whether its columns need the model's own prediction.
-    fn needs_prediction(&self) -> bool {
-        false
-    }
-
-    /// Whether it acts on what is measured rather than on torque. Its columns are
-    /// then right for a small effect; of a large one [`Self::undo`] takes out
-    /// all.
-    fn acts_on_channels(&self) -> bool {
-        false
     }
 
     /// Takes it out of the channels, sampled every `period` \[s\], that it acts
@@ -364,7 +200,8 @@ pub trait Effect: Send + Sync {
     /// Numbers that it is free to choose: coefficients and shape, unless one
     /// follows from the other. The fewer, the simpler.
     fn freedom(&self) -> usize {
-        self.columns() + self.description().shape.len()
+        let own = self.row().freedom;
+        own.unwrap_or_else(|| self.columns() + self.description().shape.len())
     }
 
     /// Names of extra signals that the effect reads, see [`Self::evaluate_with`].
@@ -393,25 +230,12 @@ pub type EffectHandle = Arc<dyn Effect>;
 /// Every effect of the catalogue, of joints and of contacts.
 #[must_use]
 pub fn all() -> Vec<EffectHandle> {
-    vec![
-        Arc::new(coulomb::Coulomb::default()),
-        Arc::new(load_coulomb::LoadCoulomb::default()),
-        Arc::new(viscous::Viscous::default()),
-        Arc::new(quadratic_viscous::QuadraticViscous::default()),
-        Arc::new(cubic_viscous::CubicViscous::default()),
-        Arc::new(nonlinear_viscous::NonlinearViscous::default()),
-        Arc::new(stribeck::Stribeck::default()),
-        Arc::new(asymmetric_coulomb::AsymmetricCoulomb::default()),
-        Arc::new(asymmetric_viscous::AsymmetricViscous::default()),
-        Arc::new(temperature_coulomb::TemperatureCoulomb::default()),
-        Arc::new(temperature_viscous::TemperatureViscous::default()),
-        Arc::new(wear_drift::WearDrift::default()),
-        Arc::new(ripple::Ripple::default()),
-        Arc::new(presliding_hysteresis::PreslidingHysteresis::default()),
-        Arc::new(local_friction::LocalFriction::default()),
-        Arc::new(inertia::InertiaError::default()),
-        Arc::new(gravity::Gravity::default()),
-        Arc::new(cable_spring::CableSpring::default()),
+    let mut effects: Vec<EffectHandle> = static_law::all()
+        .map(|own| -> EffectHandle { Arc::new(own) })
+        .collect();
+    effects.extend([
+        Arc::new(presliding_hysteresis::PreslidingHysteresis::default()) as EffectHandle,
+        Arc::new(Inertia::correction()),
         Arc::new(elasticity::Elasticity::default()),
         Arc::new(backlash::Backlash::default()),
         Arc::new(motor_constant::MotorConstant::default()),
@@ -419,41 +243,41 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(torque_sensor_offset::TorqueSensorOffset::default()),
         Arc::new(channel_delay::ChannelDelay::default()),
         Arc::new(current_saturation::CurrentSaturation::default()),
-        Arc::new(contact_coulomb::ContactCoulomb::default()),
-        Arc::new(contact_viscous::ContactViscous::default()),
-        Arc::new(contact_stribeck::ContactStribeck::default()),
         Arc::new(contact_compliance::ContactCompliance::default()),
-        Arc::new(contact_spot::ContactSpot::default()),
-        Arc::new(contact_wear::ContactWear::default()),
-    ]
+    ]);
+    effects
 }
 
 /// The effects of the catalogue that are about `subject`.
 #[must_use]
 pub fn of(subject: Subject) -> Vec<EffectHandle> {
     let mut effects = all();
-    effects.retain(|effect| effect.description().of == subject);
+    effects.retain(|effect| effect.row().of == subject);
     effects
-}
-
-/// Whether the effect `id` is Coulomb friction that grows with the load.
-pub(crate) fn is_load_coulomb(id: &str) -> bool {
-    ["load_coulomb", "contact_coulomb"].contains(&id)
 }
 
 /// The effect with this id.
 #[must_use]
 pub fn find(id: &str) -> Option<EffectHandle> {
-    all()
-        .into_iter()
-        .find(|effect| effect.description().id == id)
+    with(|row| row.id == id)
 }
 
-/// Values from `low` to `high`, evenly in the logarithm.
-pub(crate) fn logarithmic(low: f64, high: f64, count: usize) -> Vec<f64> {
-    let low = low.max(1e-12);
-    let ratio = (high.max(low * 1.01) / low).ln();
-    (0..count)
-        .map(|i| low * (ratio * i as f64 / (count.max(2) - 1) as f64).exp())
-        .collect()
+/// The first effect of the catalogue whose row is like this.
+#[must_use]
+pub fn with(is: impl Fn(&Row) -> bool) -> Option<EffectHandle> {
+    all().into_iter().find(|effect| is(effect.row()))
+}
+
+/// The terms of a model, each with the range of its columns among all.
+pub fn with_columns(terms: &[BoundTerm]) -> impl Iterator<Item = (&BoundTerm, Range<usize>)> {
+    terms.iter().scan(0, |first, term| {
+        let columns = *first..*first + term.effect.columns();
+        *first = columns.end;
+        Some((term, columns))
+    })
+}
+
+/// A parameter that no law of the servo uses, without bounds.
+const fn free(name: &'static str, unit: Unit) -> EffectParameter {
+    EffectParameter::new(name, unit, f64::NEG_INFINITY, f64::INFINITY)
 }

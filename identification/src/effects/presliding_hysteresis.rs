@@ -1,26 +1,26 @@
 //! Friction that builds up over travel after a reversal.
 
-use super::{
-    ANGLE, Effect, EffectDescription, Facts, Memory, ONE, Point, TORQUE, describe, logarithmic,
-};
+use ferntast_model::friction::{ANGLE, AtReversal, Contrast, ONE, Proposal, TORQUE};
 
-describe!(
+use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
+
+row!(
     PreslidingHysteresis,
-    "presliding_hysteresis",
-    "τ_F = (bz + bzT |τ|) · (z − sign(q̇)), dz/dq = (sign(q̇) − z)/δ",
-    "Dahl 1968; Canudas de Wit et al. 1995 (LuGre)",
-    coefficients: ["bz": TORQUE, "bzT": ONE],
-    shape: ["delta": ANGLE],
+    id: "presliding_hysteresis",
+    equation: "τ_F = (bz + bzT |τ|) · (z − sign(q̇)), dz/dq = (sign(q̇) − z)/δ",
+    source: "Dahl 1968; Canudas de Wit et al. 1995 (LuGre)",
+    coefficients: &[free("bz", TORQUE), free("bzT", ONE)],
+    shape: &[free("delta", ANGLE)],
     shows_as: "loop after each reversal, over travel not time",
     excited_by: "reversals at several amplitudes, slow and fast",
-    shown_by: SlowReversals,
-    taken_for: ["elasticity", "backlash"]
+    shown_by: Proposal::SlowReversals,
+    contrasts: &[Contrast::SlowReversals],
+    taken_for: &["elasticity", "backlash"],
+    at_reversal: Some(AtReversal::Bristles),
 );
 
 impl Effect for PreslidingHysteresis {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+    row!(methods);
 
     // memory: [bristle state z, started]. z follows the travel of each sample
     // exactly: z ← s + (z − s) exp(−|Δq|/δ).

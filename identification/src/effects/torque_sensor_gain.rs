@@ -1,35 +1,31 @@
 //! A joint torque sensor whose gain is off.
 
-use super::{
-    Direction, Effect, EffectDescription, Exact, Facts, Memory, ONE, OwnSignals, Point, describe,
-};
+use ferntast_model::friction::{Contrast, Direction, Exact, ONE, OwnSignals, Proposal};
 
-describe!(
+use super::{Effect, Facts, Memory, Point, free, row};
+
+row!(
     TorqueSensorGain,
-    "torque_sensor_gain",
-    "τ_m = … + gs · τ",
-    "sensor model",
-    coefficients: ["gs": ONE],
-    shape: [],
+    id: "torque_sensor_gain",
+    equation: "τ_m = … + gs · τ",
+    source: "sensor model",
+    coefficients: &[free("gs", ONE)],
     shows_as: "over τ, whatever the sign of q̇",
     excited_by: "loads in both directions at constant speed, at positions that differ for the same load",
-    shown_by: LoadSteps,
-    taken_for: ["cable_spring", "motor_constant"]
+    shown_by: Proposal::LoadSteps,
+    contrasts: &[Contrast::FastByLoad, Contrast::FastBySpring, Contrast::FastByWeight, Contrast::WidePosition],
+    taken_for: &["cable_spring", "motor_constant"],
+    exact: &[Exact::JointTorque],
+    own_signals: OwnSignals::new(&["load"], Direction::Same),
 );
 
 impl Effect for TorqueSensorGain {
-    fn description(&self) -> &EffectDescription {
-        &self.0
-    }
+    row!(methods);
 
     fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
         if let [c] = columns {
             *c = point.load;
         }
-    }
-
-    fn exact(&self) -> &'static [Exact] {
-        &[Exact::JointTorque]
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
@@ -38,13 +34,5 @@ impl Effect for TorqueSensorGain {
 
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
         coefficients.iter().all(|c| c.abs() < 0.8)
-    }
-
-    fn own_signals(&self) -> OwnSignals {
-        OwnSignals {
-            names: &["load"],
-            direction: Direction::Same,
-            any_pair: false,
-        }
     }
 }

@@ -12,8 +12,8 @@ use crate::effects::{
     Effect, EffectDescription, Facts, MOST_COLUMNS, Memory, Point, Quantity, Unit,
 };
 use crate::error::ExpressionError;
-use crate::proposal::Proposal;
 use crate::signals::Signals;
+use ferntast_model::friction::Proposal;
 use grammar::Formula;
 
 /// Names of the signals that every recording may have: of a joint …

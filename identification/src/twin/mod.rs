@@ -19,6 +19,7 @@ mod tests;
 
 pub use change::{Change, ChangeKind};
 
+use ferntast_model::friction::{self, Signal};
 use ferntast_model::recursive_least_squares::{
     Forgetting, Prior, PriorError, RecursiveLeastSquares, Update,
 };
@@ -29,7 +30,7 @@ use crate::design::Design;
 use crate::diagnose::{Diagnosis, diagnose};
 use crate::error::PrepareError;
 use crate::fit::{Fit, fit};
-use crate::setup::Setup;
+use crate::setup::{BoundTerm, Setup};
 
 use change::ChangeLog;
 use sensors::Sensors;
@@ -183,6 +184,8 @@ pub struct Twin {
     names: Vec<(String, String)>,
     off_line: Vec<f64>,
     off_line_errors: Vec<f64>,
+    /// Shapes, and T₀ where the temperature is measured: as found off line.
+    fixed: Vec<TwinParameter>,
     band: f64,
     /// Mean square above which the residual has left its band \[Nm²\].
     limit: f64,
@@ -213,7 +216,7 @@ impl Twin {
         let setup = Setup::new(dataset, spec)?;
         for term in &setup.terms {
             let id = || term.effect.description().id.clone();
-            if term.effect.needs_prediction() || term.effect.whole(&term.shape, &[]).is_some() {
+            if term.effect.row().needs_prediction || term.effect.whole(&term.shape, &[]).is_some() {
                 return Err(TwinError::NotOnLine(id()));
             }
             if !term.effect.extra().is_empty() {
@@ -261,6 +264,7 @@ impl Twin {
             stream: Stream::new(&setup, period, &off_line),
             estimator: RecursiveLeastSquares::new(&priors, band, forgetting)?,
             off_line_errors: errors_of(&fitted, &names),
+            fixed: fixed(&setup),
             names,
             off_line,
             band,
@@ -345,7 +349,8 @@ impl Twin {
         self.settled_rows >= BAND_ROWS && self.mean_square > self.limit
     }
 
-    /// The parameters as they are now.
+    /// The parameters as they are now: the coefficients that are followed, then
+    /// what stays as it was found off line (shapes of effects, T₀).
     #[must_use]
     pub fn parameters(&self) -> Vec<TwinParameter> {
         self.names
@@ -360,6 +365,7 @@ impl Twin {
                 excitation: self.estimator.excitation(i),
                 at_bound: self.estimator.at_bound(i),
             })
+            .chain(self.fixed.iter().cloned())
             .collect()
     }
 
@@ -477,6 +483,32 @@ impl Twin {
             self.kept_samples -= self.kept.remove(0).len();
         }
     }
+}
+
+/// Shape parameters of the model's effects, and the temperature \[degC\] from
+/// which such as read it count.
+fn fixed(setup: &Setup) -> Vec<TwinParameter> {
+    let fixed = |name: &str, unit: &str, value: f64| TwinParameter {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        off_line: value,
+        value,
+        std_error: 0.0,
+        excitation: 1.0,
+        at_bound: false,
+    };
+    let shapes = setup.terms.iter().flat_map(|term| {
+        let quantities = term.effect.description().shape.iter().zip(&term.shape);
+        quantities.map(|(own, value)| fixed(&own.name, own.unit.of(setup.facts.joint), *value))
+    });
+    let warmed = |term: &BoundTerm| {
+        let effect = friction::effect(term.effect.row().id);
+        effect.is_some_and(|own| own.reads(Signal::Temperature))
+    };
+    let reference = setup.facts.reference_temperature;
+    let reference = (setup.terms.iter().any(warmed))
+        .then(|| fixed(friction::REFERENCE_TEMPERATURE, "degC", reference));
+    shapes.chain(reference).collect()
 }
 
 /// Standard errors of the coefficients off line; zero where none could be told.

@@ -4,7 +4,9 @@
 //! ([`Signals`](crate::signals::Signals)): both are short and without phase, so
 //! that a row is ready a fixed time after its sample.
 
-use crate::effects::{Exact, ExactSignal, MOST_COLUMNS, Memory, Point};
+use crate::effects::{
+    Exact, ExactSignal, MOST_COLUMNS, Memory, Point, constant_of, parts_of, with_columns,
+};
 use crate::filter::Kernel;
 use crate::setup::{BoundTerm, Setup};
 use crate::signals::{Filters, Sliding};
@@ -186,11 +188,10 @@ impl Stream {
         }
         // Loads first: without a sensor the others act on their sum.
         for loads in [true, false] {
-            let mut first = 0;
-            for (term, memory) in self.terms.iter().zip(&mut self.state.memories) {
-                let count = term.effect.columns().min(MOST_COLUMNS);
-                let id = &term.effect.description().id;
-                if (term.effect.is_load() || id == "inertia_fit") == loads {
+            for ((term, places), memory) in with_columns(&self.terms).zip(&mut self.state.memories)
+            {
+                let count = places.len().min(MOST_COLUMNS);
+                if term.effect.row().is_modelled_load() == loads {
                     let mut values = [0.0; MOST_COLUMNS];
                     term.effect.evaluate_with(
                         &term.shape,
@@ -199,17 +200,15 @@ impl Stream {
                         memory,
                         &mut values[..count],
                     );
-                    for (k, value) in values[..count].iter().enumerate() {
-                        if let Some(column) = self.state.columns.get_mut(first + k) {
-                            column.push(*value);
+                    for (k, value) in places.zip(values) {
+                        if let Some(column) = self.state.columns.get_mut(k) {
+                            column.push(value);
                         }
                         if loads && !self.has_sensor {
-                            point.load +=
-                                value * self.coefficients.get(first + k).copied().unwrap_or(0.0);
+                            point.load += value * self.coefficients.get(k).copied().unwrap_or(0.0);
                         }
                     }
                 }
-                first += count;
             }
         }
         self.state.velocity.push(point.velocity);
@@ -220,17 +219,15 @@ impl Stream {
     /// A channel that passes the column filter as it is, at working sample `at`.
     fn exact(&self, channel: Exact, at: usize) -> f64 {
         let [position, _, joint_torque, _] = &self.state.working;
-        let parts = channel
-            .parts(self.inertia)
-            .filter_map(|(signal, order, factor)| {
-                let history = match signal {
-                    ExactSignal::Position => position,
-                    ExactSignal::JointTorque => joint_torque,
-                };
-                let kernel = self.kernels.column.get(usize::from(order))?;
-                Some(factor * history.filtered(kernel, at))
-            });
-        channel.constant() + parts.sum::<f64>()
+        let parts = parts_of(channel, self.inertia).filter_map(|(signal, order, factor)| {
+            let history = match signal {
+                ExactSignal::Position => position,
+                ExactSignal::JointTorque => joint_torque,
+            };
+            let kernel = self.kernels.column.get(usize::from(order))?;
+            Some(factor * history.filtered(kernel, at))
+        });
+        constant_of(channel) + parts.sum::<f64>()
     }
 
     fn row(&self, at: usize) -> TwinRow {
@@ -246,7 +243,7 @@ impl Stream {
         let motor_torque = motor_torque.filtered(smooth, at);
         let mut phi = Vec::with_capacity(self.state.columns.len());
         for term in &self.terms {
-            let exact = term.effect.exact();
+            let exact = term.effect.row().exact;
             for k in 0..term.effect.columns().min(MOST_COLUMNS) {
                 phi.push(match exact.get(k) {
                     Some(channel) => self.exact(*channel, at),

@@ -81,9 +81,8 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
 
 /// The effects that the joint's friction is believed to have.
 fn effects(joint: &JointParameters) -> Vec<Term> {
-    let names = friction::EFFECTS.iter().map(|each| each.description().name);
-    names
-        .filter(|name| joint.friction.effects.contains_key(*name))
-        .map(|name| Term::Catalogue(name.to_owned()))
+    let ids = friction::of_joint().map(|each| each.row.id);
+    ids.filter(|id| joint.friction.effects.contains_key(*id))
+        .map(|id| Term::Catalogue(id.to_owned()))
         .collect()
 }

@@ -7,6 +7,7 @@ use std::{
 
 use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{Term, add};
+use ferntast_model::friction::REFERENCE_TEMPERATURE;
 use ferntast_msgs::{
     sample::{JOINT_NAMES, TwinParametersSample, TwinVerdict},
     topics,
@@ -111,7 +112,7 @@ pub fn from_twin(model: &Path, recording: &Path, output: &Path) -> Result<FromTw
     })?;
     let comparison = opened.compare()?;
     let found = (0..word.len()).map(|i| word.names[i].as_str());
-    for name in found {
+    for name in found.filter(|name| *name != REFERENCE_TEMPERATURE) {
         if !comparison.parameters.contains_key(name) {
             return Err(other(format!("its twin has {name}, the model has not")));
         }
@@ -131,7 +132,8 @@ pub fn from_twin(model: &Path, recording: &Path, output: &Path) -> Result<FromTw
             for i in 0..word.len() {
                 if let Some(own) = parameters.get_mut(word.names[i].as_str()) {
                     own.value = word.values[i];
-                    own.std_error = Some(word.std_errors[i]);
+                    // A shape has none.
+                    own.std_error = own.std_error.and(Some(word.std_errors[i]));
                 }
             }
             (comparison.rms.held_out, parameters)

@@ -1,121 +1,70 @@
-//! Joint friction, one effect a file.
+//! Friction, and the catalogue of its static effects.
 //!
 //! The friction torque τ_F of equation (2) is a sum of effects:
 //!
-//! τ_F = Σ regressor(state) · parameters.
+//! τ_F = Σ columns(state; shape) · coefficients.
 //!
-//! **To add an effect**: copy a neighbour's file (the equation, its source,
-//! its parameters with unit and bounds) and add its line to [`EFFECTS`].
-//! Configuration, presets and fitters find it by its name.
+//! An effect is a row of data ([`Row`]) with its law ([`StaticEffect`]). Fits,
+//! the twin and the servo's feed-forward take it from here; effects that are no
+//! function of what the joint is doing now (backlash, a delay) have their rows
+//! in `identification`, where alone they count.
 //!
-//! An effect may have a memory (presliding, hysteresis): it says its
-//! [`length`](Effect::memory_length) and moves it on in
-//! [`advance`](Effect::advance). Effects without one leave both alone.
+//! **To add one**: a row in the file of what it goes with, and nothing else:
+//! [`all`] has it, and so has whatever goes through the catalogue.
 
-mod coulomb;
-mod cubic_viscous;
-mod load_coulomb;
+mod conditions;
+mod contact;
+mod facts;
+mod place;
 mod preset;
-mod quadratic_viscous;
+mod proposal;
+mod row;
+mod speed;
+mod static_effect;
 mod sum;
-mod viscous;
 
-pub use coulomb::Coulomb;
-pub use cubic_viscous::CubicViscous;
-pub use load_coulomb::LoadCoulomb;
+pub use facts::{Facts, JointType, Subject};
 pub use preset::{PRESETS, Preset};
-pub use quadratic_viscous::QuadraticViscous;
-pub use sum::{Friction, FrictionParameters, FrictionTorque};
-pub use viscous::Viscous;
+pub use proposal::{Contrast, Proposal};
+pub use row::{
+    ANGLE, AtReversal, ConstantOf, DAY, Direction, EffectParameter, Exact, ONE, OwnSignals, Part,
+    Row, SPEED, STIFFNESS, TORQUE, Unit,
+};
+pub use static_effect::{FrictionState, Signal, StaticEffect, logarithmic, sign};
+pub use sum::{Friction, FrictionParameters, FrictionTerm, FrictionTorque};
 
-use crate::Parameter;
+/// Largest number of coefficients of one effect, and of shape parameters.
+pub const MAX_PARAMETERS: usize = 4;
+/// Name under which a twin tells T₀ \[degC\] of effects that read the temperature.
+pub const REFERENCE_TEMPERATURE: &str = "T0";
 
-/// Every effect there is, in the order of the columns of a regressor.
-pub static EFFECTS: &[&dyn Effect] = &[
-    &Coulomb,
-    &LoadCoulomb,
-    &Viscous,
-    &QuadraticViscous,
-    &CubicViscous,
-];
-
-/// Largest number of parameters of one effect.
-pub const MAX_PARAMETERS: usize = 8;
-
-/// What friction may depend on, of one joint, on the joint side of the gear.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrictionState {
-    /// Motor position q \[rad\].
-    pub position: f64,
-    /// Motor velocity q̇ \[rad/s\].
-    pub velocity: f64,
-    /// Load: joint torque τ at the torque sensor \[Nm\].
-    pub load: f64,
-    /// Temperature of the joint \[degC\].
-    pub temperature: f64,
-}
-
-/// One effect in words: name, equation, where it comes from, parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Description {
-    /// Name in configuration files.
-    pub name: &'static str,
-    /// The equation, in the symbols of the source.
-    pub equation: &'static str,
-    /// Where the equation stands.
-    pub source: &'static str,
-    /// Its parameters, in the order of the regressor.
-    pub parameters: &'static [Parameter],
-}
-
-/// One physical effect that contributes to τ_F, linear in its parameters.
-///
-/// Slices have the lengths that the effect itself states: `values` and `row`
-/// as many as [`Description::parameters`], `memory`
-/// [`memory_length`](Self::memory_length). Shorter ones are used as far as
-/// they go; nothing panics.
-pub trait Effect: Sync {
-    /// Name, equation, source and parameters.
-    fn description(&self) -> &'static Description;
-
-    /// Writes ∂τ_F/∂parameter for each parameter into `row`.
-    /// Unit of an entry: \[Nm\] by the parameter's unit.
-    fn regressor(&self, state: &FrictionState, memory: &[f64], row: &mut [f64]);
-
-    /// Its friction torque \[Nm\], positive against positive velocity.
-    fn torque(&self, values: &[f64], state: &FrictionState, memory: &[f64]) -> f64 {
-        let mut row = [0.0; MAX_PARAMETERS];
-        let used = values.len().min(MAX_PARAMETERS);
-        self.regressor(state, memory, &mut row[..used]);
-        values.iter().zip(&row).map(|(value, x)| value * x).sum()
-    }
-
-    /// How many numbers it remembers.
-    fn memory_length(&self) -> usize {
-        0
-    }
-
-    /// Moves its memory on by `dt` \[s\].
-    fn advance(&self, _values: &[f64], _state: &FrictionState, _dt: f64, _memory: &mut [f64]) {}
-}
-
-/// The effect called `name`.
-pub fn effect(name: &str) -> Option<&'static dyn Effect> {
-    EFFECTS
+/// Every static effect, of joints and of contacts. Columns of a
+/// [`Friction`] are in this order.
+pub fn all() -> impl Iterator<Item = &'static StaticEffect> {
+    speed::EFFECTS
         .iter()
-        .copied()
-        .find(|effect| effect.description().name == name)
+        .chain(place::EFFECTS)
+        .chain(conditions::EFFECTS)
+        .chain(contact::EFFECTS)
 }
 
-/// sign(x) with sign(0) = 0: at rest, friction takes no side.
-pub(crate) fn sign(x: f64) -> f64 {
-    if x > 0.0 {
-        1.0
-    } else if x < 0.0 {
-        -1.0
-    } else {
-        0.0
-    }
+/// The static effects of a joint.
+pub fn of_joint() -> impl Iterator<Item = &'static StaticEffect> {
+    all().filter(|effect| effect.row.of == Subject::Joint)
+}
+
+/// The static effect of a joint called `id`.
+pub fn effect(id: &str) -> Option<&'static StaticEffect> {
+    of_joint().find(|effect| effect.row.id == id)
+}
+
+/// The static effect of a joint that has a coefficient called `name`, and the
+/// place of that among its coefficients.
+pub fn effect_with(name: &str) -> Option<(&'static StaticEffect, usize)> {
+    of_joint().find_map(|effect| {
+        let mut own = effect.row.coefficients.iter();
+        Some((effect, own.position(|each| each.name == name)?))
+    })
 }
 
 #[cfg(test)]
@@ -124,34 +73,73 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn names_are_unique_and_parameters_fit() {
-        for (index, effect) in EFFECTS.iter().enumerate() {
-            let own = effect.description();
-            assert!(own.parameters.len() <= MAX_PARAMETERS, "{}", own.name);
-            assert!(!own.parameters.is_empty() && !own.source.is_empty());
-            for other in &EFFECTS[index + 1..] {
-                assert_ne!(own.name, other.description().name);
+    fn rows_are_complete_and_bounds_make_sense() {
+        for effect in all() {
+            let row = &effect.row;
+            assert!(
+                (1..=MAX_PARAMETERS).contains(&row.coefficients.len()),
+                "{}",
+                row.id
+            );
+            assert!(row.shape.len() <= MAX_PARAMETERS, "{}", row.id);
+            for text in [row.equation, row.source, row.shows_as, row.excited_by] {
+                assert!(!text.is_empty(), "{}", row.id);
             }
-            for parameter in own.parameters {
-                assert!(parameter.lower < parameter.upper, "{}", parameter.name);
+            for own in row.coefficients.iter().chain(row.shape) {
+                assert!(own.lower < own.upper, "{}: {}", row.id, own.name);
+            }
+            assert_eq!(all().filter(|other| other.row.id == row.id).count(), 1);
+        }
+        assert!(effect("magic").is_none() && effect("contact_coulomb").is_none());
+    }
+
+    /// A name means one column, whichever effect it is found by.
+    #[test]
+    fn parameters_of_a_joint_are_told_apart_by_their_names() {
+        let names = |own: &StaticEffect| -> Vec<&str> {
+            let all = own.row.coefficients.iter().chain(own.row.shape);
+            all.flat_map(|each| [each.name, each.key]).collect()
+        };
+        for (at, own) in of_joint().enumerate() {
+            for other in of_joint().skip(at + 1).filter(|other| !other.row.is_sum) {
+                let (a, b) = (names(own), names(other));
+                let same: Vec<_> = a.iter().filter(|name| b.contains(name)).collect();
+                assert!(
+                    own.row.is_sum || same.is_empty(),
+                    "{}, {}: {same:?}",
+                    own.row.id,
+                    other.row.id
+                );
             }
         }
-        assert!(effect("magic").is_none());
     }
 
     proptest! {
-        /// Every effect here is odd in velocity: friction knows no direction.
+        /// What reads no position and no constant knows no direction but that of motion,
+        /// unless its row says otherwise; whatever it is, it is finite.
         #[test]
-        fn friction_turns_with_the_velocity(velocity in -0.7..0.7f64, load in -40.0..40.0f64) {
-            for effect in EFFECTS {
-                let length = effect.description().parameters.len();
+        fn friction_turns_with_the_velocity(
+            velocity in -0.7..0.7f64,
+            load in -40.0..40.0f64,
+            position in -1.5..1.5f64,
+            temperature in -30.0..30.0f64,
+        ) {
+            for effect in all() {
+                let (count, shapes) = (effect.row.coefficients.len(), effect.row.shape.len());
+                let shape = [0.3, 0.2, 2.0, 1.0];
                 let (mut forth, mut back) = ([0.0; MAX_PARAMETERS], [0.0; MAX_PARAMETERS]);
-                let state = FrictionState { velocity, load, ..Default::default() };
+                let state = FrictionState { velocity, load, position, temperature, days: 3.0 };
                 let turned = FrictionState { velocity: -velocity, ..state };
-                effect.regressor(&state, &[], &mut forth[..length]);
-                effect.regressor(&turned, &[], &mut back[..length]);
+                (effect.columns)(&state, &shape[..shapes], &mut forth[..count]);
+                (effect.columns)(&turned, &shape[..shapes], &mut back[..count]);
                 for (a, b) in forth.iter().zip(back) {
-                    prop_assert_eq!(*a, -b);
+                    prop_assert!(a.is_finite());
+                    match effect.row.own_signals.direction {
+                        Direction::Opposite => prop_assert_eq!(*a, -b),
+                        Direction::Same => prop_assert_eq!(*a, b),
+                        Direction::Either => {}
+                    }
+                    prop_assert!(!effect.acts_at_rest() || *a == b);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Table 1: friction parameters identified for joint 2.
 
-use super::{Effect, Friction, FrictionParameters, effect};
+use super::{Friction, FrictionParameters};
 use crate::ParameterError;
 use std::collections::BTreeMap;
 
@@ -94,23 +94,16 @@ impl Preset {
     /// The preset as it would stand in a configuration file.
     pub fn parameters(&self) -> FrictionParameters {
         let mut effects = BTreeMap::new();
-        let mut add = |name: &str, value: f64| {
-            let parameters =
-                effect(name).map_or(&[][..], |e: &dyn Effect| e.description().parameters);
-            for parameter in parameters {
-                effects.insert(
-                    name.to_owned(),
-                    BTreeMap::from([(parameter.name.to_owned(), value)]),
-                );
-            }
+        let mut add = |id: &str, key: &str, value: f64| {
+            effects.insert(id.to_owned(), BTreeMap::from([(key.to_owned(), value)]));
         };
-        add("coulomb", self.b_0);
+        add("coulomb", "b_0", self.b_0);
         if let Some(b_0t) = self.b_0t {
-            add("load_coulomb", b_0t);
+            add("load_coulomb", "b_0T", b_0t);
         }
-        add("viscous", self.b_1);
-        add("quadratic_viscous", self.b_2);
-        add("cubic_viscous", self.b_3);
+        add("viscous", "b_1", self.b_1);
+        add("quadratic_viscous", "b_2", self.b_2);
+        add("cubic_viscous", "b_3", self.b_3);
         FrictionParameters {
             speed_range: self.speed_range,
             effects,

@@ -1,6 +1,6 @@
 //! The friction of one joint: a sum of effects with their values.
 
-use super::{EFFECTS, Effect, FrictionState, MAX_PARAMETERS};
+use super::{FrictionState, JointType, MAX_PARAMETERS, Signal, StaticEffect};
 use crate::{ParameterError, check};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ pub struct FrictionParameters {
     /// \[rad/s\]. Below the first they are used as they are (Coulomb friction
     /// reaches down to rest); above the last is extrapolation.
     pub speed_range: [f64; 2],
-    /// Effect by name, and in it the parameters by name.
+    /// Effect by id, and in it coefficients and shape by key.
     pub effects: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
@@ -37,36 +37,77 @@ pub struct FrictionTorque {
     pub extrapolated: bool,
 }
 
-#[derive(Clone)]
-struct Term {
-    effect: &'static dyn Effect,
-    values: [f64; MAX_PARAMETERS],
-    count: usize,
-    memory: Vec<f64>,
+/// An effect with its values. Allocates nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionTerm {
+    /// The effect.
+    pub effect: &'static StaticEffect,
+    /// Its shape, as many as its row has.
+    pub shape: [f64; MAX_PARAMETERS],
+    /// Its coefficients, as many as its row has.
+    pub values: [f64; MAX_PARAMETERS],
 }
 
-impl Term {
-    fn values(&self) -> &[f64] {
-        &self.values[..self.count]
+impl FrictionTerm {
+    /// Number of coefficients.
+    pub fn count(&self) -> usize {
+        self.effect.row.coefficients.len().min(MAX_PARAMETERS)
+    }
+
+    /// Writes ∂τ_F/∂coefficient at `state`.
+    pub fn columns(&self, state: &FrictionState) -> [f64; MAX_PARAMETERS] {
+        let mut columns = [0.0; MAX_PARAMETERS];
+        let shapes = self.effect.row.shape.len().min(MAX_PARAMETERS);
+        (self.effect.columns)(state, &self.shape[..shapes], &mut columns[..self.count()]);
+        columns
+    }
+
+    /// Its torque \[Nm\], positive against positive velocity.
+    pub fn torque(&self, state: &FrictionState) -> f64 {
+        let columns = self.columns(state);
+        let both = self.values.iter().zip(&columns).take(self.count());
+        both.map(|(value, x)| value * x).sum()
+    }
+
+    /// As a file has it: every parameter by its key.
+    fn read(
+        effect: &'static StaticEffect,
+        given: &BTreeMap<String, f64>,
+    ) -> Result<FrictionTerm, ParameterError> {
+        let row = &effect.row;
+        let known = || row.coefficients.iter().chain(row.shape);
+        if let Some(key) = given.keys().find(|key| known().all(|own| own.key != *key)) {
+            return Err(ParameterError::Unknown {
+                key: key.clone(),
+                known: known().map(|own| own.key).collect::<Vec<_>>().join(", "),
+            });
+        }
+        let read = |parameters: &[super::EffectParameter]| {
+            let mut values = [0.0; MAX_PARAMETERS];
+            for (value, own) in values.iter_mut().zip(parameters) {
+                let unit = own.unit.of(JointType::Revolute);
+                *value = *given.get(own.key).ok_or_else(|| ParameterError::Missing {
+                    key: own.key.to_owned(),
+                    unit,
+                })?;
+                check(own.key, *value, own.lower, own.upper, unit)?;
+            }
+            Ok(values)
+        };
+        Ok(FrictionTerm {
+            effect,
+            shape: read(row.shape)?,
+            values: read(row.coefficients)?,
+        })
     }
 }
 
 /// The friction model of one joint: equations (3), (4) and whatever effects
 /// are added to them. Allocates when made, never afterwards.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Friction {
-    terms: Vec<Term>,
+    terms: Vec<FrictionTerm>,
     speed_range: [f64; 2],
-}
-
-impl std::fmt::Debug for Friction {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let terms = self
-            .terms
-            .iter()
-            .map(|term| (term.effect.description().name, term.values()));
-        formatter.debug_map().entries(terms).finish()
-    }
 }
 
 impl Friction {
@@ -80,29 +121,32 @@ impl Friction {
         let [lower, upper] = parameters.speed_range;
         check("speed_range[1]", upper, 0.0, 100.0, "rad/s")?;
         check("speed_range[0]", lower, 0.0, upper, "rad/s")?;
-        for name in parameters.effects.keys() {
-            if super::effect(name).is_none() {
-                let known: Vec<_> = EFFECTS.iter().map(|e| e.description().name).collect();
-                return Err(ParameterError::Unknown {
-                    key: format!("effects.{name}"),
-                    known: known.join(", "),
-                });
-            }
+        let given = &parameters.effects;
+        if let Some(id) = given
+            .keys()
+            .find(|id| configurable().all(|own| own.row.id != *id))
+        {
+            let known: Vec<_> = configurable().map(|own| own.row.id).collect();
+            return Err(ParameterError::Unknown {
+                key: format!("effects.{id}"),
+                known: known.join(", "),
+            });
         }
-        let mut terms = Vec::new();
-        // In the order of EFFECTS, so that regressor columns do not depend on names.
-        for effect in EFFECTS.iter().copied() {
-            let name = effect.description().name;
-            if let Some(values) = parameters.effects.get(name) {
-                let term = term(effect, values)
-                    .map_err(|error| error.within(&format!("effects.{name}")))?;
-                terms.push(term);
-            }
-        }
+        // In the order of the catalogue, so that columns do not depend on names.
+        let terms = configurable().filter_map(|effect| {
+            let id = effect.row.id;
+            let term = FrictionTerm::read(effect, given.get(id)?);
+            Some(term.map_err(|error| error.within(&format!("effects.{id}"))))
+        });
         Ok(Friction {
-            terms,
+            terms: terms.collect::<Result<_, _>>()?,
             speed_range: parameters.speed_range,
         })
+    }
+
+    /// Its effects.
+    pub fn terms(&self) -> &[FrictionTerm] {
+        &self.terms
     }
 
     /// Smallest and largest speed |q̇| that the values were identified at \[rad/s\].
@@ -114,11 +158,7 @@ impl Friction {
     /// then marked as extrapolated.
     pub fn torque(&self, state: &FrictionState) -> FrictionTorque {
         FrictionTorque {
-            torque: self
-                .terms
-                .iter()
-                .map(|term| term.effect.torque(term.values(), state, &term.memory))
-                .sum(),
+            torque: self.terms.iter().map(|term| term.torque(state)).sum(),
             // NaN counts as outside.
             extrapolated: !self.is_within_range(state.velocity),
         }
@@ -142,92 +182,14 @@ impl Friction {
     pub fn is_within_range(&self, velocity: f64) -> bool {
         velocity.abs() <= self.speed_range[1]
     }
-
-    /// Number of parameters: columns of the regressor.
-    pub fn parameter_count(&self) -> usize {
-        self.terms.iter().map(|term| term.count).sum()
-    }
-
-    /// Writes the regressor: `row[k]` = ∂τ_F/∂(k-th parameter), as many as
-    /// [`parameter_count`](Self::parameter_count). A shorter `row` is filled
-    /// as far as it goes.
-    pub fn regressor(&self, state: &FrictionState, row: &mut [f64]) {
-        let mut rest = row;
-        for term in &self.terms {
-            let (own, after) = rest.split_at_mut(term.count.min(rest.len()));
-            term.effect.regressor(state, &term.memory, own);
-            rest = after;
-        }
-    }
-
-    /// Writes the values in the order of the regressor's columns.
-    pub fn values(&self, values: &mut [f64]) {
-        let own = self.terms.iter().flat_map(|term| term.values());
-        for (to, from) in values.iter_mut().zip(own) {
-            *to = *from;
-        }
-    }
-
-    /// Names of the parameters in the order of the regressor's columns.
-    pub fn names(&self) -> impl Iterator<Item = &'static str> + '_ {
-        self.terms.iter().flat_map(|term| {
-            let parameters = term.effect.description().parameters;
-            parameters.iter().take(term.count).map(|own| own.name)
-        })
-    }
-
-    /// Takes other values, in the order of the regressor's columns; fewer are
-    /// taken as far as they go. Allocates nothing, checks nothing.
-    pub fn set_values(&mut self, values: &[f64]) {
-        let own = self
-            .terms
-            .iter_mut()
-            .flat_map(|term| term.values.iter_mut().take(term.count));
-        for (to, from) in own.zip(values) {
-            *to = *from;
-        }
-    }
-
-    /// Moves the memory of effects that have one on by `dt` \[s\].
-    pub fn advance(&mut self, state: &FrictionState, dt: f64) {
-        for term in &mut self.terms {
-            let values = &term.values[..term.count];
-            term.effect.advance(values, state, dt, &mut term.memory);
-        }
-    }
 }
 
-fn term(
-    effect: &'static dyn Effect,
-    given: &BTreeMap<String, f64>,
-) -> Result<Term, ParameterError> {
-    let parameters = effect.description().parameters;
-    if let Some(name) = given
-        .keys()
-        .find(|name| parameters.iter().all(|p| p.name != name.as_str()))
-    {
-        let known: Vec<_> = parameters.iter().map(|p| p.name).collect();
-        return Err(ParameterError::Unknown {
-            key: name.clone(),
-            known: known.join(", "),
-        });
-    }
-    let mut values = [0.0; MAX_PARAMETERS];
-    for (value, parameter) in values.iter_mut().zip(parameters) {
-        *value = *given
-            .get(parameter.name)
-            .ok_or_else(|| ParameterError::Missing {
-                key: parameter.name.to_owned(),
-                unit: parameter.unit,
-            })?;
-        parameter.check(*value)?;
-    }
-    Ok(Term {
-        effect,
-        values,
-        count: parameters.len().min(MAX_PARAMETERS),
-        memory: vec![0.0; effect.memory_length()],
-    })
+/// Effects that an arm's file may have: such as need no reference of a recording,
+/// no temperature or date to count from.
+fn configurable() -> impl Iterator<Item = &'static StaticEffect> {
+    super::of_joint()
+        .filter(|own| !own.reads(Signal::Temperature) && !own.reads(Signal::Date))
+        .filter(|own| !own.row.is_sum)
 }
 
 #[cfg(test)]
@@ -327,26 +289,36 @@ mod tests {
     }
 
     #[test]
-    fn torque_is_regressor_times_values() {
+    fn torque_is_columns_times_values() {
         let friction = preset("on_ground");
         let state = FrictionState {
             velocity: 0.3,
             load: -7.0,
             ..Default::default()
         };
-        let (mut row, mut values) = ([0.0; 5], [0.0; 5]);
-        assert_eq!(friction.parameter_count(), 5);
-        friction.regressor(&state, &mut row);
-        friction.values(&mut values);
-        let sum: f64 = row.iter().zip(values).map(|(a, b)| a * b).sum();
-        assert!((sum - friction.torque(&state).torque).abs() < 1e-12);
+        let values: Vec<f64> = friction.terms().iter().map(|term| term.values[0]).collect();
         assert_eq!(values, [7.573, 0.127, 168.388, -544.193, 516.421]);
-        let names: Vec<_> = friction.names().collect();
-        assert_eq!(names, ["b_0", "b_0T", "b_1", "b_2", "b_3"]);
-        let mut other = preset("on_ground");
-        other.set_values(&values.map(|value| 2.0 * value));
-        let doubled = other.torque(&state).torque;
-        assert!((doubled - 2.0 * friction.torque(&state).torque).abs() < 1e-12);
+        let columns = friction.terms().iter().map(|term| term.columns(&state)[0]);
+        let sum: f64 = columns.zip(values).map(|(a, b)| a * b).sum();
+        assert!((sum - friction.torque(&state).torque).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_effect_with_a_shape_is_read_by_its_keys() {
+        let mut parameters = Preset::named("on_ground").unwrap().parameters();
+        let bump = [("bs", 5.0), ("vs", 0.03)].map(|(key, value)| (key.to_owned(), value));
+        parameters.effects.insert("stribeck".into(), bump.into());
+        let at = |parameters: &FrictionParameters| {
+            unloaded(&Friction::new(parameters).unwrap(), 0.03_f64.to_degrees()).torque
+        };
+        let without = unloaded(&preset("on_ground"), 0.03_f64.to_degrees()).torque;
+        assert!((at(&parameters) - without - 5.0 * (-1.0_f64).exp()).abs() < 1e-12);
+        let warmth = BTreeMap::from([("kT".to_owned(), 0.1)]);
+        parameters
+            .effects
+            .insert("temperature_coulomb".into(), warmth);
+        let key = parameters.validate().unwrap_err().key().to_owned();
+        assert_eq!(key, "effects.temperature_coulomb");
     }
 
     #[test]

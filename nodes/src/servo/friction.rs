@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use ferntast_control::servo::{FeedForward, FoundParameter, Servo, TakeOverRefusal};
+use ferntast_control::servo::{FeedForward, FoundParameter, Servo, TakeOverRefusal, TakenOver};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -140,13 +140,16 @@ fn take_over(
 /// A take-over in words.
 struct Words<'a> {
     name: &'a str,
-    taken: usize,
+    taken: TakenOver<'a>,
     own: &'a FeedForward,
 }
 
 impl fmt::Display for Words<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} takes {} of the twin's", self.name, self.taken)?;
+        write!(f, "{} takes {} of the twin's", self.name, self.taken.count)?;
+        if let Some((name, why)) = self.taken.left_out {
+            write!(f, ", not {name}: {why}")?;
+        }
         for own in self.own.parameters() {
             if own.target != own.configured {
                 write!(f, ", {} {:.4}", own.name, own.target)?;

@@ -19,7 +19,8 @@ use ferntast_msgs::{
     Text, Time,
     sample::{
         Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointSample, Level,
-        OperatingStateSample, PoseSample, StateCommandSample, TwinParametersSample,
+        OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample,
+        TwinParametersSample,
     },
 };
 
@@ -42,6 +43,8 @@ ports! {
         state_command: Batch<StateCommandSample> = FOLLOWER_STATE_COMMAND,
         friction_command: Batch<FrictionCommandSample> = FOLLOWER_FRICTION_COMMAND,
         twin: Newest<TwinParametersSample> = TWIN_PARAMETERS,
+        temperature_1: Newest<TemperatureSample> = FOLLOWER_JOINT_1_TEMPERATURE,
+        temperature_2: Newest<TemperatureSample> = FOLLOWER_JOINT_2_TEMPERATURE,
     }
     /// What the servo gives.
     output ServoOutput {
@@ -153,6 +156,12 @@ impl Node for ServoNode {
 
 impl ServoNode {
     fn feed_forward(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
+        let temperatures = [&input.temperature_1, &input.temperature_2];
+        for (joint, newest) in temperatures.into_iter().enumerate() {
+            if let Some(sample) = newest.message {
+                self.servo.set_temperature(joint, sample.temperature);
+            }
+        }
         let twin = input.twin.message.as_ref();
         for command in input.friction_command.iter() {
             match self.friction.follow(now, command, twin, &mut self.servo) {

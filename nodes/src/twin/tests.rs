@@ -2,6 +2,7 @@
 
 mod changes;
 mod faults;
+mod take_over;
 
 use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
 use ferntast_msgs::sample::Faults;

@@ -4,11 +4,12 @@
 //! wrong in one place must not be wrong in the same way in the other.
 //!
 //! To add one: a file beside these with a `draw` function that turns seed and
-//! strength into parameters, a variant in [`super::HiddenEffect`], and a line
-//! in [`draw`]. What it changes in the joint itself has to be known in
+//! strength into parameters and a test of its signature, and its lines here: the
+//! module, and the variant with its draw. What it changes in the joint itself has to be known in
 //! `without_hidden.rs`, whose test runs over all of them.
 
 mod asymmetric_coulomb;
+mod asymmetric_viscous;
 mod backlash;
 mod cable_spring;
 mod channel_delay;
@@ -37,9 +38,8 @@ mod wear_drift;
 
 use ferntast_emulation::random::Random;
 
-use super::HiddenEffect;
 use super::parameters::JointParameters;
-use crate::bench::{about, either_sign};
+use crate::bench::{about, either_sign, named};
 
 /// The joint where friction acts, at one instant, joint side.
 #[derive(Clone, Copy, Debug, Default)]
@@ -113,45 +113,106 @@ pub(super) trait Effect: Send + Sync {
     fn boxed(&self) -> Box<dyn Effect>;
 }
 
-/// Draws the parameters of `effect` for `joint` at `strength` (1: full).
-pub(super) fn draw(
-    effect: HiddenEffect,
-    joint: &JointParameters,
-    strength: f64,
-    random: &mut Random,
-) -> Box<dyn Effect> {
-    use HiddenEffect as Hidden;
-    match effect {
-        Hidden::Coulomb
-        | Hidden::LoadCoulomb
-        | Hidden::Viscous
-        | Hidden::QuadraticViscous
-        | Hidden::CubicViscous
-        | Hidden::NonlinearViscous => equation_4::draw(effect, strength, joint),
-        Hidden::Stribeck => stribeck::draw(strength, random),
-        Hidden::AsymmetricCoulomb => asymmetric_coulomb::draw(strength, random),
-        Hidden::TemperatureCoulomb => temperature_coulomb::draw(strength, random),
-        Hidden::TemperatureViscous => temperature_viscous::draw(strength, random),
-        Hidden::WearDrift => wear_drift::draw(strength, random),
-        Hidden::Ripple => ripple::draw(strength, joint.gear_ratio, random),
-        Hidden::PreslidingHysteresis => presliding_hysteresis::draw(strength, random),
-        Hidden::LocalFriction => local_friction::draw(strength, random),
-        Hidden::Inertia => inertia::draw(strength, random),
-        Hidden::Gravity => gravity::draw(strength, random),
-        Hidden::CableSpring => cable_spring::draw(strength, random),
-        Hidden::Elasticity => elasticity::draw(strength, random),
-        Hidden::Backlash => backlash::draw(strength, random),
-        Hidden::MotorConstant => motor_constant::draw(strength, random),
-        Hidden::TorqueSensorGain => torque_sensor_gain::draw(strength, random),
-        Hidden::TorqueSensorOffset => torque_sensor_offset::draw(strength, random),
-        Hidden::ChannelDelay => channel_delay::draw(strength, random),
-        Hidden::CurrentSaturation => current_saturation::draw(strength, joint, random),
-        Hidden::UnknownTemperaturePosition => unknown_temperature_position::draw(strength, random),
-        Hidden::UnknownTorqueRate => unknown_torque_rate::draw(strength, random),
-        Hidden::UnknownAcceleration => unknown_acceleration::draw(strength, random),
-        Hidden::UnknownVelocityLoad => unknown_velocity_load::draw(strength, random),
-        Hidden::UnknownPositionStep => unknown_position_step::draw(strength, random),
-        Hidden::UnknownOscillation => unknown_oscillation::draw(strength, random),
-        Hidden::UnknownWorkHeating => unknown_work_heating::draw(strength, random),
+/// Makes the enum of what can be hidden, and `draw`: a line an effect, with how it is
+/// drawn for a joint at a strength (1: full).
+macro_rules! truths {
+    ($joint:ident, $strength:ident, $random:ident;
+     $(#[$doc:meta])* pub enum $name:ident or $unknown:ident {
+        $($(#[$each:meta])* $variant:ident = $id:literal => $drawn:expr,)*
+    }) => {
+        named! {
+            $(#[$doc])*
+            pub enum $name or $unknown {
+                $($(#[$each])* $variant = $id,)*
+            }
+        }
+
+        /// Draws the parameters of `effect`.
+        pub(super) fn draw(
+            effect: $name,
+            $joint: &JointParameters,
+            $strength: f64,
+            $random: &mut Random,
+        ) -> Box<dyn Effect> {
+            match effect {
+                $($name::$variant => $drawn,)*
+            }
+        }
+    };
+}
+
+truths! {
+    joint, strength, random;
+    /// An effect that is in the truth of a joint's recording and not in the
+    /// model that the experimenter believes in.
+    ///
+    /// Those whose id begins with `unknown_` are in no catalogue, the others are
+    /// the lab's effects of a joint. A new one goes last: the blind test
+    /// counts seeds in this order.
+    pub enum HiddenEffect or UnknownEffect {
+        /// b_0 sign(q̇).
+        Coulomb = "coulomb" => equation_4::draw(HiddenEffect::Coulomb, strength, joint),
+        /// b_0T |τ| sign(q̇).
+        LoadCoulomb = "load_coulomb" => equation_4::draw(HiddenEffect::LoadCoulomb, strength, joint),
+        /// b_1 q̇.
+        Viscous = "viscous" => equation_4::draw(HiddenEffect::Viscous, strength, joint),
+        /// b_2 q̇|q̇|.
+        QuadraticViscous = "quadratic_viscous" => equation_4::draw(HiddenEffect::QuadraticViscous, strength, joint),
+        /// b_3 q̇³.
+        CubicViscous = "cubic_viscous" => equation_4::draw(HiddenEffect::CubicViscous, strength, joint),
+        /// b_2 q̇|q̇| + b_3 q̇³: the step from equation (3) to (4).
+        NonlinearViscous = "nonlinear_viscous" => equation_4::draw(HiddenEffect::NonlinearViscous, strength, joint),
+        /// More Coulomb friction near rest.
+        Stribeck = "stribeck" => stribeck::draw(strength, random),
+        /// Coulomb friction that differs by direction.
+        AsymmetricCoulomb = "asymmetric_coulomb" => asymmetric_coulomb::draw(strength, random),
+        /// Coulomb friction that changes with temperature.
+        TemperatureCoulomb = "temperature_coulomb" => temperature_coulomb::draw(strength, random),
+        /// Viscous friction that changes with temperature.
+        TemperatureViscous = "temperature_viscous" => temperature_viscous::draw(strength, random),
+        /// Coulomb friction that grows with the days.
+        WearDrift = "wear_drift" => wear_drift::draw(strength, random),
+        /// Torque periodic in the wave generator's turn.
+        Ripple = "ripple" => ripple::draw(strength, joint.gear_ratio, random),
+        /// Bristles that bend before the joint slides.
+        PreslidingHysteresis = "presliding_hysteresis" => presliding_hysteresis::draw(strength, random),
+        /// More Coulomb friction at one position.
+        LocalFriction = "local_friction" => local_friction::draw(strength, random),
+        /// Inertia that the believed model does not have.
+        Inertia = "inertia" => inertia::draw(strength, random),
+        /// Weight that the torque sensor does not feel.
+        Gravity = "gravity" => gravity::draw(strength, random),
+        /// A cable along the joint that pulls back.
+        CableSpring = "cable_spring" => cable_spring::draw(strength, random),
+        /// Compliance between motor and the measured position.
+        Elasticity = "elasticity" => elasticity::draw(strength, random),
+        /// Dead zone between motor and gear.
+        Backlash = "backlash" => backlash::draw(strength, random),
+        /// Wrong motor constant.
+        MotorConstant = "motor_constant" => motor_constant::draw(strength, random),
+        /// Wrong gain of the torque sensor.
+        TorqueSensorGain = "torque_sensor_gain" => torque_sensor_gain::draw(strength, random),
+        /// Wrong zero of the torque sensor.
+        TorqueSensorOffset = "torque_sensor_offset" => torque_sensor_offset::draw(strength, random),
+        /// One channel stamped late.
+        ChannelDelay = "channel_delay" => channel_delay::draw(strength, random),
+        /// Motor torque clipped.
+        CurrentSaturation = "current_saturation" => current_saturation::draw(strength, joint, random),
+        /// Outside the catalogue: a pull that turns with temperature and position.
+        UnknownTemperaturePosition = "unknown_temperature_position" => unknown_temperature_position::draw(strength, random),
+        /// Outside the catalogue: friction that differs while load builds up or falls.
+        UnknownTorqueRate = "unknown_torque_rate" => unknown_torque_rate::draw(strength, random),
+        /// Outside the catalogue: friction that grows while the speed changes.
+        UnknownAcceleration = "unknown_acceleration" => unknown_acceleration::draw(strength, random),
+        /// Outside the catalogue: viscous friction that grows with the square of the load.
+        UnknownVelocityLoad = "unknown_velocity_load" => unknown_velocity_load::draw(strength, random),
+        /// Outside the catalogue: a step of torque at one position, whatever the direction.
+        UnknownPositionStep = "unknown_position_step" => unknown_position_step::draw(strength, random),
+        /// Outside the catalogue: a slow oscillation in time, as from a supply.
+        UnknownOscillation = "unknown_oscillation" => unknown_oscillation::draw(strength, random),
+        /// Outside the catalogue: friction that falls as the joint's own work warms it.
+        UnknownWorkHeating = "unknown_work_heating" => unknown_work_heating::draw(strength, random),
+        /// Viscous friction that differs by direction.
+        AsymmetricViscous = "asymmetric_viscous" => asymmetric_viscous::draw(strength, random),
     }
 }

@@ -3,34 +3,34 @@
 use super::*;
 
 /// One log entry, as the believed model sees it, without noise.
-struct Row {
+pub(in crate::joint_bench) struct Row {
     session: usize,
     index: usize,
-    time: f64,
-    date: f64,
-    temperature: f64,
-    q: f64,
-    v: f64,
-    a: f64,
-    tau: f64,
-    tau_rate: f64,
-    tau_m: f64,
+    pub(in crate::joint_bench) time: f64,
+    pub(in crate::joint_bench) date: f64,
+    pub(in crate::joint_bench) temperature: f64,
+    pub(in crate::joint_bench) q: f64,
+    pub(in crate::joint_bench) v: f64,
+    pub(in crate::joint_bench) a: f64,
+    pub(in crate::joint_bench) tau: f64,
+    pub(in crate::joint_bench) tau_rate: f64,
+    pub(in crate::joint_bench) tau_m: f64,
     /// True velocity and acceleration.
-    v_true: f64,
-    a_true: f64,
+    pub(in crate::joint_bench) v_true: f64,
+    pub(in crate::joint_bench) a_true: f64,
     /// Way since the last reversal \[rad\].
-    travel: f64,
+    pub(in crate::joint_bench) travel: f64,
     /// Own part of the effect \[Nm\].
-    r: f64,
+    pub(in crate::joint_bench) r: f64,
 }
 
 impl Row {
-    fn s(&self) -> f64 {
+    pub(in crate::joint_bench) fn s(&self) -> f64 {
         self.v.signum()
     }
 }
 
-struct Case {
+pub(in crate::joint_bench) struct Case {
     recording: BenchRecording,
     rows: Vec<Row>,
 }
@@ -82,7 +82,7 @@ fn case(effect: HiddenEffect, seed: u64, motion: Motion) -> Case {
 
 impl Case {
     /// Parameter of the hidden effect, else of the joint.
-    fn get(&self, name: &str) -> f64 {
+    pub(in crate::joint_bench) fn get(&self, name: &str) -> f64 {
         let named = || self.recording.truth.iter().filter(|p| p.name == name);
         let own = named().find(|p| p.effect.is_some());
         own.or_else(|| named().next()).unwrap().value
@@ -97,7 +97,7 @@ impl Case {
     /// Checks that `expected` explains the own part but for a share of it and
     /// what reversals leave, and that it is not all too small.
     #[track_caller]
-    fn is(&self, share: f64, expected: impl Fn(&Row) -> f64) {
+    pub(in crate::joint_bench) fn is(&self, share: f64, expected: impl Fn(&Row) -> f64) {
         let mean = |f: &dyn Fn(&Row) -> f64| {
             self.rows.iter().map(|row| f(row).powi(2)).sum::<f64>() / self.rows.len() as f64
         };
@@ -110,7 +110,8 @@ impl Case {
     }
 }
 
-fn standard(effect: HiddenEffect) -> Case {
+/// A recording that hides `effect` in the standard motion.
+pub(in crate::joint_bench) fn standard(effect: HiddenEffect) -> Case {
     case(effect, 3, Motion::Standard)
 }
 

@@ -127,3 +127,32 @@ pub fn hidden_by<H: TestBench>(seed: u64) -> Option<H> {
         .ok()
         .and_then(|index| H::ALL.get(index).copied())
 }
+
+#[cfg(test)]
+mod tests {
+    use ferntast_benches::{contact_bench, joint_bench};
+    use ferntast_identification::{Subject, catalogue};
+
+    use super::*;
+
+    fn truths<H: TestBench>() -> Vec<&'static str> {
+        let known = H::ALL.iter().filter(|own| own.in_catalogue());
+        known.map(|own| own.id()).collect()
+    }
+
+    /// What the lab can name can be hidden from it, and the other way round.
+    #[test]
+    fn every_effect_of_the_catalogue_has_a_truth() {
+        for (subject, truths) in [
+            (Subject::Joint, truths::<joint_bench::HiddenEffect>()),
+            (Subject::Contact, truths::<contact_bench::HiddenEffect>()),
+        ] {
+            let own = catalogue().into_iter().filter(|own| own.of == subject);
+            let mut own: Vec<String> = own.map(|own| own.id).collect();
+            let mut truths = truths.clone();
+            own.sort_unstable();
+            truths.sort_unstable();
+            assert_eq!(own, truths);
+        }
+    }
+}

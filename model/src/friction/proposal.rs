@@ -40,96 +40,79 @@ use Proposal::{
     WideSpeedRange,
 };
 
-/// Which effects a motion tells from each other, the most telling motion first.
-const TELLS_APART: [(Proposal, &[&str]); 14] = [
-    (
-        TemperatureSweep,
-        &["temperature_coulomb", "temperature_viscous", "wear_drift"],
-    ),
-    (
-        SlowReversals,
-        &[
-            "presliding_hysteresis",
-            "backlash",
-            "elasticity",
-            "coulomb",
-            "stribeck",
-        ],
-    ),
-    (
-        WideSpeedRange,
-        &[
-            "coulomb",
-            "stribeck",
-            "viscous",
-            "quadratic_viscous",
-            "cubic_viscous",
-            "nonlinear_viscous",
-            "asymmetric_viscous",
-        ],
-    ),
-    (
-        FastUnloaded,
-        &[
-            "motor_constant",
-            "torque_sensor_gain",
-            "load_coulomb",
-            "inertia",
-        ],
-    ),
-    // Free of load, what goes with position is still there, at any speed.
-    (
-        FastUnloaded,
-        &["motor_constant", "torque_sensor_gain", "cable_spring"],
-    ),
-    (
-        FastUnloaded,
-        &["motor_constant", "torque_sensor_gain", "gravity"],
-    ),
-    (
-        WidePosition,
-        &[
-            "gravity",
-            "cable_spring",
-            "ripple",
-            "local_friction",
-            "torque_sensor_gain",
-            "torque_sensor_offset",
-            "asymmetric_coulomb",
-        ],
-    ),
-    (
-        LoadSteps,
-        &["load_coulomb", "cable_spring", "gravity", "coulomb"],
-    ),
-    (
-        Accelerations,
-        &[
-            "channel_delay",
-            "inertia",
-            "viscous",
-            "elasticity",
-            "ripple",
-        ],
-    ),
-    (
-        ContactDates,
-        &["contact_wear", "contact_coulomb", "contact_spot"],
-    ),
-    (ContactTurns, &["contact_compliance", "contact_stribeck"]),
-    (
-        ContactSpeeds,
-        &["contact_coulomb", "contact_viscous", "contact_stribeck"],
-    ),
-    (
-        ContactForces,
-        &["contact_coulomb", "contact_viscous", "contact_stribeck"],
-    ),
-    (
-        ContactSweep,
-        &["contact_spot", "contact_coulomb", "contact_stribeck"],
-    ),
-];
+/// Effects that one recording tells from each other. An effect of the catalogue
+/// lists those that it is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contrast {
+    /// Temperature against date, by [`TemperatureSweep`].
+    TemperatureSweep,
+    /// By [`SlowReversals`].
+    SlowReversals,
+    /// By [`WideSpeedRange`].
+    WideSpeedRange,
+    /// What goes with load, by [`FastUnloaded`].
+    FastByLoad,
+    /// The same beside a spring: free of load, what goes with position is still
+    /// there, at any speed.
+    FastBySpring,
+    /// The same beside a weight.
+    FastByWeight,
+    /// By [`WidePosition`].
+    WidePosition,
+    /// By [`LoadSteps`].
+    LoadSteps,
+    /// By [`Accelerations`].
+    Accelerations,
+    /// By [`ContactDates`].
+    ContactDates,
+    /// By [`ContactTurns`].
+    ContactTurns,
+    /// By [`ContactSpeeds`].
+    ContactSpeeds,
+    /// By [`ContactForces`].
+    ContactForces,
+    /// By [`ContactSweep`].
+    ContactSweep,
+}
+
+impl Contrast {
+    /// All of them, the most telling first.
+    pub const ALL: [Self; 14] = [
+        Self::TemperatureSweep,
+        Self::SlowReversals,
+        Self::WideSpeedRange,
+        Self::FastByLoad,
+        Self::FastBySpring,
+        Self::FastByWeight,
+        Self::WidePosition,
+        Self::LoadSteps,
+        Self::Accelerations,
+        Self::ContactDates,
+        Self::ContactTurns,
+        Self::ContactSpeeds,
+        Self::ContactForces,
+        Self::ContactSweep,
+    ];
+
+    /// The recording.
+    #[must_use]
+    pub const fn proposal(self) -> Proposal {
+        match self {
+            Self::TemperatureSweep => TemperatureSweep,
+            Self::SlowReversals => SlowReversals,
+            Self::WideSpeedRange => WideSpeedRange,
+            Self::FastByLoad | Self::FastBySpring | Self::FastByWeight => FastUnloaded,
+            Self::WidePosition => WidePosition,
+            Self::LoadSteps => LoadSteps,
+            Self::Accelerations => Accelerations,
+            Self::ContactDates => ContactDates,
+            Self::ContactTurns => ContactTurns,
+            Self::ContactSpeeds => ContactSpeeds,
+            Self::ContactForces => ContactForces,
+            Self::ContactSweep => ContactSweep,
+        }
+    }
+}
 
 impl Proposal {
     /// All of them.
@@ -206,23 +189,22 @@ impl Proposal {
         matches!(self, FastUnloaded | WideSpeedRange | WidePosition)
     }
 
-    /// What tells the effect `own` from its `rivals`, from as many as one
-    /// recording can; `alone` is what shows `own` by itself.
+    /// What tells an effect with the contrasts `own` from its `rivals`, from as
+    /// many as one recording can; `alone` is what shows it by itself.
     #[must_use]
-    pub fn between(own: &str, rivals: &[&str], alone: Self) -> Self {
+    pub fn between(own: &[Contrast], rivals: &[&[Contrast]], alone: Self) -> Self {
         let told = |by: Self| {
-            let tells = |rival: &str| {
-                TELLS_APART.iter().any(|(proposal, effects)| {
-                    *proposal == by && effects.contains(&own) && effects.contains(&rival)
-                })
+            let tells = |rival: &&&[Contrast]| {
+                let mut shared = own.iter().filter(|contrast| rival.contains(contrast));
+                shared.any(|contrast| contrast.proposal() == by)
             };
-            rivals.iter().filter(|rival| tells(rival)).count()
+            rivals.iter().filter(tells).count()
         };
         let mut best = (alone, 0);
-        for (proposal, _) in TELLS_APART {
-            let told = told(proposal);
+        for contrast in Contrast::ALL {
+            let told = told(contrast.proposal());
             if told > best.1 {
-                best = (proposal, told);
+                best = (contrast.proposal(), told);
             }
         }
         best.0
@@ -232,46 +214,5 @@ impl Proposal {
 impl Serialize for Proposal {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.id())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_family_is_put_to_the_motion_that_tells_most_of_it_apart() {
-        let between = |own, rivals: &[&str]| Proposal::between(own, rivals, LoadSteps);
-        assert_eq!(
-            between("wear_drift", &["temperature_coulomb"]),
-            TemperatureSweep
-        );
-        assert_eq!(between("gravity", &["cable_spring"]), WidePosition);
-        assert_eq!(
-            between("quadratic_viscous", &["cubic_viscous", "nonlinear_viscous"]),
-            WideSpeedRange
-        );
-        assert_eq!(
-            between("backlash", &["presliding_hysteresis"]),
-            SlowReversals
-        );
-        assert_eq!(between("inertia", &["channel_delay"]), Accelerations);
-        assert_eq!(
-            between(
-                "torque_sensor_gain",
-                &["cable_spring", "gravity", "motor_constant"]
-            ),
-            FastUnloaded
-        );
-        // One rival each way: the first.
-        assert_eq!(
-            between("load_coulomb", &["motor_constant", "cable_spring"]),
-            FastUnloaded
-        );
-        assert_eq!(between("ripple", &[]), LoadSteps);
-        assert_eq!(
-            between("ripple", &["an effect of the user's own"]),
-            LoadSteps
-        );
     }
 }

@@ -1,0 +1,85 @@
+//! Friction that changes with temperature and date.
+
+use super::facts::Facts;
+use super::proposal::{Contrast, Proposal};
+use super::row::{EffectParameter, OwnSignals, Row, Unit};
+use super::static_effect::{Signal, StaticEffect};
+
+/// All of them.
+pub(super) static EFFECTS: &[StaticEffect] = &[
+    StaticEffect {
+        row: Row {
+            id: "temperature_coulomb",
+            equation: "τ_F = kT · (T − T0) · sign(q̇)",
+            source: "ROKVISS, lessons learned, Figs. 12 and 14",
+            coefficients: &[EffectParameter::new(
+                "kT",
+                Unit::new("Nm/K", "N/K"),
+                -20.0,
+                20.0,
+            )],
+            shows_as: "step changes with T",
+            excited_by: "slow motion at several temperatures, on dates out of order with temperature",
+            shown_by: Proposal::TemperatureSweep,
+            contrasts: &[Contrast::TemperatureSweep],
+            taken_for: &["wear_drift"],
+            varies: Some("coulomb"),
+            own_signals: OwnSignals::varying(&["temperature"]),
+            ..Row::NONE
+        },
+        reads: &[Signal::Velocity, Signal::Temperature],
+        columns: |state, _, columns| columns.fill(state.temperature * state.sign()),
+        unavailable: Facts::no_temperature,
+        ..StaticEffect::NONE
+    },
+    StaticEffect {
+        row: Row {
+            id: "temperature_viscous",
+            equation: "τ_F = kv · (T − T0) · q̇",
+            source: "ROKVISS, lessons learned, Figs. 12 and 14",
+            coefficients: &[EffectParameter::new(
+                "kv",
+                Unit::new("Nm s/(rad K)", "N s/(m K)"),
+                -500.0,
+                500.0,
+            )],
+            shows_as: "slope changes with T",
+            excited_by: "slow and fast motion at several temperatures",
+            shown_by: Proposal::TemperatureSweep,
+            contrasts: &[Contrast::TemperatureSweep],
+            taken_for: &["temperature_coulomb"],
+            varies: Some("viscous"),
+            own_signals: OwnSignals::varying(&["temperature"]),
+            ..Row::NONE
+        },
+        reads: &[Signal::Velocity, Signal::Temperature],
+        columns: |state, _, columns| columns.fill(state.temperature * state.velocity),
+        unavailable: Facts::no_temperature,
+        ..StaticEffect::NONE
+    },
+    StaticEffect {
+        row: Row {
+            id: "wear_drift",
+            equation: "τ_F = kw · t · sign(q̇), t in days",
+            source: "ROKVISS, lessons learned, Fig. 10",
+            coefficients: &[EffectParameter::new(
+                "kw",
+                Unit::new("Nm/day", "N/day"),
+                -20.0,
+                20.0,
+            )],
+            shows_as: "step changes with date",
+            excited_by: "the same motion at one temperature on many dates",
+            shown_by: Proposal::DateSweep,
+            contrasts: &[Contrast::TemperatureSweep],
+            taken_for: &["temperature_coulomb"],
+            varies: Some("coulomb"),
+            own_signals: OwnSignals::varying(&["date"]),
+            ..Row::NONE
+        },
+        reads: &[Signal::Velocity, Signal::Date],
+        columns: |state, _, columns| columns.fill(state.days * state.sign()),
+        unavailable: Facts::no_dates,
+        ..StaticEffect::NONE
+    },
+];

@@ -1,0 +1,151 @@
+//! What is known of recordings before an effect is sought in them.
+
+use serde::{Deserialize, Serialize};
+
+/// What was recorded: it decides the catalogue of effects, and the names and
+/// units in which results are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointType {
+    /// rad, Nm, kg m².
+    #[default]
+    Revolute,
+    /// m, N, kg.
+    Prismatic,
+    /// No joint, but the same to a fit: a tip that slides along a contour. m and
+    /// N, no inertia; F_T stands in the place of τ_F, F_N in that of the load:
+    /// F_T = Σ effects (equation 6).
+    Contact,
+}
+
+impl JointType {
+    /// The catalogue that applies.
+    #[must_use]
+    pub const fn subject(self) -> Subject {
+        match self {
+            Self::Revolute | Self::Prismatic => Subject::Joint,
+            Self::Contact => Subject::Contact,
+        }
+    }
+
+    /// Whether a contact was recorded.
+    #[must_use]
+    pub const fn is_contact(self) -> bool {
+        matches!(self, Self::Contact)
+    }
+
+    /// What a signal of a joint is called here, in files and results.
+    #[must_use]
+    pub fn signal(self, of_joint: &str) -> &str {
+        if !self.is_contact() {
+            return of_joint;
+        }
+        match of_joint {
+            "position" => "place",
+            "velocity" => "tip_velocity",
+            "acceleration" => "tip_acceleration",
+            "load" => "normal_force",
+            "load_rate" => "normal_force_rate",
+            "motor_torque" => "tangential_force",
+            other => other,
+        }
+    }
+
+    /// Unit of forces or torques.
+    #[must_use]
+    pub const fn force_unit(self) -> &'static str {
+        match self {
+            Self::Revolute => "Nm",
+            Self::Prismatic | Self::Contact => "N",
+        }
+    }
+}
+
+/// What a catalogue of effects is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Subject {
+    /// τ_F of a joint.
+    Joint,
+    /// F_T of a tip in contact.
+    Contact,
+}
+
+impl Subject {
+    /// With an article, for messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Joint => "a joint",
+            Self::Contact => "a contact",
+        }
+    }
+}
+
+/// What is known of the recordings as a whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Facts {
+    /// Kind of joint.
+    pub joint: JointType,
+    /// J \[kg m²\], where it is given.
+    pub inertia: Option<f64>,
+    /// Motor turns in one turn of the joint.
+    pub gear_ratio: Option<f64>,
+    /// Whether τ is measured.
+    pub joint_torque: bool,
+    /// Whether the temperature is measured.
+    pub temperature: bool,
+    /// T₀ \[degC\], the mean.
+    pub reference_temperature: f64,
+    /// Range of T \[K\].
+    pub temperature_range: f64,
+    /// Number of sessions.
+    pub sessions: usize,
+    /// Days from the first session to the last.
+    pub days: f64,
+    /// Range of q \[rad\] (second to 98th percentile).
+    pub position: [f64; 2],
+    /// Second and 98th percentile of |q̇| while moving \[rad/s\].
+    pub speed: [f64; 2],
+    /// Top of |τ_m| \[Nm\].
+    pub motor_torque: f64,
+    /// Travel \[rad\] that is seen for certain, for the position's noise.
+    pub resolved: f64,
+    /// Whether there is a load: a torque sensor, gravity, a spring or an inertia.
+    pub loaded: bool,
+    /// Working period \[s\].
+    pub period: f64,
+    /// Whether the model has Coulomb friction that grows with the load.
+    pub load_coulomb: bool,
+}
+
+impl Facts {
+    /// Why nothing can be said of temperature, if nothing can.
+    #[must_use]
+    pub fn no_temperature(&self) -> Option<String> {
+        (!self.temperature || self.temperature_range < 2.0)
+            .then(|| "the temperature is not measured or varies by less than 2 K".to_owned())
+    }
+
+    /// Length \[rad\] of the range of positions.
+    #[must_use]
+    pub fn travel(&self) -> f64 {
+        self.position[1] - self.position[0]
+    }
+
+    /// Why nothing can be said of load, if nothing can.
+    #[must_use]
+    pub fn no_load(&self) -> Option<String> {
+        (!self.loaded).then(|| {
+            "no load: neither a joint torque sensor nor gravity, spring or inertia in the model"
+                .to_owned()
+        })
+    }
+
+    /// Why nothing can be said of dates, if nothing can.
+    #[must_use]
+    pub fn no_dates(&self) -> Option<String> {
+        (self.sessions < 4 || self.days < 0.5)
+            .then(|| "fewer than four sessions or all on one day".to_owned())
+    }
+}

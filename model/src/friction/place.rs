@@ -1,0 +1,176 @@
+//! Torque over position.
+
+use super::facts::{Facts, JointType};
+use super::proposal::{Contrast, Proposal};
+use super::row::{
+    ANGLE, Direction, EffectParameter, Exact, OwnSignals, Row, STIFFNESS, TORQUE, Unit,
+};
+use super::static_effect::{Signal, StaticEffect};
+
+const OVER_POSITION: OwnSignals = OwnSignals::new(&["position"], Direction::Same);
+
+const fn torque(name: &'static str) -> EffectParameter {
+    EffectParameter::new(name, TORQUE, -1000.0, 1000.0)
+}
+
+/// All of them.
+pub(super) static EFFECTS: &[StaticEffect] = &[
+    StaticEffect {
+        row: Row {
+            id: "ripple",
+            equation: "τ_F = a_s · sin(k q) + a_c · cos(k q)",
+            source: "wave generator of a harmonic drive: k = 2N, also N and 4N, N the gear ratio",
+            coefficients: &[torque("a_s"), torque("a_c")],
+            shape: &[EffectParameter::new(
+                "k",
+                Unit::new("1/rad", "1/m"),
+                1e-3,
+                1e6,
+            )],
+            shows_as: "periodic in q",
+            excited_by: "slow constant speed, so slow that the ripple is not aliased",
+            shown_by: Proposal::WidePosition,
+            contrasts: &[Contrast::WidePosition, Contrast::Accelerations],
+            taken_for: &["local_friction"],
+            is_periodic: true,
+            ..Row::NONE
+        },
+        reads: &[Signal::Position],
+        columns: |state, shape, columns| {
+            if let ([sine, cosine], [k, ..]) = (columns, shape) {
+                (*sine, *cosine) = (k * state.position).sin_cos();
+            }
+        },
+        // Other periods are found from the residual.
+        shapes: |facts| match (facts.joint, facts.gear_ratio) {
+            (JointType::Revolute, Some(ratio)) => [1.0, 2.0, 4.0]
+                .into_iter()
+                .map(|times| vec![times * ratio])
+                .filter(|shape| shape[0] * facts.travel() > 9.0)
+                .collect(),
+            // Per metre of travel: the gear ratio is motor turns a screw turn,
+            // whose lead is not known; only the free search applies.
+            _ => Vec::new(),
+        },
+        // A few turns at least, else it is a slope; more than a few samples a
+        // turn at the slowest speed, else it is aliased.
+        bounds: |facts| {
+            let low = 9.0 / facts.travel();
+            let finest = 800.0 * std::f64::consts::TAU / facts.travel();
+            let high = f64::min(1.5 / (facts.speed[0] * facts.period), finest);
+            vec![[low, high.max(2.0 * low)]]
+        },
+        ..StaticEffect::NONE
+    },
+    StaticEffect {
+        row: Row {
+            id: "local_friction",
+            equation: "τ_F = bl · exp(−((q − ql)/wl)²) · sign(q̇)",
+            source: "a dent or a dry spot",
+            coefficients: &[torque("bl")],
+            shape: &[
+                EffectParameter::new("ql", ANGLE, -1e3, 1e3),
+                EffectParameter::new("wl", ANGLE, 1e-6, 1e3),
+            ],
+            shows_as: "bump at one q, sign by direction",
+            excited_by: "slow motion in both directions past the spot",
+            shown_by: Proposal::WidePosition,
+            contrasts: &[Contrast::WidePosition],
+            taken_for: &["ripple"],
+            own_signals: OwnSignals::new(&["position"], Direction::Opposite),
+            ..Row::NONE
+        },
+        reads: &[Signal::Velocity, Signal::Position],
+        columns: |state, shape, columns| {
+            if let ([c], [spot, width, ..]) = (columns, shape) {
+                *c = (-((state.position - spot) / width).powi(2)).exp() * state.sign();
+            }
+        },
+        shapes: |facts| spots(facts, &[(0.03, 24), (0.06, 16), (0.12, 9)]).collect(),
+        bounds: |facts| {
+            let travel = facts.travel();
+            vec![facts.position, [0.01 * travel, 0.25 * travel]]
+        },
+        ..StaticEffect::NONE
+    },
+    StaticEffect {
+        row: Row {
+            id: "gravity",
+            equation: "τ = g_s · sin q + g_c · cos q = g · sin(q + φ)",
+            source: "rigid body",
+            coefficients: &[torque("g_s"), torque("g_c")],
+            shows_as: "over q, whatever the sign of q̇",
+            excited_by: "slow motion over the widest arc that the joint allows",
+            shown_by: Proposal::WidePosition,
+            contrasts: &[
+                Contrast::FastByWeight,
+                Contrast::WidePosition,
+                Contrast::LoadSteps,
+            ],
+            taken_for: &["cable_spring"],
+            is_load: true,
+            own_signals: OVER_POSITION,
+            ..Row::NONE
+        },
+        reads: &[Signal::Position],
+        columns: |state, _, columns| {
+            if let [sine, cosine] = columns {
+                (*sine, *cosine) = state.position.sin_cos();
+            }
+        },
+        unavailable: |facts| {
+            (facts.joint == JointType::Prismatic).then(|| {
+                "on a prismatic joint a weight is a constant: asymmetric_coulomb".to_owned()
+            })
+        },
+        ..StaticEffect::NONE
+    },
+    StaticEffect {
+        row: Row {
+            id: "cable_spring",
+            equation: "τ = kc · (q − q0) = kc · q + k0",
+            source: "Hooke",
+            coefficients: &[
+                EffectParameter::new("kc", STIFFNESS, -1e5, 1e5),
+                torque("k0"),
+            ],
+            shows_as: "straight line over q, whatever the sign of q̇",
+            excited_by: "slow motion over the whole range of positions without load",
+            shown_by: Proposal::WidePosition,
+            contrasts: &[
+                Contrast::FastBySpring,
+                Contrast::WidePosition,
+                Contrast::LoadSteps,
+            ],
+            taken_for: &["gravity", "torque_sensor_gain"],
+            contains: &[("asymmetric_coulomb", 0), ("torque_sensor_offset", 0)],
+            exact: &[Exact::Position, Exact::One],
+            is_load: true,
+            own_signals: OVER_POSITION,
+            ..Row::NONE
+        },
+        reads: &[Signal::Position],
+        columns: |state, _, columns| {
+            if let [slope, level] = columns {
+                *slope = state.position;
+                *level = 1.0;
+            }
+        },
+        ..StaticEffect::NONE
+    },
+];
+
+/// Middles and widths \[rad\] of spots of some widths, as shares of the travel,
+/// and how many of each.
+pub(super) fn spots<'a>(
+    facts: &'a Facts,
+    widths: &'a [(f64, u32)],
+) -> impl Iterator<Item = Vec<f64>> + 'a {
+    let range = facts.travel();
+    widths.iter().flat_map(move |(width, count)| {
+        (0..*count).map(move |i| {
+            let share = (f64::from(i) + 0.5) / f64::from(*count);
+            vec![facts.position[0] + share * range, width * range]
+        })
+    })
+}
