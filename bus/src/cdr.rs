@@ -117,13 +117,19 @@ pub fn decode<R: RosMessage>(bytes: &[u8]) -> Result<R, DecodeError> {
 
 #[cfg(test)]
 mod tests {
-    use ferntast_msgs::{Message, Time, ros::sensor_msgs::JointState, sample::JointSample};
+    use ferntast_msgs::{
+        Message, Time,
+        ros::sensor_msgs::JointState,
+        sample::{JointNames, JointSample},
+    };
     use proptest::prelude::*;
 
     use super::*;
 
     fn joint_state() -> JointState {
-        JointSample::positions(Time::from_ros(1, 2), [0.5, -1.0]).to_ros()
+        JointSample::empty(JointNames::numbered(2), Time::from_ros(1, 2))
+            .with_position([0.5, -1.0])
+            .to_ros()
     }
 
     /// By hand from the CDR rules (OMG CORBA 3.4, 9.3): alignment counts from the end of the header.

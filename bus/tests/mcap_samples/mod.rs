@@ -9,7 +9,7 @@ use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, FrictionCommand,
-        FrictionCommandSample, FrictionSource, FrictionStatusSample, HealthSample, JointFields,
+        FrictionCommandSample, FrictionSource, FrictionStatusSample, HealthSample, JointNames,
         JointSample, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
         OperatingState, OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
         RecorderStatusSample, RobotDescriptionSample, StateCommand, StateCommandSample,
@@ -63,14 +63,10 @@ fn pick<M: Message, T: Message>(value: T) -> Option<M> {
 }
 
 pub fn joint(x: f64, stamp: Time) -> JointSample {
-    JointSample {
-        stamp,
-        position: [0.25 + x, -0.5 - x],
-        velocity: [1.5 + x, -2.5 - x],
-        effort: [10.5 + x, -20.25 - x],
-        fields: JointFields::ALL,
-        reserved: [0; 4],
-    }
+    JointSample::empty(JointNames::numbered(2), stamp)
+        .with_position([0.25 + x, -0.5 - x])
+        .with_velocity([1.5 + x, -2.5 - x])
+        .with_effort([10.5 + x, -20.25 - x])
 }
 
 fn pose(x: f64, stamp: Time) -> PoseSample {

@@ -18,7 +18,7 @@ use ferntast_model::{ArmModel, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointSample, Level,
+        Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointNames, JointSample, Level,
         OperatingStateSample, PoseSample, StateCommandSample, TwinParametersSample,
     },
 };
@@ -26,6 +26,7 @@ use ferntast_msgs::{
 use friction::FrictionKeeper;
 
 use crate::{
+    config::joint_names,
     node::{Node, ports},
     say::{StatePublisher, law_command},
 };
@@ -54,6 +55,7 @@ ports! {
 
 /// The joint servo.
 pub struct ServoNode {
+    joints: JointNames,
     servo: Servo,
     states: StatePublisher,
     friction: FrictionKeeper,
@@ -68,27 +70,26 @@ impl ServoNode {
     /// A parameter out of its bounds.
     pub fn new(model: &ArmModel, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
         Ok(ServoNode {
+            joints: joint_names(model),
             servo: Servo::new(&model.arm, &model.joint, config)?,
             states: StatePublisher::default(),
-            friction: FrictionKeeper::default(),
+            friction: FrictionKeeper::new(joint_names(model)),
             message: Text::EMPTY,
         })
     }
 }
 
 /// The newest command of either kind.
-fn command(input: &ServoInput) -> Option<Command> {
+fn command(input: &ServoInput, servo_jp: Option<JointSample>) -> Option<Command> {
     let tip = input.servo_cp.message.map(|pose| Command {
         stamp_ns: pose.stamp.nanos(),
         target: Target::Tip(pose.position),
     });
-    let joints = input
-        .servo_jp
-        .message
+    let joints = servo_jp
         .filter(|sample| sample.fields.has(JointFields::POSITION))
         .map(|sample| Command {
             stamp_ns: sample.stamp.nanos(),
-            target: Target::Joints(sample.position),
+            target: Target::Joints(sample.position()),
         });
     match (tip, joints) {
         (Some(tip), Some(joints)) if joints.stamp_ns > tip.stamp_ns => Some(joints),
@@ -102,14 +103,16 @@ impl Node for ServoNode {
     type Output = ServoOutput;
 
     fn step(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
+        let measured = self.own(input.measured_js.message, Fault::MeasurementInvalid, output);
+        let servo_jp = self.own(input.servo_jp.message, Fault::CommandInvalid, output);
         let law_input = LawInput {
-            measurement: input.measured_js.message.map(|sample| Measurement {
+            measurement: measured.map(|sample| Measurement {
                 stamp_ns: sample.stamp.nanos(),
-                position: sample.position,
-                velocity: sample.velocity,
-                torque: sample.effort,
+                position: sample.position(),
+                velocity: sample.velocity(),
+                torque: sample.effort(),
             }),
-            command: command(input),
+            command: command(input, servo_jp),
             // One a step; a second in the same millisecond is the newer wish.
             state_command: input
                 .state_command
@@ -120,18 +123,13 @@ impl Node for ServoNode {
         self.feed_forward(now, input, output);
         let law = self.servo.step(now.nanos(), &law_input);
         self.report(&law, output);
-        output.torque = Some(JointSample {
-            effort: law.torque,
-            fields: JointFields::EFFORT,
-            ..JointSample::zero(now)
-        });
-        output.setpoint_js = Some(JointSample {
-            position: law.setpoint.map(|setpoint| setpoint.position),
-            velocity: law.setpoint.map(|setpoint| setpoint.velocity),
-            effort: law.torque,
-            fields: JointFields::ALL,
-            ..JointSample::zero(now)
-        });
+        let torque = JointSample::empty(self.joints, now).with_effort(law.torque);
+        output.torque = Some(torque);
+        output.setpoint_js = Some(
+            torque
+                .with_position(law.setpoint.map(|setpoint| setpoint.position))
+                .with_velocity(law.setpoint.map(|setpoint| setpoint.velocity)),
+        );
         output.operating_state = self
             .states
             .publish(now, law.state, law.reason, law.approaching);
@@ -139,6 +137,24 @@ impl Node for ServoNode {
 }
 
 impl ServoNode {
+    /// `sample` with its joints in the order of the arm's; one that is about
+    /// others is refused.
+    fn own(
+        &mut self,
+        sample: Option<JointSample>,
+        fault: Fault,
+        output: &mut ServoOutput,
+    ) -> Option<JointSample> {
+        let sample = sample?;
+        let own = sample.in_order_of(&self.joints);
+        if own.is_none() {
+            output.health.raise(fault, Level::ERROR);
+            let (found, needed) = (&sample.joints, &self.joints);
+            self.message = Text::display(format_args!("joints {found} where {needed} are needed"));
+        }
+        own
+    }
+
     fn feed_forward(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
         let twin = input.twin.message.as_ref();
         for command in input.friction_command.iter() {
