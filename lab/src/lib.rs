@@ -14,6 +14,7 @@
 pub mod csv;
 pub mod experiment;
 pub mod message_path;
+mod numbers;
 pub mod recording;
 pub mod report;
 pub mod schema;

@@ -16,6 +16,7 @@
 //! (`package.xml`, `CMakeLists.txt`, `msg/`).
 
 pub mod interface;
+mod layout;
 mod message;
 pub mod ros;
 pub mod sample;
@@ -23,7 +24,7 @@ mod text;
 mod time;
 pub mod topics;
 
+pub use layout::Sample;
 pub use message::{InvalidMessage, Message, RosMessage};
-pub use sample::Sample;
 pub use text::Text;
 pub use time::Time;

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, de::DeserializeOwned};
 
-use crate::{Sample, Time};
+use crate::{layout::Sample, time::Time};
 
 /// A message in its ROS 2 form: a serde struct whose fields follow the
 /// `.msg` definition in order, so that CDR comes out right.

@@ -16,7 +16,7 @@ struct Declared(BTreeMap<String, &'static str>);
 impl Visitor for Declared {
     fn topic<M: Message>(&mut self, _: Topic<M>) {
         if let Some(text) = M::Ros::DEFINITION {
-            let name = M::Ros::INTERFACE.rsplit('/').next().unwrap();
+            let name = M::Ros::INTERFACE.trim_start_matches("ferntast_msgs/msg/");
             self.0.insert(format!("{name}.msg"), text);
         }
     }

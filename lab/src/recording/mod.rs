@@ -24,7 +24,6 @@ use ferntast_identification::{Dataset, Session};
 
 use crate::{csv, experiment::Experiment};
 
-pub(crate) use bag::numbers_of;
 pub use error::LoadError;
 
 /// The signal that says which samples count.

@@ -9,8 +9,10 @@ use ferntast_model::{
 };
 use ferntast_msgs::{
     Text,
-    sample::{ARM_FRAMES, JOINT_NAMES, LONGEST_DESCRIPTION, RobotDescriptionSample},
+    sample::{ARM_FRAMES, LONGEST_DESCRIPTION, RobotDescriptionSample},
 };
+
+use crate::config::joint_names;
 
 /// Radius of a link as drawn \[m\].
 const LINK_RADIUS: f64 = 0.02;
@@ -59,6 +61,7 @@ fn write(model: &ArmModel, fronts: &[Feature], xml: &mut String) -> std::fmt::Re
         xml,
         "<link name=\"{tip}\"><visual><geometry><sphere radius=\"{TIP_RADIUS}\"/></geometry></visual></link>"
     )?;
+    let joints = joint_names(model);
     let begins = [0.0, model.arm.link[0].length];
     for index in 0..JOINTS {
         let (parent, child) = ARM_FRAMES[index];
@@ -68,7 +71,7 @@ fn write(model: &ArmModel, fronts: &[Feature], xml: &mut String) -> std::fmt::Re
             "<joint name=\"{}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
              <origin xyz=\"{} 0 0\"/><axis xyz=\"0 0 1\"/>\
              <limit lower=\"{}\" upper=\"{}\" effort=\"{}\" velocity=\"{}\"/></joint>",
-            JOINT_NAMES[index],
+            joints.get(index).unwrap_or_default(),
             begins[index],
             parameters.position_lower,
             parameters.position_upper,
@@ -131,11 +134,11 @@ mod tests {
     use ferntast_msgs::Message;
 
     use super::*;
-    use crate::config::load_arm;
+    use crate::config;
 
     #[test]
     fn the_shipped_arm_is_described_whole() {
-        let sample = describe(&load_arm("rokviss").unwrap().model());
+        let sample = describe(&config::load_model_only("rokviss").unwrap().model);
         assert_eq!(sample.check(), Ok(()));
         let text = sample.urdf.as_str();
         assert!(text.trim_end().ends_with("</robot>"), "cut: {text}");
@@ -149,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_contour_without_end_is_left_out() {
-        let mut model = load_arm("rokviss").unwrap().model();
+        let mut model = config::load_model_only("rokviss").unwrap().model;
         let edge = model.contour.edge[0];
         model.contour.edge = vec![edge; 200];
         let sample = describe(&model);

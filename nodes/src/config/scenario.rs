@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use ferntast_control::{
     delay::Law, haptics::MasterConfig, playout::LONGEST_BUFFER, servo::ServoConfig,
 };
+use ferntast_emulation::hand::{RecordedHandConfig, ScriptedHandConfig};
 use ferntast_model::{ParameterError, check};
-use ferntast_sim::hand::{RecordedHandConfig, ScriptedHandConfig};
 use serde::{Deserialize, Serialize};
 
 /// A file of `config/scenarios/`.

@@ -12,7 +12,10 @@ use ferntast_msgs::{
     },
 };
 
-use crate::node::{Node, ports};
+use crate::{
+    config::joint_names,
+    node::{Node, ports},
+};
 
 /// No measurement for this long \[s\] is a fault.
 const MEASUREMENT_WATCHDOG: f64 = 0.010;

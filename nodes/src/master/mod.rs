@@ -4,6 +4,7 @@ use ferntast_control::{
     haptics::{HandCommand, HandRefusal, Master, MasterConfig},
     operating::OperatingState,
 };
+use ferntast_emulation::hand::Hand;
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Text, Time,
@@ -12,7 +13,6 @@ use ferntast_msgs::{
         WrenchSample,
     },
 };
-use ferntast_sim::hand::Hand;
 
 use crate::{
     node::{Node, NodeHealth, ports},

@@ -20,9 +20,9 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let arm = config::load_arm("rokviss").unwrap();
+        let arm = config::load_model_only("rokviss").unwrap();
         Self {
-            node: ServoNode::new(&arm.model(), &ServoConfig::default()).unwrap(),
+            node: ServoNode::new(&arm.model, &ServoConfig::default()).unwrap(),
             now: START,
             last: [None; 2],
             faults: Faults::default(),

@@ -1,12 +1,12 @@
 //! One direction of the link: the frames of a session through the emulated
 //! channel, and what the receiving end acts on.
 
-use crate::channel::{Channel, ChannelConfig};
 use ferntast_control::delay::{Packet, Received};
 use ferntast_control::frame::{FRAME_LENGTH, Frame, decode, encode};
 use ferntast_control::meter::{Arrival, Meter};
 use ferntast_control::operating::OperatingState;
 use ferntast_control::playout::PlayOut;
+use ferntast_emulation::channel::{Channel, ChannelConfig};
 use ferntast_model::ParameterError;
 
 const SESSION: u16 = 1;

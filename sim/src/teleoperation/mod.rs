@@ -19,12 +19,12 @@ mod watch;
 pub use environment::Environment;
 pub use tip::TipParameters;
 
-use crate::channel::LinkConfig;
-use crate::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_control::delay::{
     Energy, FollowerEnd, FollowerInput, Law, LeaderEnd, LeaderInput, Motion, Received,
 };
 use ferntast_control::frame::FRAME_LENGTH;
+use ferntast_emulation::channel::LinkConfig;
+use ferntast_emulation::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_model::ParameterError;
 use line::Line;
 use task::Schedule;

@@ -71,7 +71,7 @@ fn falls_silent(silent: &str, device: &str) {
             let since = joint.message.stamp.seconds_since(paused.message.stamp);
             since > 0.2 && joint.message.stamp < resumed.message.stamp
         })
-        .map(|joint| joint.message.position)
+        .map(|joint| joint.message.position::<2>())
         .collect();
     assert!(held.len() > 300, "{} samples", held.len());
     for joint in 0..2 {
