@@ -51,11 +51,11 @@ pub struct JointSample {
     #[field(bytes = 136)]
     pub joints: JointNames,
     /// Joint positions \[rad\].
-    pub position: Numbers,
+    pub position: [f64; MAX_JOINTS],
     /// Joint velocities \[rad/s\].
-    pub velocity: Numbers,
+    pub velocity: [f64; MAX_JOINTS],
     /// Joint torques \[Nm\]; which torque, the topic says.
-    pub effort: Numbers,
+    pub effort: [f64; MAX_JOINTS],
     /// Which of the three are given; the others hold zero.
     #[field(bytes = 4)]
     pub fields: JointFields,

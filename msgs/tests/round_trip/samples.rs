@@ -33,7 +33,7 @@ pub fn joint() -> impl Strategy<Value = JointSample> {
     let names = prop_oneof![
         (1..=MAX_JOINTS).prop_map(JointNames::numbered),
         prop::collection::hash_set("[a-zé]{1,8}", 1..=MAX_JOINTS)
-            .prop_map(|names| JointNames::new(names.iter().map(String::as_str)).unwrap()),
+            .prop_map(|names| JointNames::new(names.iter().map(String::as_str)).expect("names")),
     ];
     (time(), names, numbers(), numbers(), numbers(), 0..8u32).prop_map(
         |(stamp, joints, position, velocity, effort, fields)| {

@@ -79,7 +79,10 @@ impl Node for ArmNode {
         } else {
             f64::NAN
         };
-        let command = input.torque.message.map(|own| own.in_order_of(&self.joints));
+        let command = input
+            .torque
+            .message
+            .map(|own| own.in_order_of(&self.joints));
         let torque = match command {
             Some(None) => {
                 output.health.raise(Fault::CommandInvalid, Level::ERROR);

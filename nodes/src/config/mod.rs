@@ -12,9 +12,9 @@ mod shipped;
 pub use arm::load_model_only;
 pub use arm::{ArmFile, LoadArm};
 pub use error::ConfigError;
-pub use file::{ARM, FileKind, load};
 use ferntast_model::ArmModel;
 use ferntast_msgs::sample::JointNames;
+pub use file::{ARM, FileKind, load};
 
 pub use laws::UnknownLaw;
 pub use load::{Loaded, load_scenario, read_hand_recording};

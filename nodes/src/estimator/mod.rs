@@ -7,8 +7,8 @@ use ferntast_model::{ArmModel, ParameterError, contour::Surface};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Edge, Fault, Frame, JointFields, JointNames, JointSample, Level, PoseSample,
-        TransformsSample, WrenchSample,
+        ContactStateSample, Edge, Fault, Frame, JointFields, JointNames, JointSample, Level,
+        PoseSample, TransformsSample, WrenchSample,
     },
 };
 

@@ -76,11 +76,7 @@ impl FrictionKeeper {
     }
 
     /// What is fed forward at each joint, when it is time to tell.
-    pub(super) fn tell(
-        &mut self,
-        now: Time,
-        servo: &Servo,
-    ) -> Option<[FrictionStatusSample; 2]> {
+    pub(super) fn tell(&mut self, now: Time, servo: &Servo) -> Option<[FrictionStatusSample; 2]> {
         if now < self.due {
             return None;
         }

@@ -18,8 +18,8 @@ use ferntast_model::{ArmModel, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointNames, JointSample, Level,
-        OperatingStateSample, PoseSample, StateCommandSample, TwinParametersSample,
+        Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointNames, JointSample,
+        Level, OperatingStateSample, PoseSample, StateCommandSample, TwinParametersSample,
     },
 };
 

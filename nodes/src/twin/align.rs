@@ -110,7 +110,8 @@ mod tests {
         let mut out = Vec::new();
         for &(topic, millis) in order {
             match topic {
-                'p' => alignment.measured(&JointSample::empty(joints, at(millis)).with_position([0.0, 1.0])),
+                'p' => alignment
+                    .measured(&JointSample::empty(joints, at(millis)).with_position([0.0, 1.0])),
                 // The torque is the time.
                 _ => alignment.motor(
                     &JointSample::empty(joints, at(millis)).with_effort([0.0, millis as f64]),

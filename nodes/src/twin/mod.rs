@@ -25,8 +25,8 @@ use ferntast_identification::twin::{Flag, Twin, TwinOutput, TwinSample};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, JointFields, JointNames, JointSample, Level, TemperatureSample, TwinParametersSample,
-        TwinVerdict,
+        Fault, JointFields, JointNames, JointSample, Level, TemperatureSample,
+        TwinParametersSample, TwinVerdict,
     },
 };
 
