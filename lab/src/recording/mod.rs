@@ -12,7 +12,7 @@
 //!   samples are left out.
 //! * Unevenly sampled sessions are interpolated onto their mean period.
 //! * Sessions keep the time between them where files carry a date; files whose
-//!   clock begins anew are put one behind the other.
+//!   clock starts again are put one behind the other.
 
 mod align;
 mod bag;

@@ -1,6 +1,9 @@
 //! Figs. 6, 7 (low speed), 10, 11 (averages by speed): damping against mission time.
 
-use ferntast_identification::regression::{Coefficients, least_squares};
+use ferntast_identification::{
+    regression::{Coefficients, least_squares},
+    statistics::quantile,
+};
 
 use super::evidence::Evidence;
 use super::item::{Chart, Curve, Item, Section};
@@ -267,8 +270,7 @@ pub fn by_speed(evidence: &Evidence) -> Vec<Section> {
             }
             let curves = if number == 11 {
                 let mut warmths: Vec<f64> = dates.iter().map(|date| date.1).collect();
-                warmths.sort_by(f64::total_cmp);
-                let middle = warmths.get(warmths.len() / 2).copied().unwrap_or(CENTER);
+                let middle = quantile(&mut warmths, 0.5, f64::total_cmp).unwrap_or(CENTER);
                 let group = |name: &str, is_warm: bool| {
                     let dates = dates.iter().filter(|date| (date.1 >= middle) == is_warm);
                     Curve::dots(

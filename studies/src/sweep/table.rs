@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use ferntast_identification::statistics::quantile;
+
 use super::{Row, largest_stable};
 
 /// For each law: the largest stable round trip on each environment, without
@@ -86,6 +88,5 @@ fn number(value: Option<f64>, digits: usize) -> String {
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    quantile(&mut values, 0.5, f64::total_cmp)
 }

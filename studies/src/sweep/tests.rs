@@ -123,9 +123,7 @@ fn json_has_the_keys_and_the_page_is_whole_in_itself() {
     let page = render(&config, &rows).unwrap();
     assert!(!page.contains("@DATA@") && !page.contains("@STYLE@"));
     assert!(!page.contains("</script><b>"));
-    // Only the name of SVG's namespace looks like an address.
-    let outside = page.matches("http").count();
-    assert_eq!(outside, page.matches("http://www.w3.org/2000/svg").count());
+    assert!(!page.contains("http"), "an address");
 }
 
 #[test]

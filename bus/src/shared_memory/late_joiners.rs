@@ -25,11 +25,11 @@ type Visit = Box<dyn FnMut() -> bool + Send>;
 
 /// Hands publishers to the thread, which starts with the first one and ends with this value.
 #[derive(Default)]
-pub(super) struct Keeper {
+pub(super) struct ConnectionUpdater {
     visits: Mutex<Option<mpsc::Sender<Visit>>>,
 }
 
-impl Keeper {
+impl ConnectionUpdater {
     /// Looks after the connections of `port` until it is dropped.
     ///
     /// # Errors
@@ -59,9 +59,9 @@ impl Keeper {
     }
 }
 
-impl fmt::Debug for Keeper {
+impl fmt::Debug for ConnectionUpdater {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Keeper").finish_non_exhaustive()
+        f.debug_struct("ConnectionUpdater").finish_non_exhaustive()
     }
 }
 

@@ -1,7 +1,7 @@
-//! Whether shared memory has room.
+//! Whether shared memory has enough free space.
 //!
 //! Segments take their pages when they are first written to, and a page that
-//! does not exist kills the process (SIGBUS). So there must be room for all
+//! does not exist kills the process (SIGBUS). So there must be space for all
 //! of a segment, and some to spare, before it is made.
 
 use std::{ffi::CStr, io, mem};
@@ -18,8 +18,8 @@ const MARGIN: u64 = 2 << 20;
 const OVERHEAD: u64 = 128;
 
 /// Whether a session can be opened.
-pub(super) fn for_session() -> Result<(), OpenError> {
-    lack(MARGIN).map_or(Ok(()), |reason| {
+pub(super) fn check_for_session() -> Result<(), OpenError> {
+    missing(MARGIN).map_or(Ok(()), |reason| {
         Err(OpenError::NoRoom {
             path: SHARED_MEMORY.to_string_lossy().into(),
             reason,
@@ -28,11 +28,11 @@ pub(super) fn for_session() -> Result<(), OpenError> {
 }
 
 /// Whether a publisher of the topic can be created.
-pub(super) fn for_publisher<M: Message>(topic: Topic<M>) -> Result<(), CreateError> {
+pub(super) fn check_for_publisher<M: Message>(topic: Topic<M>) -> Result<(), CreateError> {
     let queue = SharedMemoryBus::max_queue(topic.delivery);
     let messages = MAX_SUBSCRIBERS * (queue + 1) + history(topic.delivery) + 1;
     let bytes = messages as u64 * (size_of::<Payload<M>>() as u64 + OVERHEAD);
-    lack(bytes + MARGIN).map_or(Ok(()), |reason| {
+    missing(bytes + MARGIN).map_or(Ok(()), |reason| {
         Err(CreateError::NoRoom {
             topic: topic.name.into(),
             reason,
@@ -40,9 +40,9 @@ pub(super) fn for_publisher<M: Message>(topic: Topic<M>) -> Result<(), CreateErr
     })
 }
 
-/// What is missing to `bytes`, for people; `None` when there is room.
-fn lack(bytes: u64) -> Option<String> {
-    // A system that does not tell is taken to have room.
+/// What is missing to `bytes`, for people; `None` when that is free.
+fn missing(bytes: u64) -> Option<String> {
+    // A system that does not say is taken to have enough.
     let free = free().ok()?;
     (free < bytes).then(|| {
         format!(
