@@ -27,7 +27,7 @@ use friction::FrictionKeeper;
 
 use crate::{
     config::joint_names,
-    node::{Node, ports},
+    node::{Newest, Node, ports},
     say::{StatePublisher, law_command},
 };
 
@@ -103,8 +103,8 @@ impl Node for ServoNode {
     type Output = ServoOutput;
 
     fn step(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
-        let measured = self.own(input.measured_js.message, Fault::MeasurementInvalid, output);
-        let servo_jp = self.own(input.servo_jp.message, Fault::CommandInvalid, output);
+        let measured = self.own(&input.measured_js, Fault::MeasurementInvalid, output);
+        let servo_jp = self.own(&input.servo_jp, Fault::CommandInvalid, output);
         let law_input = LawInput {
             measurement: measured.map(|sample| Measurement {
                 stamp_ns: sample.stamp.nanos(),
@@ -137,18 +137,18 @@ impl Node for ServoNode {
 }
 
 impl ServoNode {
-    /// `sample` with its joints in the order of the arm's; one that is about
-    /// others is refused.
+    /// The newest sample with its joints in the order of the arm's; one that is
+    /// about others is refused.
     fn own(
         &mut self,
-        sample: Option<JointSample>,
+        newest: &Newest<JointSample>,
         fault: Fault,
         output: &mut ServoOutput,
     ) -> Option<JointSample> {
-        let sample = sample?;
+        let sample = newest.message?;
         let own = sample.in_order_of(&self.joints);
-        if own.is_none() {
-            output.health.raise(fault, Level::ERROR);
+        if own.is_none() && newest.fresh {
+            output.health.raise(fault, Level::WARN);
             let (found, needed) = (&sample.joints, &self.joints);
             self.message = Text::display(format_args!("joints {found} where {needed} are needed"));
         }
