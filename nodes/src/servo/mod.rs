@@ -18,8 +18,9 @@ use ferntast_model::{ArmModel, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointNames, JointSample,
-        Level, OperatingStateSample, PoseSample, StateCommandSample, TwinParametersSample,
+        CommandStatusSample, Fault, FrictionCommandSample, FrictionStatusSample, JointFields,
+        JointNames, JointSample, Level, OperatingStateSample, PoseSample, StateCommandSample,
+        TwinParametersSample,
     },
 };
 
@@ -30,6 +31,9 @@ use crate::{
     node::{Newest, Node, ports},
     say::{StatePublisher, law_command},
 };
+
+/// How often the servo says what became of the commands \[ns\].
+const COMMAND_STATUS_NANOS: i64 = 100_000_000;
 
 ports! {
     /// The servo's topics.
@@ -48,6 +52,7 @@ ports! {
         torque: JointSample = FOLLOWER_SERVO_JF,
         setpoint_js: JointSample = FOLLOWER_SETPOINT_JS,
         operating_state: OperatingStateSample = FOLLOWER_OPERATING_STATE,
+        command_status: CommandStatusSample = FOLLOWER_COMMAND_STATUS,
         friction_1: FrictionStatusSample = FOLLOWER_JOINT_1_FRICTION,
         friction_2: FrictionStatusSample = FOLLOWER_JOINT_2_FRICTION,
     }
@@ -60,6 +65,8 @@ pub struct ServoNode {
     states: StatePublisher,
     friction: FrictionKeeper,
     message: Text<96>,
+    commands_due: Time,
+    refusal: Text<96>,
 }
 
 impl ServoNode {
@@ -75,6 +82,8 @@ impl ServoNode {
             states: StatePublisher::default(),
             friction: FrictionKeeper::new(joint_names(model)),
             message: Text::EMPTY,
+            commands_due: Time::INVALID,
+            refusal: Text::EMPTY,
         })
     }
 }
@@ -133,10 +142,34 @@ impl Node for ServoNode {
         output.operating_state = self
             .states
             .publish(now, law.state, law.reason, law.approaching);
+        output.command_status = self.command_status(now, &law);
     }
 }
 
 impl ServoNode {
+    /// What became of the commands: ten times a second.
+    fn command_status(&mut self, now: Time, law: &LawOutput) -> Option<CommandStatusSample> {
+        if let Some(refusal) = &law.refused {
+            self.refusal = Text::display(refusal);
+        }
+        if now < self.commands_due {
+            return None;
+        }
+        self.commands_due = now.plus_nanos(COMMAND_STATUS_NANOS);
+        let refused = &law.refusals;
+        Some(CommandStatusSample {
+            age: law.command_age,
+            accepted: law.accepted,
+            refused_stamp: refused.stamp,
+            refused_time: refused.time,
+            refused_value: refused.not_finite,
+            refused_range: refused.out_of_range,
+            refused_jump: refused.jump,
+            reason: self.refusal,
+            ..CommandStatusSample::initial(now)
+        })
+    }
+
     /// The newest sample with its joints in the order of the arm's; one that is
     /// about others is refused.
     fn own(
