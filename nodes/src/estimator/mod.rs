@@ -14,7 +14,9 @@ use ferntast_msgs::{
 
 use crate::{
     config::joint_names,
-    node::{Node, ports},
+    graph::Build,
+    node::{Node, Ticking, ports},
+    process::NodeError,
 };
 
 /// No measurement for this long \[s\] is a fault.
@@ -35,6 +37,18 @@ ports! {
         contact_state: ContactStateSample = FOLLOWER_CONTACT_STATE,
         transforms: TransformsSample = TF,
     }
+}
+
+/// The node of the graph.
+///
+/// # Errors
+///
+/// A parameter out of its bounds, a topic that cannot be opened.
+pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let arm = &build.session.loaded.arm;
+    let node = EstimatorNode::new(&arm.model, &arm.estimator)?;
+    let ports = EstimatorPorts::connect(build.bus)?;
+    build.join(node, ports)
 }
 
 /// The contact-force estimator.

@@ -12,9 +12,46 @@ mod tests;
 pub mod transport;
 mod velocity;
 
+use ferntast_bus::frames::LinkDirection;
+
+use crate::{graph::Build, node::Ticking, process::NodeError};
+
 pub use follower::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FollowerLinkPorts};
 pub use leader::{LeaderLinkInput, LeaderLinkNode, LeaderLinkOutput, LeaderLinkPorts};
 pub use transport::{FrameInput, FrameOutput, LinkPorts, LinkTransport};
+
+/// The operator's end, a node of the graph.
+///
+/// # Errors
+///
+/// The link or a topic cannot be opened; a parameter of the channel is out of
+/// its bounds.
+pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    let session = session_number(&build.session.session);
+    let node = LeaderLinkNode::new(loaded.laws(), session, loaded.scenario.link.buffer);
+    let (sender, receiver) = (build.open_link)(LinkDirection::Forward)?;
+    let seed = loaded.scenario.seed.wrapping_add(2);
+    let transport = LinkTransport::new(sender, receiver, loaded.link.down.clone(), seed)?;
+    let ports = LinkPorts::new(LeaderLinkPorts::connect(build.bus)?, transport);
+    build.join(node, ports)
+}
+
+/// The arm's end, a node of the graph.
+///
+/// # Errors
+///
+/// As [`make_leader`].
+pub fn make_follower(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    let session = session_number(&build.session.session);
+    let node = FollowerLinkNode::new(loaded.laws(), session, loaded.scenario.link.buffer);
+    let (sender, receiver) = (build.open_link)(LinkDirection::Back)?;
+    let seed = loaded.scenario.seed.wrapping_add(1);
+    let transport = LinkTransport::new(sender, receiver, loaded.link.up.clone(), seed)?;
+    let ports = LinkPorts::new(FollowerLinkPorts::connect(build.bus)?, transport);
+    build.join(node, ports)
+}
 
 /// Identity of a session in frames: a hash (FNV-1a, folded) of its name.
 pub fn session_number(name: &str) -> u16 {
