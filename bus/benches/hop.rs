@@ -22,7 +22,7 @@ use ferntast_bus::{
 };
 use ferntast_msgs::{
     Time,
-    sample::JointSample,
+    sample::{JointNames, JointSample},
     topics::{Delivery, Topic},
 };
 use zenoh::Wait;
@@ -113,7 +113,7 @@ fn connected(process: u32) -> Bus {
 }
 
 fn sample(number: u64) -> JointSample {
-    JointSample::zero(Time::from_nanos(number as i64 + 1))
+    JointSample::zero(JointNames::numbered(2), Time::from_nanos(number as i64 + 1))
 }
 
 /// Prints and gives median and 99th percentile [us].

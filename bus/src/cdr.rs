@@ -129,13 +129,19 @@ pub(crate) fn decode_sample<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> 
 
 #[cfg(test)]
 mod tests {
-    use ferntast_msgs::{Time, ros::sensor_msgs::JointState, sample::JointSample};
+    use ferntast_msgs::{
+        Time,
+        ros::sensor_msgs::JointState,
+        sample::{JointNames, JointSample},
+    };
     use proptest::prelude::*;
 
     use super::*;
 
     fn joint_state() -> JointState {
-        JointSample::positions(Time::from_ros(1, 2), [0.5, -1.0]).to_ros()
+        JointSample::empty(JointNames::numbered(2), Time::from_ros(1, 2))
+            .with_position([0.5, -1.0])
+            .to_ros()
     }
 
     /// By hand from the CDR rules (OMG CORBA 3.4, 9.3): alignment counts from the end of the header.

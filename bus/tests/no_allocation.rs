@@ -12,7 +12,7 @@ use std::{
 use ferntast_bus::{Bus, Depth, MemoryBus, SharedMemoryBus, SharedMemoryConfig, frames};
 use ferntast_msgs::{
     Time,
-    sample::{HealthSample, JointSample},
+    sample::{HealthSample, JointNames, JointSample},
     topics::{DIAGNOSTICS, FOLLOWER_MEASURED_JS},
 };
 
@@ -70,7 +70,9 @@ fn run(bus: &Bus) -> (u64, u64) {
         let now = Time::from_nanos(tick * 1_000_000);
         state.stamp = now;
         let published = allocations(|| {
-            joints.publish(now, &JointSample::zero(now)).unwrap();
+            joints
+                .publish(now, &JointSample::zero(JointNames::numbered(2), now))
+                .unwrap();
             health.publish(now, &state).unwrap();
         });
         let later = now.plus_nanos(1);

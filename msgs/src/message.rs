@@ -83,7 +83,7 @@ pub enum InvalidMessage {
         expected: usize,
     },
     /// A joint is missing or named otherwise.
-    #[error("joint names {found:?} where joint_1 and joint_2 are needed, each once")]
+    #[error("joint names {found:?} where 1 to 8 different names of at most 16 bytes are needed")]
     WrongJoints {
         /// The names found.
         found: Vec<String>,

@@ -7,11 +7,11 @@ use std::marker::PhantomData;
 use crate::{
     Message,
     sample::{
-        AuthoritySample, ContactStateSample, FrictionCommandSample, FrictionStatusSample,
-        HealthSample, JointSample, LawCommandSample, LinkCommandSample, LinkStatusSample,
-        OperatingStateSample, PoseSample, RecorderCommandSample, RecorderStatusSample,
-        RobotDescriptionSample, StateCommandSample, TemperatureSample, TransformsSample,
-        TwinParametersSample, WrenchSample,
+        AuthoritySample, CommandStatusSample, ContactStateSample, FrictionCommandSample,
+        FrictionStatusSample, HealthSample, JointSample, LawCommandSample, LinkCommandSample,
+        LinkStatusSample, OperatingStateSample, PoseSample, RecorderCommandSample,
+        RecorderStatusSample, RobotDescriptionSample, StateCommandSample, TemperatureSample,
+        TransformsSample, TwinParametersSample, WrenchSample,
     },
 };
 
@@ -181,6 +181,8 @@ topics! {
     FOLLOWER_CONTACT_STATE: ContactStateSample = "/follower/contact_state", Stream, from(estimator), Never;
     /// CRTK state of the arm's servo.
     FOLLOWER_OPERATING_STATE: OperatingStateSample = "/follower/operating_state", State, from(servo), Never;
+    /// What the servo makes of servo_cp and servo_jp.
+    FOLLOWER_COMMAND_STATUS: CommandStatusSample = "/follower/command_status", State, from(servo), Never;
     /// CRTK command to the arm's servo.
     FOLLOWER_STATE_COMMAND: StateCommandSample = "/follower/state_command", Event, from(console link_follower command_line), Always;
     /// Command to the servo's friction feed-forward: take over what the twin found, or give it back.

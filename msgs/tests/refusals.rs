@@ -19,7 +19,7 @@ fn known(result: Result<impl Message, InvalidMessage>) -> (&'static str, String)
 
 #[test]
 fn stamps_of_zero_before_1970_and_after_2038_are_refused() {
-    let check = |nanos| JointSample::zero(Time::from_nanos(nanos)).check();
+    let check = |nanos| JointSample::zero(JointNames::numbered(2), Time::from_nanos(nanos)).check();
     assert_eq!(check(0), Err(InvalidMessage::ZeroStamp));
     assert_eq!(check(-1), Err(InvalidMessage::ZeroStamp));
     assert_eq!(check(1), Ok(()));
@@ -27,51 +27,73 @@ fn stamps_of_zero_before_1970_and_after_2038_are_refused() {
     let nanos = 2_147_483_648_000_000_000;
     assert_eq!(check(nanos), Err(InvalidMessage::LateStamp { nanos }));
     assert_eq!(check(nanos - 1), Ok(()));
-    let ros = JointSample::zero(Time::INVALID).to_ros();
+    let ros = JointSample::zero(JointNames::numbered(2), Time::INVALID).to_ros();
     assert_eq!(JointSample::from_ros(&ros), Err(InvalidMessage::ZeroStamp));
 }
 
 #[test]
 fn joints_may_come_in_the_other_order() {
-    let mut sample = JointSample::positions(STAMP, [0.1, 0.2]);
-    sample.effort = [3.0, 4.0];
-    sample.fields = sample.fields.with(JointFields::EFFORT);
+    let joints = JointNames::numbered(2);
+    let sample = JointSample::empty(joints, STAMP)
+        .with_position([0.1, 0.2])
+        .with_effort([3.0, 4.0]);
     let mut ros = sample.to_ros();
     assert_eq!(ros.name, ["joint_1", "joint_2"]);
     assert_eq!((ros.velocity.len(), &ros.effort), (0, &vec![3.0, 4.0]));
     ros.name.reverse();
     ros.position.reverse();
     ros.effort.reverse();
-    assert_eq!(JointSample::from_ros(&ros), Ok(sample));
+    let reversed = JointSample::from_ros(&ros).unwrap();
+    assert_eq!(reversed.position(), [0.2, 0.1]);
+    assert_eq!(reversed.in_order_of(&joints), Some(sample));
+    assert_eq!(reversed.in_order_of(&JointNames::numbered(3)), None);
+    let others = JointNames::new(["joint_1", "elbow"]).unwrap();
+    assert_eq!(reversed.in_order_of(&others), None);
+}
+
+#[test]
+fn a_joint_state_holds_one_to_eight_joints_of_any_names() {
+    let names = ["a", "b", "c", "d", "e", "f", "g", "the sixteen byte"];
+    for count in 1..=names.len() {
+        let joints = JointNames::new(names[..count].iter().copied()).unwrap();
+        let sample = JointSample::empty(joints, STAMP).with_effort([1.0; MAX_JOINTS]);
+        let ros = sample.to_ros();
+        assert_eq!((ros.name.len(), ros.effort.len()), (count, count));
+        let back = JointSample::from_ros(&ros).unwrap();
+        assert_eq!((back.joints, back.fields), (joints, JointFields::EFFORT));
+        assert_eq!(back.effort[..count], sample.effort[..count]);
+    }
 }
 
 #[test]
 fn other_joints_and_lengths_are_refused() {
-    let ros = JointSample::zero(STAMP).to_ros();
+    let ros = JointSample::zero(JointNames::numbered(2), STAMP).to_ros();
     for names in [
-        ["joint_1", "joint_1"],
-        ["joint_1", "joint_3"],
-        ["", "joint_2"],
+        vec![],
+        vec!["joint_1", "joint_1"],
+        vec!["joint_1", "a joint of 17 byte"],
+        vec!["", "joint_2"],
+        vec!["1", "2", "3", "4", "5", "6", "7", "8", "9"],
     ] {
         let mut ros = ros.clone();
-        ros.name = names.map(String::from).to_vec();
+        ros.name = names.into_iter().map(String::from).collect();
         let found = ros.name.clone();
         let error = InvalidMessage::WrongJoints { found };
         assert_eq!(JointSample::from_ros(&ros), Err(error));
     }
-    let wrong = |field, found| {
+    let wrong = |field, found, expected| {
         Err(InvalidMessage::WrongLength {
             field,
             found,
-            expected: 2,
+            expected,
         })
     };
     let mut names = ros.clone();
     names.name.push("joint_3".to_owned());
-    assert_eq!(JointSample::from_ros(&names), wrong("name", 3));
+    assert_eq!(JointSample::from_ros(&names), wrong("position", 2, 3));
     let mut efforts = ros.clone();
     efforts.effort.pop();
-    assert_eq!(JointSample::from_ros(&efforts), wrong("effort", 1));
+    assert_eq!(JointSample::from_ros(&efforts), wrong("effort", 1, 2));
 }
 
 #[test]
@@ -80,7 +102,7 @@ fn numbers_that_are_not_finite_are_refused_by_field() {
         Err(InvalidMessage::NotFinite { field, .. }) => field,
         other => panic!("{other:?}"),
     };
-    let mut joint = JointSample::zero(STAMP);
+    let mut joint = JointSample::zero(JointNames::numbered(2), STAMP);
     joint.velocity[1] = f64::NAN;
     assert_eq!(refused(joint.check()), "velocity");
     let pose = PoseSample::at(STAMP, Frame::NONE, [0.0, f64::INFINITY, 0.0]);
@@ -188,7 +210,7 @@ fn flags_and_sets_have_no_other_bits() {
     state.is_busy = 2;
     let found = known(state.check().map(|()| state));
     assert_eq!(found, ("is_busy", "2".to_owned()));
-    let mut joint = JointSample::zero(STAMP);
+    let mut joint = JointSample::zero(JointNames::numbered(2), STAMP);
     joint.fields.0 |= 8;
     assert_eq!(known(joint.check().map(|()| joint)).0, "fields");
     let mut health = HealthSample::new(STAMP, "servo");

@@ -1,4 +1,7 @@
-use ferntast_msgs::{sample::JointSample, topics::Topic};
+use ferntast_msgs::{
+    sample::{JointNames, JointSample},
+    topics::Topic,
+};
 
 use super::*;
 
@@ -10,7 +13,7 @@ fn at(nanos: i64) -> Time {
 }
 
 fn sample(number: i64) -> JointSample {
-    JointSample::zero(at(number))
+    JointSample::zero(JointNames::numbered(2), at(number))
 }
 
 fn stamp(received: Option<Received<JointSample>>) -> Option<i64> {

@@ -3,7 +3,7 @@
 use ferntast_bus::{CreateError, Depth, Publisher};
 use ferntast_msgs::{
     Time,
-    sample::{JointSample, WrenchSample},
+    sample::{JointNames, JointSample, WrenchSample},
     topics::Delivery,
 };
 
@@ -217,7 +217,7 @@ pub fn invalid(world: &World) {
     let mut publisher = world.participant().publisher(topic).unwrap();
     world.meet(&mut publisher, &mut reader);
     publish(world, &mut publisher, 0..1);
-    let no_stamp = JointSample::zero(Time::INVALID);
+    let no_stamp = JointSample::zero(JointNames::numbered(2), Time::INVALID);
     let mut not_finite = sample(1);
     not_finite.velocity[1] = f64::NAN;
     for bad in [no_stamp, not_finite] {

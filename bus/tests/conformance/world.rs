@@ -17,7 +17,7 @@ use ferntast_bus::{
 };
 use ferntast_msgs::{
     Message, Time,
-    sample::JointSample,
+    sample::{JointNames, JointSample},
     topics::{Delivery, Topic},
 };
 use tempfile::TempDir;
@@ -295,14 +295,11 @@ impl<M: Message> Reader<'_, M> {
 /// A sample that can be told from the others; all values differ.
 pub fn sample(number: i32) -> JointSample {
     let x = f64::from(number);
-    JointSample {
-        position: [x, x + 0.25],
-        velocity: [-x, 0.5],
-        effort: [1e-9, x * 1e3],
-        ..JointSample::zero(Time::from_nanos(
-            1_700_000_000_000_000_000 + i64::from(number),
-        ))
-    }
+    let stamp = Time::from_nanos(1_700_000_000_000_000_000 + i64::from(number));
+    JointSample::empty(JointNames::numbered(2), stamp)
+        .with_position([x, x + 0.25])
+        .with_velocity([-x, 0.5])
+        .with_effort([1e-9, x * 1e3])
 }
 
 pub fn free_port() -> u16 {

@@ -17,7 +17,7 @@ use std::{
 use ferntast_bus::{Depth, SharedMemoryBus, SharedMemoryConfig};
 use ferntast_msgs::{
     Time,
-    sample::JointSample,
+    sample::{JointNames, JointSample},
     topics::{Delivery, Topic},
 };
 
@@ -52,10 +52,7 @@ fn publish(session: &str, life: f64) {
     let mut stream = bus.publisher(STREAM).unwrap();
     let mut state = bus.publisher(STATE).unwrap();
     let stamp = Time::from_nanos(1);
-    let sample = JointSample {
-        position: [life; 2],
-        ..JointSample::zero(stamp)
-    };
+    let sample = JointSample::zero(JointNames::numbered(2), stamp).with_position([life; 2]);
     state.publish(stamp, &sample).unwrap();
     loop {
         stream.publish(stamp, &sample).unwrap();

@@ -8,12 +8,9 @@ use ferntast_bus::mcap::{BagOptions, BagSummary, BagWriter};
 use ferntast_msgs::{
     Message, Text, Time,
     sample::{
-        AuthoritySample, ContactStateSample, Edge, Fault, Faults, Frame, FrictionCommand,
-        FrictionCommandSample, FrictionSource, FrictionStatusSample, HealthSample, JointFields,
-        JointSample, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
-        OperatingState, OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
-        RecorderStatusSample, RobotDescriptionSample, StateCommand, StateCommandSample,
-        TemperatureSample, TransformsSample, TwinParametersSample, TwinVerdict, WrenchSample,
+        Fault, Faults, Frame, HealthSample, JointNames, JointSample, LawCommandSample, Level,
+        OperatingState, OperatingStateSample, PoseSample, RobotDescriptionSample, Rule,
+        StateCommand, StateCommandSample, TransformsSample, WrenchSample,
     },
     topics::{self, Topic, Visitor},
 };
@@ -40,22 +37,37 @@ pub fn sample<M: Message>(k: u32, stamp: Time) -> Option<M> {
     pick(joint(x, stamp))
         .or_else(|| pick(pose(x, stamp)))
         .or_else(|| pick(wrench(x, stamp)))
-        .or_else(|| pick(temperature(x, stamp)))
-        .or_else(|| pick(contact_state(x, stamp)))
         .or_else(|| pick(operating_state(k, stamp)))
         .or_else(|| pick(state_command(k, stamp)))
         .or_else(|| pick(law_command(k, stamp)))
-        .or_else(|| pick(friction_command(k, stamp)))
-        .or_else(|| pick(friction_status(k, stamp)))
-        .or_else(|| pick(authority(k, stamp)))
-        .or_else(|| pick(link_status(k, stamp)))
-        .or_else(|| pick(twin_parameters(k, stamp)))
         .or_else(|| pick(health(k, stamp)))
-        .or_else(|| pick(link_command(x, stamp)))
-        .or_else(|| pick(recorder_command(stamp)))
-        .or_else(|| pick(recorder_status(k, stamp)))
         .or_else(|| pick(transforms(x, stamp)))
         .or_else(|| pick(robot_description(k)))
+        .or_else(|| declared(k, stamp))
+}
+
+/// A message that is declared with its rules (`#[message]`), all numbers distinct.
+fn declared<M: Message>(k: u32, stamp: Time) -> Option<M> {
+    let mut bytes = vec![0_u8; size_of::<M>()];
+    for (i, field) in M::FIELDS.iter().enumerate() {
+        let place = &mut bytes[field.offset..field.offset + field.size];
+        let number = f64::from(k) + 0.25 + i as f64;
+        match field.rule {
+            Rule::Stamp => place.copy_from_slice(&stamp.nanos().to_ne_bytes()),
+            Rule::Number { .. } | Rule::Numbers => {
+                place[..8].copy_from_slice(&number.to_ne_bytes());
+            }
+            Rule::Count { .. } => place.copy_from_slice(&1_u32.to_ne_bytes()),
+            Rule::Text { .. } | Rule::Texts { .. } => place[..4].copy_from_slice(b"text"),
+            Rule::Codes(codes) => place[0] = codes[k as usize % codes.len()],
+            Rule::Anything => place[0] = i as u8,
+            Rule::Flag => place[0] = 1,
+            Rule::Local => {}
+        }
+    }
+    // SAFETY: as long as the sample, of which every bit pattern is a value.
+    let sample = unsafe { bytes.as_ptr().cast::<M>().read_unaligned() };
+    (!M::FIELDS.is_empty()).then_some(sample)
 }
 
 fn pick<M: Message, T: Message>(value: T) -> Option<M> {
@@ -63,14 +75,10 @@ fn pick<M: Message, T: Message>(value: T) -> Option<M> {
 }
 
 pub fn joint(x: f64, stamp: Time) -> JointSample {
-    JointSample {
-        stamp,
-        position: [0.25 + x, -0.5 - x],
-        velocity: [1.5 + x, -2.5 - x],
-        effort: [10.5 + x, -20.25 - x],
-        fields: JointFields::ALL,
-        reserved: [0; 4],
-    }
+    JointSample::empty(JointNames::numbered(2), stamp)
+        .with_position([0.25 + x, -0.5 - x])
+        .with_velocity([1.5 + x, -2.5 - x])
+        .with_effort([10.5 + x, -20.25 - x])
 }
 
 fn pose(x: f64, stamp: Time) -> PoseSample {
@@ -109,29 +117,6 @@ fn wrench(x: f64, stamp: Time) -> WrenchSample {
     }
 }
 
-fn temperature(x: f64, stamp: Time) -> TemperatureSample {
-    TemperatureSample {
-        stamp,
-        temperature: 20.5 + x,
-        variance: 0.25,
-    }
-}
-
-fn contact_state(x: f64, stamp: Time) -> ContactStateSample {
-    ContactStateSample {
-        stamp,
-        normal_force: 7.5 + x,
-        tangential_force: 2.25,
-        friction_coefficient: 0.375,
-        friction_coefficient_error: 0.0625,
-        in_contact: 1,
-        valid: 1,
-        near_rest: 0,
-        edge: Edge::UNLUBRICATED,
-        reserved: [0; 4],
-    }
-}
-
 pub fn operating_state(k: u32, stamp: Time) -> OperatingStateSample {
     OperatingStateSample {
         stamp,
@@ -159,96 +144,6 @@ pub fn law_command(k: u32, stamp: Time) -> LawCommandSample {
     }
 }
 
-fn friction_command(k: u32, stamp: Time) -> FrictionCommandSample {
-    FrictionCommandSample::new(stamp, FrictionCommand((k % 2 + 1) as u8))
-}
-
-fn friction_status(k: u32, stamp: Time) -> FrictionStatusSample {
-    let mut sample = FrictionStatusSample {
-        commands: u64::from(k),
-        refused: Text::new("no twin was heard"),
-        count: 1,
-        source: FrictionSource::TWIN,
-        joint: Text::new("joint_2"),
-        ..FrictionStatusSample::initial(stamp)
-    };
-    sample.names[0] = Text::new("b_0");
-    sample.configured[0] = 12.5;
-    sample.values[0] = 13.25;
-    sample.targets[0] = 14.0;
-    sample
-}
-
-fn authority(k: u32, stamp: Time) -> AuthoritySample {
-    AuthoritySample {
-        stamp,
-        holder: 0x1234_5678_9ABC_DEF0,
-        refused: 42,
-        refused_count: u64::from(k),
-        reason: Text::new("another master holds the authority"),
-    }
-}
-
-fn link_status(k: u32, stamp: Time) -> LinkStatusSample {
-    let count = u64::from(k);
-    LinkStatusSample {
-        stamp,
-        round_trip: 0.020,
-        delay: 0.010,
-        jitter: 0.0005,
-        loss: 0.001,
-        age: 0.012,
-        energy_in: 1.5,
-        energy_out: 1.25,
-        energy_dissipated: 0.25,
-        sent: 1000 + count,
-        received: 998 + count,
-        lost: 1,
-        refused_length: 1,
-        refused_version: 2,
-        refused_session: 3,
-        refused_checksum: 4,
-        refused_time: 5,
-        refused_value: 6,
-        refused_replayed: 7,
-        refused_late: 8,
-        law: Text::new("position_force"),
-        session: 7,
-        end: LinkEnd::FOLLOWER,
-        connected: 1,
-        reserved: [0; 4],
-    }
-}
-
-fn twin_parameters(k: u32, stamp: Time) -> TwinParametersSample {
-    let mut sample = TwinParametersSample {
-        residual_rms: 1.5 + f64::from(k),
-        band: 1.25,
-        change_before: 13.0,
-        change_after: 25.0,
-        change_time: 61.5,
-        assessed_at: 60.0,
-        changed: Text::new("b1"),
-        change_kind: Text::new("step"),
-        candidate: Text::new("stribeck"),
-        goes_with: Text::new("velocity"),
-        count: 2,
-        out_of_band: 1,
-        verdict: TwinVerdict::MISSING,
-        joint: Text::new("joint_2"),
-        ..TwinParametersSample::initial(stamp)
-    };
-    for (i, name) in ["b0", "b1"].into_iter().enumerate() {
-        let x = i as f64;
-        sample.names[i] = Text::new(name);
-        sample.values[i] = 11.5 + x;
-        sample.off_line[i] = 11.25 + x;
-        sample.std_errors[i] = 0.125 + x;
-        sample.excitation[i] = 0.5 + x;
-    }
-    sample
-}
-
 fn health(k: u32, stamp: Time) -> HealthSample {
     let mut faults = Faults::default();
     faults.set(Fault::DeadlineMissed);
@@ -266,28 +161,6 @@ fn health(k: u32, stamp: Time) -> HealthSample {
         process: 4321,
         level: Level::WARN,
         reserved: [0; 3],
-    }
-}
-
-fn link_command(x: f64, stamp: Time) -> LinkCommandSample {
-    LinkCommandSample {
-        stamp,
-        round_trip: 0.5 + x,
-        jitter: 0.125,
-        loss: 0.25,
-    }
-}
-
-fn recorder_command(stamp: Time) -> RecorderCommandSample {
-    RecorderCommandSample::new(stamp, RecorderAction::MARK, "second contact")
-}
-
-fn recorder_status(k: u32, stamp: Time) -> RecorderStatusSample {
-    RecorderStatusSample {
-        messages: u64::from(k),
-        folder: Text::new("recordings/first"),
-        recording: 1,
-        ..RecorderStatusSample::initial(stamp)
     }
 }
 

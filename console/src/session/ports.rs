@@ -260,8 +260,8 @@ impl SessionPorts {
         let snapshot = Snapshot {
             r#type: "snapshot",
             t: now.seconds_since(began),
-            q: joints.map(|joints| short(joints.position)),
-            tau: joints.map_or([0.0; 2], |joints| short(joints.effort)),
+            q: joints.map(|joints| short(joints.position())),
+            tau: joints.map_or([0.0; 2], |joints| short(joints.effort())),
             tip: self.tip.take(now).map(|pose| plane(pose.position)),
             wanted: self.wanted.take(now).map(|pose| plane(pose.position)),
             force: self

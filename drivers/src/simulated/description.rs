@@ -9,8 +9,10 @@ use ferntast_model::{
 };
 use ferntast_msgs::{
     Text,
-    sample::{ARM_FRAMES, JOINT_NAMES, LONGEST_DESCRIPTION, RobotDescriptionSample},
+    sample::{ARM_FRAMES, LONGEST_DESCRIPTION, RobotDescriptionSample},
 };
+
+use ferntast_nodes::config::joint_names;
 
 /// Radius of a link as drawn \[m\].
 const LINK_RADIUS: f64 = 0.02;
@@ -59,6 +61,7 @@ fn write(model: &ArmModel, fronts: &[Feature], xml: &mut String) -> std::fmt::Re
         xml,
         "<link name=\"{tip}\"><visual><geometry><sphere radius=\"{TIP_RADIUS}\"/></geometry></visual></link>"
     )?;
+    let joints = joint_names(model);
     let begins = [0.0, model.arm.link[0].length];
     for index in 0..JOINTS {
         let (parent, child) = ARM_FRAMES[index];
@@ -68,7 +71,7 @@ fn write(model: &ArmModel, fronts: &[Feature], xml: &mut String) -> std::fmt::Re
             "<joint name=\"{}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
              <origin xyz=\"{} 0 0\"/><axis xyz=\"0 0 1\"/>\
              <limit lower=\"{}\" upper=\"{}\" effort=\"{}\" velocity=\"{}\"/></joint>",
-            JOINT_NAMES[index],
+            joints.get(index).unwrap_or_default(),
             begins[index],
             parameters.position_lower,
             parameters.position_upper,

@@ -8,9 +8,10 @@ pub use config::{arm_file, load_arm, load_config};
 
 use ferntast_msgs::{
     Time,
-    sample::{Fault, JointSample, Level, RobotDescriptionSample, TemperatureSample},
+    sample::{Fault, JointNames, JointSample, Level, RobotDescriptionSample, TemperatureSample},
 };
 use ferntast_nodes::{
+    config::joint_names,
     graph::{Build, NodeRow},
     node::{Node, Ticking, ports},
     process::NodeError,
@@ -58,6 +59,7 @@ fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 
 /// The simulated arm.
 pub struct ArmNode {
+    joints: JointNames,
     arm: SimulatedArm,
     last: Option<Time>,
     temperature_due: Time,
@@ -72,11 +74,13 @@ impl ArmNode {
     ///
     /// A parameter out of its bounds, a posture that touches the contour.
     pub fn new(config: &ArmConfig, seed: u64) -> Result<ArmNode, SimulatedArmError> {
+        let model = config.model();
         Ok(ArmNode {
+            joints: joint_names(&model),
             arm: SimulatedArm::new(config, seed)?,
             last: None,
             temperature_due: Time::INVALID,
-            description: Some(description::describe(&config.model())),
+            description: Some(description::describe(&model)),
         })
     }
 }
@@ -92,8 +96,16 @@ impl Node for ArmNode {
         } else {
             f64::NAN
         };
-        let torque = match &input.torque.message {
-            Some(command) if silence <= COMMAND_LIFE => command.effort,
+        let command = input
+            .torque
+            .message
+            .map(|own| own.in_order_of(&self.joints));
+        let torque = match command {
+            Some(None) => {
+                output.health.raise(Fault::CommandInvalid, Level::ERROR);
+                [0.0; 2]
+            }
+            Some(Some(command)) if silence <= COMMAND_LIFE => command.effort(),
             Some(_) => {
                 output.health.raise(Fault::CommandSilent, Level::WARN);
                 [0.0; 2]
@@ -125,17 +137,14 @@ impl Node for ArmNode {
 
 impl ArmNode {
     fn publish(&mut self, now: Time, middle: Time, measured: &Measurement, output: &mut ArmOutput) {
-        let sample = JointSample {
-            position: measured.motor_position,
-            velocity: measured.motor_velocity,
-            effort: measured.joint_torque,
-            ..JointSample::zero(now)
-        };
+        let sample = JointSample::empty(self.joints, now)
+            .with_position(measured.motor_position)
+            .with_velocity(measured.motor_velocity)
+            .with_effort(measured.joint_torque);
         output.measured_js = Some(sample);
         output.motor_js = Some(JointSample {
             stamp: middle,
-            effort: measured.motor_torque_from_current,
-            ..sample
+            ..sample.with_effort(measured.motor_torque_from_current)
         });
         if now >= self.temperature_due {
             self.temperature_due = now.plus_nanos(TEMPERATURE_PERIOD_NANOS);

@@ -9,7 +9,7 @@ use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{Term, add};
 use ferntast_model::friction::REFERENCE_TEMPERATURE;
 use ferntast_msgs::{
-    sample::{JOINT_NAMES, TwinParametersSample, TwinVerdict},
+    sample::{JointSample, TwinParametersSample, TwinVerdict},
     topics,
 };
 use serde::Serialize;
@@ -37,8 +37,9 @@ pub struct FromTwin {
     pub parameters: BTreeMap<String, FittedParameter>,
 }
 
-/// The twin's last word in a recording, and the RMS of its residual \[Nm\].
-fn last_word(path: &Path) -> Result<(TwinParametersSample, f64), WorkError> {
+/// The twin's last word in a recording, where its joint stands in joint states,
+/// and the RMS of its residual \[Nm\].
+fn last_word(path: &Path) -> Result<(TwinParametersSample, usize, f64), WorkError> {
     let twin = |reason: String| WorkError::Twin {
         path: path.to_owned(),
         reason,
@@ -60,22 +61,19 @@ fn last_word(path: &Path) -> Result<(TwinParametersSample, f64), WorkError> {
     }
     let last: TwinParametersSample = last.ok_or_else(none)?;
     let residuals = bag
-        .messages::<ferntast_msgs::sample::JointSample>(topics::TWIN_RESIDUAL_JS.name)
+        .messages::<JointSample>(topics::TWIN_RESIDUAL_JS.name)
         .map_err(|error| twin(error.to_string()))?;
+    let mut joint = None;
     let (mut squares, mut count) = (0.0, 0_u64);
     for residual in residuals {
         let residual = residual.map_err(|error| twin(error.to_string()))?.message;
-        let own = index(&last).and_then(|joint| residual.effort.get(joint).copied());
+        joint = residual.joints.index(last.joint.as_str());
+        let own = joint.and_then(|joint| residual.effort.get(joint).copied());
         squares += own.unwrap_or(0.0).powi(2);
         count += 1;
     }
-    Ok((last, (squares / count.max(1) as f64).sqrt()))
-}
-
-/// Where the twin's joint stands in joint states.
-fn index(word: &TwinParametersSample) -> Option<usize> {
-    let name = word.joint.as_str();
-    JOINT_NAMES.iter().position(|known| *known == name)
+    let joint = joint.ok_or_else(none)?;
+    Ok((last, joint, (squares / count.max(1) as f64).sqrt()))
 }
 
 /// Writes to `output` the experiment `model` on the `recording` in which its
@@ -92,13 +90,13 @@ pub fn from_twin(model: &Path, recording: &Path, output: &Path) -> Result<FromTw
         });
     }
     let parent = Experiment::read(model, &experiment::data_folder())?;
-    let (word, held_out_before) = last_word(recording)?;
+    let (word, joint, held_out_before) = last_word(recording)?;
     let other = |reason: String| WorkError::OtherModel {
         path: recording.to_owned(),
         reason,
     };
     let position = &parent.signals.position;
-    if !index(&word).is_some_and(|joint| position.ends_with(&format!("[{joint}]"))) {
+    if !position.ends_with(&format!("[{joint}]")) {
         return Err(other(format!(
             "its twin followed {}, the experiment's position is {position}",
             word.joint

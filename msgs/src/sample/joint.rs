@@ -1,4 +1,4 @@
-//! State or command of both joints.
+//! State or command of the joints.
 
 use ferntast_derive::sample;
 
@@ -7,13 +7,7 @@ use crate::{
     ros::{sensor_msgs::JointState, std_msgs::Header},
 };
 
-use super::{Plain, checks};
-
-/// The arm's number of joints.
-pub const JOINTS: usize = 2;
-
-/// Names of the joints on the wire, in the order of the arrays here.
-pub const JOINT_NAMES: [&str; JOINTS] = ["joint_1", "joint_2"];
+use super::{JointNames, MAX_JOINTS, Plain, checks, lists};
 
 /// Which of the quantities a [`JointSample`] carries (bit set).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,57 +38,139 @@ impl JointFields {
     }
 }
 
-/// Positions, velocities and efforts of joint 1 and joint 2, on the joint
-/// side of the gear. `sensor_msgs/msg/JointState` on the wire.
+/// A number of each joint; those after the last joint are zero.
+type Numbers = [f64; MAX_JOINTS];
+
+/// Positions, velocities and efforts of joints, on the joint side of the gear.
+/// `sensor_msgs/msg/JointState` on the wire.
 #[sample]
 pub struct JointSample {
     /// When it was measured or commanded.
     pub stamp: Time,
+    /// The joints, in the order of the numbers.
+    #[field(bytes = 136)]
+    pub joints: JointNames,
     /// Joint positions \[rad\].
-    pub position: [f64; JOINTS],
+    pub position: [f64; MAX_JOINTS],
     /// Joint velocities \[rad/s\].
-    pub velocity: [f64; JOINTS],
+    pub velocity: [f64; MAX_JOINTS],
     /// Joint torques \[Nm\]; which torque, the topic says.
-    pub effort: [f64; JOINTS],
+    pub effort: [f64; MAX_JOINTS],
     /// Which of the three are given; the others hold zero.
     #[field(bytes = 4)]
     pub fields: JointFields,
 }
 
+// SAFETY: a number in a transparent type.
+unsafe impl Plain for JointFields {}
+
 impl JointSample {
     /// All three quantities given as zero.
-    pub const fn zero(stamp: Time) -> JointSample {
+    pub const fn zero(joints: JointNames, stamp: Time) -> JointSample {
         JointSample {
             stamp,
-            position: [0.0; JOINTS],
-            velocity: [0.0; JOINTS],
-            effort: [0.0; JOINTS],
+            joints,
+            position: [0.0; MAX_JOINTS],
+            velocity: [0.0; MAX_JOINTS],
+            effort: [0.0; MAX_JOINTS],
             fields: JointFields::ALL,
             reserved: [0; 4],
         }
     }
 
-    /// Positions only \[rad\].
-    pub const fn positions(stamp: Time, position: [f64; JOINTS]) -> JointSample {
+    /// Nothing given yet: see [`with_position`](Self::with_position) and its like.
+    pub const fn empty(joints: JointNames, stamp: Time) -> JointSample {
         JointSample {
-            position,
-            fields: JointFields::POSITION,
-            ..JointSample::zero(stamp)
+            fields: JointFields::NONE,
+            ..JointSample::zero(joints, stamp)
         }
     }
 
-    /// Efforts only \[Nm\].
-    pub const fn efforts(stamp: Time, effort: [f64; JOINTS]) -> JointSample {
+    /// The same with these positions \[rad\].
+    pub fn with_position<const N: usize>(self, position: [f64; N]) -> JointSample {
         JointSample {
-            effort,
-            fields: JointFields::EFFORT,
-            ..JointSample::zero(stamp)
+            position: padded(position),
+            fields: self.fields.with(JointFields::POSITION),
+            ..self
         }
+    }
+
+    /// The same with these velocities \[rad/s\].
+    pub fn with_velocity<const N: usize>(self, velocity: [f64; N]) -> JointSample {
+        JointSample {
+            velocity: padded(velocity),
+            fields: self.fields.with(JointFields::VELOCITY),
+            ..self
+        }
+    }
+
+    /// The same with these efforts \[Nm\].
+    pub fn with_effort<const N: usize>(self, effort: [f64; N]) -> JointSample {
+        JointSample {
+            effort: padded(effort),
+            fields: self.fields.with(JointFields::EFFORT),
+            ..self
+        }
+    }
+
+    /// Positions of the first `N` joints \[rad\].
+    pub fn position<const N: usize>(&self) -> [f64; N] {
+        first(&self.position)
+    }
+
+    /// Velocities of the first `N` joints \[rad/s\].
+    pub fn velocity<const N: usize>(&self) -> [f64; N] {
+        first(&self.velocity)
+    }
+
+    /// Efforts of the first `N` joints \[Nm\].
+    pub fn effort<const N: usize>(&self) -> [f64; N] {
+        first(&self.effort)
+    }
+
+    /// The same with its joints in the order of `joints`; `None` where it is
+    /// not about exactly these.
+    pub fn in_order_of(&self, joints: &JointNames) -> Option<JointSample> {
+        if self.joints == *joints {
+            return Some(*self);
+        }
+        if self.joints.len() != joints.len() {
+            return None;
+        }
+        let mut sorted = JointSample {
+            fields: self.fields,
+            ..JointSample::zero(*joints, self.stamp)
+        };
+        for (to, name) in joints.iter().enumerate() {
+            let from = self.joints.index(name)?;
+            sorted.position[to] = self.position[from];
+            sorted.velocity[to] = self.velocity[from];
+            sorted.effort[to] = self.effort[from];
+        }
+        Some(sorted)
+    }
+
+    /// The three quantities by name.
+    fn quantities(&self) -> [(JointFields, &'static str, &Numbers); 3] {
+        [
+            (JointFields::POSITION, "position", &self.position),
+            (JointFields::VELOCITY, "velocity", &self.velocity),
+            (JointFields::EFFORT, "effort", &self.effort),
+        ]
     }
 }
 
-// SAFETY: a number in a transparent type.
-unsafe impl Plain for JointFields {}
+fn padded<const N: usize>(numbers: [f64; N]) -> Numbers {
+    let mut places = [0.0; MAX_JOINTS];
+    for (place, number) in places.iter_mut().zip(numbers) {
+        *place = number;
+    }
+    places
+}
+
+fn first<const N: usize>(numbers: &Numbers) -> [f64; N] {
+    std::array::from_fn(|joint| numbers.get(joint).copied().unwrap_or(0.0))
+}
 
 impl Message for JointSample {
     type Ros = JointState;
@@ -104,46 +180,42 @@ impl Message for JointSample {
     }
 
     fn to_ros(&self) -> JointState {
-        let given = |field, values: &[f64; JOINTS]| match self.fields.has(field) {
-            true => values.to_vec(),
-            false => Vec::new(),
-        };
+        let [position, velocity, effort] =
+            self.quantities()
+                .map(|(field, _, values)| match self.fields.has(field) {
+                    true => values[..self.joints.len()].to_vec(),
+                    false => Vec::new(),
+                });
         JointState {
             header: Header::new(self.stamp, ""),
-            name: JOINT_NAMES.map(String::from).to_vec(),
-            position: given(JointFields::POSITION, &self.position),
-            velocity: given(JointFields::VELOCITY, &self.velocity),
-            effort: given(JointFields::EFFORT, &self.effort),
+            name: self.joints.iter().map(String::from).collect(),
+            position,
+            velocity,
+            effort,
         }
     }
 
-    /// Takes the joints in any order; `header.frame_id` does not count.
+    /// Takes up to [`MAX_JOINTS`] joints of any names, in the order in which
+    /// they come; `header.frame_id` does not count.
     fn from_ros(ros: &JointState) -> Result<JointSample, InvalidMessage> {
-        let order = order(&ros.name)?;
-        let mut fields = JointFields::NONE;
-        let mut read = |field, name, values: &[f64]| match *values {
-            [] => Ok([0.0; JOINTS]),
-            [first, second] => {
-                fields = fields.with(field);
-                let values = [first, second];
-                Ok(order.map(|index| values[index]))
+        let joints = JointNames::new(ros.name.iter().map(String::as_str))?;
+        let mut sample = JointSample::empty(joints, ros.header.time());
+        let mut read = |field, name, values: &[f64]| {
+            let mut places = [0.0; MAX_JOINTS];
+            if !values.is_empty() {
+                sample.fields = sample.fields.with(field);
+                lists::fill(name, &mut places, joints.len() as u32, values, |own| *own)?;
             }
-            _ => Err(InvalidMessage::WrongLength {
-                field: name,
-                found: values.len(),
-                expected: JOINTS,
-            }),
+            Ok(places)
         };
         let position = read(JointFields::POSITION, "position", &ros.position)?;
         let velocity = read(JointFields::VELOCITY, "velocity", &ros.velocity)?;
         let effort = read(JointFields::EFFORT, "effort", &ros.effort)?;
         let sample = JointSample {
-            stamp: ros.header.time(),
             position,
             velocity,
             effort,
-            fields,
-            reserved: [0; 4],
+            ..sample
         };
         sample.check()?;
         Ok(sample)
@@ -151,33 +223,14 @@ impl Message for JointSample {
 
     fn check(&self) -> Result<(), InvalidMessage> {
         checks::stamp(self.stamp)?;
-        checks::finite("position", &self.position)?;
-        checks::finite("velocity", &self.velocity)?;
-        checks::finite("effort", &self.effort)?;
+        self.joints.check()?;
+        for (_, name, values) in self.quantities() {
+            checks::finite(name, &values[..self.joints.len()])?;
+        }
         if !JointFields::ALL.has(self.fields) {
             let known = "bits 1 (position), 2 (velocity), 4 (effort)";
             return Err(checks::unknown("fields", self.fields.0, known));
         }
         Ok(())
-    }
-}
-
-/// Where joint 1 and joint 2 stand among `names`.
-fn order(names: &[String]) -> Result<[usize; JOINTS], InvalidMessage> {
-    if names.len() != JOINTS {
-        return Err(InvalidMessage::WrongLength {
-            field: "name",
-            found: names.len(),
-            expected: JOINTS,
-        });
-    }
-    if names == JOINT_NAMES {
-        Ok([0, 1])
-    } else if names.iter().rev().eq(&JOINT_NAMES) {
-        Ok([1, 0])
-    } else {
-        Err(InvalidMessage::WrongJoints {
-            found: names.to_vec(),
-        })
     }
 }

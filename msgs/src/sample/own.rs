@@ -25,6 +25,32 @@ pub struct AuthoritySample {
     pub reason: Text<96>,
 }
 
+/// What the servo makes of the commands for the tip and the joints, so that a
+/// client learns why the arm does not follow it. Counts run since the start.
+#[message(CommandStatus)]
+pub struct CommandStatusSample {
+    /// when it was told
+    pub stamp: Time,
+    /// \[s\] age of the command that is followed; NaN before the first after enable or resume
+    #[field(or_nan)]
+    pub age: f64,
+    /// commands acted on
+    pub accepted: u64,
+    /// stamp of zero, or not newer than the one before
+    #[field(section = "Commands refused, by kind.")]
+    pub refused_stamp: u64,
+    /// too old, or from the future
+    pub refused_time: u64,
+    /// a number that is not finite
+    pub refused_value: u64,
+    /// outside the workspace, the reach or a joint's limits
+    pub refused_range: u64,
+    /// further from the one before than a hand can move
+    pub refused_jump: u64,
+    /// why the last one was refused; empty where none was
+    pub reason: Text<96>,
+}
+
 codes! {
     /// An edge of the contour.
     pub struct Edge {

@@ -35,8 +35,8 @@ fn number() -> impl Strategy<Value = f64> {
 
 /// Joint states with joints too many, too few, twice, in any order.
 pub fn joint() -> impl Strategy<Value = JointState> {
-    let names = vec(word(vec!["joint_1", "joint_2"]), 0..4);
-    let numbers = || vec(number(), 0..4);
+    let names = vec(word(vec!["joint_1", "joint_2", "elbow"]), 0..10);
+    let numbers = || prop_oneof![vec(number(), 0..10), Just(Vec::new())];
     (header(), names, numbers(), numbers(), numbers()).prop_map(
         |(header, name, position, velocity, effort)| JointState {
             header,

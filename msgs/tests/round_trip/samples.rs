@@ -27,19 +27,29 @@ fn text<const N: usize>() -> impl Strategy<Value = Text<N>> {
     any::<String>().prop_map(|text| Text::new(&text))
 }
 
-/// State or command of the joints, with any of the quantities given.
+/// State or command of one to eight joints, with any of the quantities given.
 pub fn joint() -> impl Strategy<Value = JointSample> {
-    let pair = || [finite(), finite()];
-    (time(), pair(), pair(), pair(), 0..8u32).prop_map(
-        |(stamp, position, velocity, effort, fields)| {
+    let numbers = || prop::collection::vec(finite(), MAX_JOINTS);
+    let names = prop_oneof![
+        (1..=MAX_JOINTS).prop_map(JointNames::numbered),
+        prop::collection::hash_set("[a-zé]{1,8}", 1..=MAX_JOINTS)
+            .prop_map(|names| JointNames::new(names.iter().map(String::as_str)).expect("names")),
+    ];
+    (time(), names, numbers(), numbers(), numbers(), 0..8u32).prop_map(
+        |(stamp, joints, position, velocity, effort, fields)| {
             let fields = JointFields(fields);
-            let given = |field, values| if fields.has(field) { values } else { [0.0; 2] };
+            let given = |field, values: Vec<f64>| {
+                std::array::from_fn(|joint| match fields.has(field) && joint < joints.len() {
+                    true => values[joint],
+                    false => 0.0,
+                })
+            };
             JointSample {
                 position: given(JointFields::POSITION, position),
                 velocity: given(JointFields::VELOCITY, velocity),
                 effort: given(JointFields::EFFORT, effort),
                 fields,
-                ..JointSample::zero(stamp)
+                ..JointSample::zero(joints, stamp)
             }
         },
     )

@@ -8,6 +8,9 @@ mod load;
 mod scenario;
 mod shipped;
 
+use ferntast_model::ArmModel;
+use ferntast_msgs::sample::JointNames;
+
 #[cfg(test)]
 pub use arm::load_model_only;
 pub use arm::{ArmFile, LoadArm};
@@ -16,3 +19,8 @@ pub use file::{ARM, FileKind, load};
 pub use laws::UnknownLaw;
 pub use load::{Loaded, load_scenario, read_hand_recording};
 pub use scenario::*;
+
+/// The arm's joints, in the order of its parameters.
+pub fn joint_names(model: &ArmModel) -> JointNames {
+    JointNames::numbered(model.joint.len())
+}

@@ -7,12 +7,13 @@ use ferntast_model::{ArmModel, ParameterError, contour::Surface};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Edge, Fault, Frame, JointFields, JointSample, Level, PoseSample,
-        TransformsSample, WrenchSample,
+        ContactStateSample, Edge, Fault, Frame, JointFields, JointNames, JointSample, Level,
+        PoseSample, TransformsSample, WrenchSample,
     },
 };
 
 use crate::{
+    config::joint_names,
     graph::Build,
     node::{Node, Ticking, ports},
     process::NodeError,
@@ -52,6 +53,7 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 
 /// The contact-force estimator.
 pub struct EstimatorNode {
+    joints: JointNames,
     estimator: ContactEstimator,
     last: Option<Time>,
     link_lengths: [f64; 2],
@@ -69,6 +71,7 @@ impl EstimatorNode {
         parameters: &EstimatorParameters,
     ) -> Result<EstimatorNode, ParameterError> {
         Ok(EstimatorNode {
+            joints: joint_names(model),
             estimator: ContactEstimator::new(model, parameters)?,
             last: None,
             link_lengths: model.arm.link.map(|link| link.length),
@@ -105,17 +108,16 @@ impl Node for EstimatorNode {
         let needed = JointFields::POSITION.with(JointFields::EFFORT);
         let estimate = self.estimator.step(
             dt,
-            &if measured.fields.has(needed) {
-                JointMeasurement {
-                    motor_position: measured.position,
-                    joint_torque: measured.effort,
-                }
-            } else {
+            &match measured.in_order_of(&self.joints) {
+                Some(measured) if measured.fields.has(needed) => JointMeasurement {
+                    motor_position: measured.position(),
+                    joint_torque: measured.effort(),
+                },
                 // The estimator takes it for what it is: no measurement.
-                JointMeasurement {
+                _ => JointMeasurement {
                     motor_position: [f64::NAN; 2],
                     joint_torque: [f64::NAN; 2],
-                }
+                },
             },
         );
         let health = &mut output.health;
@@ -181,7 +183,7 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
         (
             estimate.input_invalid,
             Fault::MeasurementInvalid,
-            "/follower/measured_js lacks position or effort, or they are no numbers",
+            "/follower/measured_js lacks position or effort, they are no numbers, or of other joints",
         ),
     ]
 }

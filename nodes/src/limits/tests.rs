@@ -7,7 +7,7 @@ use ferntast_msgs::topics;
 
 use super::*;
 use crate::{
-    config::{Loaded, load_model_only},
+    config::{Loaded, joint_names, load_model_only},
     graph::NodeRow,
     lockstep::VirtualTime,
     node::{Newest, Output},
@@ -22,7 +22,7 @@ fn model() -> ArmModel {
 
 /// A measurement in the middle of all ranges.
 fn middle(now: Time) -> JointSample {
-    let mut sample = JointSample::zero(now);
+    let mut sample = JointSample::zero(joint_names(&model()), now);
     for (position, joint) in sample.position.iter_mut().zip(&model().joint) {
         *position = 0.5 * (joint.position_lower + joint.position_upper);
     }

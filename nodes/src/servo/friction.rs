@@ -6,7 +6,7 @@ use ferntast_control::servo::{FeedForward, FoundParameter, Servo, TakeOverRefusa
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        FrictionCommand, FrictionCommandSample, FrictionSource, FrictionStatusSample, JOINT_NAMES,
+        FrictionCommand, FrictionCommandSample, FrictionSource, FrictionStatusSample, JointNames,
         MOST_PARAMETERS, TwinParametersSample,
     },
 };
@@ -31,14 +31,25 @@ pub(super) enum Refusal {
 }
 
 /// Follows commands to the feed-forward, and tells of it.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct FrictionKeeper {
+    joints: JointNames,
     commands: u64,
     refused: Option<Refusal>,
     due: Time,
 }
 
 impl FrictionKeeper {
+    /// Of an arm of those joints.
+    pub(super) fn new(joints: JointNames) -> FrictionKeeper {
+        FrictionKeeper {
+            joints,
+            commands: 0,
+            refused: None,
+            due: Time::default(),
+        }
+    }
+
     /// Follows `command`; gives what there is to say of it on `/diagnostics`.
     pub(super) fn follow(
         &mut self,
@@ -50,9 +61,9 @@ impl FrictionKeeper {
         self.commands += 1;
         self.due = now;
         let done = match command.command {
-            FrictionCommand::TAKE_OVER => take_over(now, twin, servo),
+            FrictionCommand::TAKE_OVER => take_over(now, twin, &self.joints, servo),
             _ => {
-                for joint in 0..JOINT_NAMES.len() {
+                for joint in 0..self.joints.len() {
                     if let Some(own) = servo.feed_forward_mut(joint) {
                         own.give_back();
                     }
@@ -65,11 +76,7 @@ impl FrictionKeeper {
     }
 
     /// What is fed forward at each joint, when it is time to tell.
-    pub(super) fn tell(
-        &mut self,
-        now: Time,
-        servo: &Servo,
-    ) -> Option<[FrictionStatusSample; JOINT_NAMES.len()]> {
+    pub(super) fn tell(&mut self, now: Time, servo: &Servo) -> Option<[FrictionStatusSample; 2]> {
         if now < self.due {
             return None;
         }
@@ -78,7 +85,7 @@ impl FrictionKeeper {
             true => PERIOD_ON_THE_WAY_NANOS,
             false => PERIOD_NANOS,
         });
-        let mut names = JOINT_NAMES.into_iter();
+        let mut names = self.joints.iter();
         Some(all.map(|own| self.status(now, names.next().unwrap_or_default(), own)))
     }
 
@@ -107,6 +114,7 @@ impl FrictionKeeper {
 fn take_over(
     now: Time,
     twin: Option<&TwinParametersSample>,
+    joints: &JointNames,
     servo: &mut Servo,
 ) -> Result<Text<96>, Refusal> {
     let twin = twin.ok_or(Refusal::NoTwin)?;
@@ -130,7 +138,7 @@ fn take_over(
         };
     }
     let name = twin.joint.as_str();
-    let joint = JOINT_NAMES.iter().position(|known| *known == name);
+    let joint = joints.index(name);
     let own = joint.and_then(|joint| servo.feed_forward_mut(joint));
     let own = own.ok_or(Refusal::NoJoint)?;
     let taken = own.take_over(found.get(..twin.len()).unwrap_or_default())?;

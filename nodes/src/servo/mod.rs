@@ -18,8 +18,9 @@ use ferntast_model::{ArmModel, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, FrictionCommandSample, FrictionStatusSample, JointFields, JointSample, Level,
-        OperatingStateSample, PoseSample, StateCommandSample, TemperatureSample,
+        CommandStatusSample, Fault, FrictionCommandSample, FrictionStatusSample, JointFields,
+        JointNames, JointSample, Level, OperatingStateSample, PoseSample, StateCommandSample,
+        TemperatureSample,
         TwinParametersSample,
     },
 };
@@ -27,10 +28,14 @@ use ferntast_msgs::{
 use friction::FrictionKeeper;
 
 use crate::{
+    config::joint_names,
     graph::Build,
-    node::{Node, StatePublisher, Ticking, ports, to_law},
+    node::{Newest, Node, StatePublisher, Ticking, ports, to_law},
     process::NodeError,
 };
+
+/// How often the servo says what became of the commands \[ns\].
+const COMMAND_STATUS_NANOS: i64 = 100_000_000;
 
 ports! {
     /// The servo's topics.
@@ -51,6 +56,7 @@ ports! {
         torque: JointSample = FOLLOWER_SERVO_JF,
         setpoint_js: JointSample = FOLLOWER_SETPOINT_JS,
         operating_state: OperatingStateSample = FOLLOWER_OPERATING_STATE,
+        command_status: CommandStatusSample = FOLLOWER_COMMAND_STATUS,
         friction_1: FrictionStatusSample = FOLLOWER_JOINT_1_FRICTION,
         friction_2: FrictionStatusSample = FOLLOWER_JOINT_2_FRICTION,
     }
@@ -70,10 +76,13 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 
 /// The joint servo.
 pub struct ServoNode {
+    joints: JointNames,
     servo: Servo,
     states: StatePublisher,
     friction: FrictionKeeper,
     message: Text<96>,
+    commands_due: Time,
+    refusal: Text<96>,
 }
 
 impl ServoNode {
@@ -84,27 +93,28 @@ impl ServoNode {
     /// A parameter out of its bounds.
     pub fn new(model: &ArmModel, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
         Ok(ServoNode {
+            joints: joint_names(model),
             servo: Servo::new(&model.arm, &model.joint, config)?,
             states: StatePublisher::default(),
-            friction: FrictionKeeper::default(),
+            friction: FrictionKeeper::new(joint_names(model)),
             message: Text::EMPTY,
+            commands_due: Time::INVALID,
+            refusal: Text::EMPTY,
         })
     }
 }
 
 /// The newest command of either kind.
-fn command(input: &ServoInput) -> Option<Command> {
+fn command(input: &ServoInput, servo_jp: Option<JointSample>) -> Option<Command> {
     let tip = input.servo_cp.message.map(|pose| Command {
         stamp_ns: pose.stamp.nanos(),
         target: Target::Tip(pose.position),
     });
-    let joints = input
-        .servo_jp
-        .message
+    let joints = servo_jp
         .filter(|sample| sample.fields.has(JointFields::POSITION))
         .map(|sample| Command {
             stamp_ns: sample.stamp.nanos(),
-            target: Target::Joints(sample.position),
+            target: Target::Joints(sample.position()),
         });
     match (tip, joints) {
         (Some(tip), Some(joints)) if joints.stamp_ns > tip.stamp_ns => Some(joints),
@@ -118,14 +128,16 @@ impl Node for ServoNode {
     type Output = ServoOutput;
 
     fn step(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
+        let measured = self.own(&input.measured_js, Fault::MeasurementInvalid, output);
+        let servo_jp = self.own(&input.servo_jp, Fault::CommandInvalid, output);
         let law_input = LawInput {
-            measurement: input.measured_js.message.map(|sample| Measurement {
+            measurement: measured.map(|sample| Measurement {
                 stamp_ns: sample.stamp.nanos(),
-                position: sample.position,
-                velocity: sample.velocity,
-                torque: sample.effort,
+                position: sample.position(),
+                velocity: sample.velocity(),
+                torque: sample.effort(),
             }),
-            command: command(input),
+            command: command(input, servo_jp),
             // One a step; a second in the same millisecond is the newer wish.
             state_command: input
                 .state_command
@@ -136,25 +148,62 @@ impl Node for ServoNode {
         self.feed_forward(now, input, output);
         let law = self.servo.step(now.nanos(), &law_input);
         self.report(&law, output);
-        output.torque = Some(JointSample {
-            effort: law.torque,
-            fields: JointFields::EFFORT,
-            ..JointSample::zero(now)
-        });
-        output.setpoint_js = Some(JointSample {
-            position: law.setpoint.map(|setpoint| setpoint.position),
-            velocity: law.setpoint.map(|setpoint| setpoint.velocity),
-            effort: law.torque,
-            fields: JointFields::ALL,
-            ..JointSample::zero(now)
-        });
+        let torque = JointSample::empty(self.joints, now).with_effort(law.torque);
+        output.torque = Some(torque);
+        output.setpoint_js = Some(
+            torque
+                .with_position(law.setpoint.map(|setpoint| setpoint.position))
+                .with_velocity(law.setpoint.map(|setpoint| setpoint.velocity)),
+        );
         output.operating_state = self
             .states
             .publish(now, law.state, law.reason, law.approaching);
+        output.command_status = self.command_status(now, &law);
     }
 }
 
 impl ServoNode {
+    /// What became of the commands: ten times a second.
+    fn command_status(&mut self, now: Time, law: &LawOutput) -> Option<CommandStatusSample> {
+        if let Some(refusal) = &law.refused {
+            self.refusal = Text::display(refusal);
+        }
+        if now < self.commands_due {
+            return None;
+        }
+        self.commands_due = now.plus_nanos(COMMAND_STATUS_NANOS);
+        let refused = &law.refusals;
+        Some(CommandStatusSample {
+            age: law.command_age,
+            accepted: law.accepted,
+            refused_stamp: refused.stamp,
+            refused_time: refused.time,
+            refused_value: refused.not_finite,
+            refused_range: refused.out_of_range,
+            refused_jump: refused.jump,
+            reason: self.refusal,
+            ..CommandStatusSample::initial(now)
+        })
+    }
+
+    /// The newest sample with its joints in the order of the arm's; one that is
+    /// about others is refused.
+    fn own(
+        &mut self,
+        newest: &Newest<JointSample>,
+        fault: Fault,
+        output: &mut ServoOutput,
+    ) -> Option<JointSample> {
+        let sample = newest.message?;
+        let own = sample.in_order_of(&self.joints);
+        if own.is_none() && newest.fresh {
+            output.health.raise(fault, Level::WARN);
+            let (found, needed) = (&sample.joints, &self.joints);
+            self.message = Text::display(format_args!("joints {found} where {needed} are needed"));
+        }
+        own
+    }
+
     fn feed_forward(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
         let temperatures = [&input.temperature_1, &input.temperature_2];
         for (joint, newest) in temperatures.into_iter().enumerate() {

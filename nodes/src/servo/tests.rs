@@ -164,3 +164,30 @@ fn what_must_not_be_taken_over_is_refused_with_a_reason() {
     bench.run(3.0, None, None);
     assert_eq!(bench.values(1), configured);
 }
+
+#[test]
+fn joint_states_of_other_joints_are_refused_and_in_another_order_are_not() {
+    let mut bench = Bench::new();
+    let step = |bench: &mut Bench, names: [&str; 2]| {
+        bench.now = bench.now.plus_nanos(1_000_000);
+        let joints = JointNames::new(names).unwrap();
+        let input = ServoInput {
+            measured_js: Newest {
+                message: Some(JointSample::zero(joints, bench.now)),
+                received: bench.now,
+                fresh: true,
+            },
+            ..ServoInput::default()
+        };
+        let mut output = ServoOutput::default();
+        output.clear();
+        bench.node.step(bench.now, &input, &mut output);
+        output.health
+    };
+    let health = step(&mut bench, ["joint_2", "joint_1"]);
+    assert!(!health.faults.has(Fault::MeasurementInvalid));
+    let health = step(&mut bench, ["joint_1", "elbow"]);
+    assert!(health.faults.has(Fault::MeasurementInvalid));
+    let needed = "joints joint_1, elbow where joint_1, joint_2 are needed";
+    assert_eq!(health.message.as_str(), needed);
+}

@@ -96,6 +96,8 @@ impl Alignment {
 
 #[cfg(test)]
 mod tests {
+    use ferntast_msgs::sample::JointNames;
+
     use super::*;
 
     fn at(millis: i64) -> Time {
@@ -103,14 +105,16 @@ mod tests {
     }
 
     fn run(order: &[(char, i64)]) -> (Vec<(i64, f64)>, u64) {
+        let joints = JointNames::numbered(2);
         let mut alignment = Alignment::new(1);
         let mut out = Vec::new();
         for &(topic, millis) in order {
             match topic {
-                'p' => alignment.measured(&JointSample::positions(at(millis), [0.0, 1.0])),
+                'p' => alignment
+                    .measured(&JointSample::empty(joints, at(millis)).with_position([0.0, 1.0])),
                 // The torque is the time.
                 _ => alignment.motor(
-                    &JointSample::efforts(at(millis), [0.0, millis as f64]),
+                    &JointSample::empty(joints, at(millis)).with_effort([0.0, millis as f64]),
                     |aligned| {
                         let millis = aligned.stamp.nanos_since(at(0)) / 1_000_000;
                         out.push((millis, aligned.motor_torque));

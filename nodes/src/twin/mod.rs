@@ -25,8 +25,8 @@ use ferntast_identification::twin::{Flag, Twin, TwinOutput, TwinSample};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, JointFields, JointSample, Level, TemperatureSample, TwinParametersSample,
-        TwinVerdict,
+        Fault, JointFields, JointNames, JointSample, Level, TemperatureSample,
+        TwinParametersSample, TwinVerdict,
     },
 };
 
@@ -88,6 +88,7 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 /// The twin of a joint.
 pub struct TwinNode {
     twin: Twin,
+    joints: JointNames,
     joint: usize,
     takes_joint_torque: bool,
     takes_temperature: bool,
@@ -110,6 +111,7 @@ impl TwinNode {
     pub fn new(model: TwinModel, assessing: Assessing) -> Self {
         Self {
             twin: model.twin,
+            joints: model.joints,
             joint: model.joint,
             takes_joint_torque: model.joint_torque,
             takes_temperature: model.temperature,
@@ -159,7 +161,7 @@ impl TwinNode {
         };
         let stamp = origin.plus_nanos((row.time * 1e9).round() as i64);
         let joint_sample = |effort: f64| {
-            let mut sample = JointSample::zero(stamp);
+            let mut sample = JointSample::zero(self.joints, stamp);
             for (values, value) in [
                 (&mut sample.position, row.position),
                 (&mut sample.velocity, row.velocity),
@@ -181,7 +183,7 @@ impl TwinNode {
             self.parameters_due = row.time + PARAMETERS_EVERY;
             let (sample, words) = report::of(
                 &self.twin,
-                self.joint,
+                self.joints.get(self.joint).unwrap_or_default(),
                 stamp,
                 self.assessor.newest(),
                 self.goes_with.name(),
@@ -216,10 +218,9 @@ impl Node for TwinNode {
         let mut flags = [None; 2];
         for sample in input.measured_js.iter() {
             self.heard = Some(now);
-            if sample.fields.has(needed) {
-                self.alignment.measured(sample);
-            } else {
-                flags[0] = Some(Flag::NotFinite);
+            match sample.in_order_of(&self.joints) {
+                Some(sample) if sample.fields.has(needed) => self.alignment.measured(&sample),
+                _ => flags[0] = Some(Flag::NotFinite),
             }
         }
         let mut aligned = Vec::new();
@@ -271,7 +272,7 @@ impl TwinNode {
             }
             Some(Flag::NotFinite) => (
                 Fault::MeasurementInvalid,
-                "/follower/measured_js lacks position or effort, or they are no numbers",
+                "/follower/measured_js lacks position or effort, they are no numbers, or of other joints",
             ),
             Some(Flag::TimeBackwards) => (
                 Fault::MeasurementInvalid,

@@ -7,7 +7,11 @@ use ferntast_lab::{
     experiment::{self, Experiment, ExperimentError, Signals},
     recording::{self, LoadError},
 };
-use ferntast_msgs::{sample::MOST_PARAMETERS, topics};
+use ferntast_model::JOINTS;
+use ferntast_msgs::{
+    sample::{JointNames, MOST_PARAMETERS},
+    topics,
+};
 
 /// How long the estimator of the parameters remembers \[s\].
 const MEMORY: f64 = 20.0;
@@ -16,7 +20,9 @@ const MEMORY: f64 = 20.0;
 pub struct TwinModel {
     /// The twin, fitted to the experiment's recordings.
     pub twin: Twin,
-    /// The joint that it follows, from 0.
+    /// The arm's joints.
+    pub joints: JointNames,
+    /// The joint among them that it follows, from 0.
     pub joint: usize,
     /// Whether its recordings have a joint torque.
     pub joint_torque: bool,
@@ -102,6 +108,7 @@ pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
     }
     Ok(TwinModel {
         twin,
+        joints: JointNames::numbered(JOINTS),
         joint,
         joint_torque: experiment.signals.joint_torque.is_some(),
         temperature: experiment.signals.temperature.is_some(),

@@ -5,7 +5,7 @@ use std::fmt;
 use ferntast_identification::twin::{Change, ChangeKind, Twin, TwinParameter};
 use ferntast_msgs::{
     Text, Time,
-    sample::{JOINT_NAMES, MOST_PARAMETERS, TwinParametersSample, TwinVerdict},
+    sample::{MOST_PARAMETERS, TwinParametersSample, TwinVerdict},
 };
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ use super::assess::Assessment;
 /// for where the lab has not told it.
 pub(super) fn of(
     twin: &Twin,
-    joint: usize,
+    joint: &str,
     stamp: Time,
     assessment: &Assessment,
     goes_with: Option<&str>,
@@ -32,7 +32,7 @@ pub(super) fn of(
             true => Text::new(goes_with.unwrap_or_default()),
             false => assessment.goes_with,
         },
-        joint: Text::new(JOINT_NAMES.get(joint).copied().unwrap_or_default()),
+        joint: Text::new(joint),
         ..TwinParametersSample::initial(stamp)
     };
     let parameters = twin.parameters();

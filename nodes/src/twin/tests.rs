@@ -94,6 +94,7 @@ fn model_of(
     };
     TwinModel {
         twin: Twin::new(&dataset, &spec, 20.0).unwrap(),
+        joints: JointNames::numbered(2),
         joint: 1,
         joint_torque,
         temperature: false,
@@ -105,11 +106,10 @@ const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
 /// The samples of a moment: position of the joint, its torque free of load,
 /// motor torque.
 fn samples(stamp: Time, position: f64, torque: f64, k: u64) -> (JointSample, JointSample) {
-    let sample = |effort: f64| JointSample {
-        position: [9.0, position],
-        effort: [9.0, effort],
-        fields: JointFields::POSITION.with(JointFields::EFFORT),
-        ..JointSample::zero(stamp)
+    let sample = |effort: f64| {
+        JointSample::empty(JointNames::numbered(2), stamp)
+            .with_position([9.0, position])
+            .with_effort([9.0, effort])
     };
     // A torque sensor that is free of load still makes noise.
     (sample(1e-6 * noise(k)), sample(torque))

@@ -12,14 +12,14 @@ use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Time,
     sample::{
-        ContactStateSample, Frame, JointFields, JointSample, OperatingState, OperatingStateSample,
+        ContactStateSample, Frame, JointNames, JointSample, OperatingState, OperatingStateSample,
         PoseSample, StateCommand, StateCommandSample,
     },
     topics,
 };
 use ferntast_nodes::{
     bridge::forwarder::{Carrier, Carry, Stamp},
-    config::Loaded,
+    config::{Loaded, joint_names},
     graph::STEP_NANOS,
     lockstep::{RunError, VirtualTime},
     process::SessionContext,
@@ -67,6 +67,7 @@ struct Commander {
     program: Box<dyn Program>,
     begin: Time,
     seen: Subscriber<ContactStateSample>,
+    names: JointNames,
     joints: Publisher<JointSample>,
     tip: Publisher<PoseSample>,
     state: Publisher<StateCommandSample>,
@@ -96,11 +97,7 @@ impl Commander {
         let _ = match self.program.target(time, dt, &seen) {
             Target::Joints(position) => self.joints.publish(
                 now,
-                &JointSample {
-                    position,
-                    fields: JointFields::POSITION,
-                    ..JointSample::zero(now)
-                },
+                &JointSample::empty(self.names, now).with_position(position),
             ),
             Target::Tip([x, y]) => self
                 .tip
@@ -166,6 +163,7 @@ impl Bench {
             program,
             begin: command_at.plus_seconds(SETTLE),
             seen: bus.subscriber(topics::FOLLOWER_CONTACT_STATE, Depth::Newest)?,
+            names: joint_names(&self.arm.model()),
             joints: bus.publisher(topics::FOLLOWER_SERVO_JP)?,
             tip: bus.publisher(topics::FOLLOWER_SERVO_CP)?,
             state: bus.publisher(topics::FOLLOWER_STATE_COMMAND)?,

@@ -26,7 +26,7 @@ use ferntast_lab::{
 };
 use ferntast_msgs::{
     Time,
-    sample::{JointFields, JointSample},
+    sample::{JointNames, JointSample},
     topics,
 };
 
@@ -74,13 +74,11 @@ pub fn record(
     for at in (0..log.position.len()).step_by(EVERY) {
         let time = at as f64 * flexible_joint_bench::LOG_PERIOD;
         let stamp = Time::from_nanos(super::MISSION_START * 1_000_000_000).plus_seconds(time);
-        let sides = JointSample {
-            position: [log.motor_position[at], log.position[at]],
-            effort: [log.joint_torque[at], 0.0],
-            fields: JointFields::POSITION.with(JointFields::EFFORT),
-            ..JointSample::zero(stamp)
-        };
-        let drives = JointSample::efforts(stamp, [log.motor_torque[at], log.brake_torque[at]]);
+        let empty = JointSample::empty(JointNames::numbered(2), stamp);
+        let sides = empty
+            .with_position([log.motor_position[at], log.position[at]])
+            .with_effort([log.joint_torque[at]]);
+        let drives = empty.with_effort([log.motor_torque[at], log.brake_torque[at]]);
         publish(&mut measured, &sides)
             .and_then(|()| publish(&mut motor, &drives))
             .map_err(|e| error(e.to_string()))?;

@@ -67,13 +67,13 @@ fn recorded(session: &Session, arm: &str, scenario: &str) -> Vec<(Truth, Contact
         if let Some(last) = last {
             let effort = torque
                 .filter(|torque| now.seconds_since(torque.stamp) <= COMMAND_LIFE)
-                .map_or([0.0; 2], |torque| torque.effort);
+                .map_or([0.0; 2], |torque| torque.effort());
             arm.advance(effort, now.seconds_since(last));
         }
         last = Some(now);
         let again = arm.measure();
-        assert_eq!(again.motor_position, sample.position, "at {now:?}");
-        assert_eq!(again.joint_torque, sample.effort, "at {now:?}");
+        assert_eq!(again.motor_position, sample.position(), "at {now:?}");
+        assert_eq!(again.joint_torque, sample.effort(), "at {now:?}");
         // The estimate is stamped with the measurement it was made from.
         while contacts.next_if(|next| next.stamp < now).is_some() {}
         if let Some(contact) = contacts.next_if(|next| next.stamp == now) {

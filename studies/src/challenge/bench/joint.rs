@@ -9,7 +9,7 @@ use ferntast_benches::{
 use ferntast_bus::Bus;
 use ferntast_identification::{Dataset, JointType, ModelSpec, Session};
 use ferntast_msgs::{
-    sample::{JointFields, JointSample, TemperatureSample},
+    sample::{JointNames, JointSample, TemperatureSample},
     topics,
 };
 
@@ -96,15 +96,12 @@ impl TestBench for HiddenEffect {
             for (index, time) in session.time.iter().enumerate() {
                 let stamp = stamp(session.start, *time);
                 // The bench has one joint; the other stands still.
-                let sample = JointSample {
-                    position: [session.position[index], 0.0],
-                    effort: [session.joint_torque[index], 0.0],
-                    fields: JointFields::POSITION.with(JointFields::EFFORT),
-                    ..JointSample::zero(stamp)
-                };
+                let empty = JointSample::empty(JointNames::numbered(2), stamp);
+                let sample = empty
+                    .with_position([session.position[index]])
+                    .with_effort([session.joint_torque[index]]);
                 measured.publish(stamp, &sample)?;
-                let torque = [session.motor_torque[index], 0.0];
-                motor.publish(stamp, &JointSample::efforts(stamp, torque))?;
+                motor.publish(stamp, &empty.with_effort([session.motor_torque[index]]))?;
                 let warm = TemperatureSample::new(stamp, session.temperature[index]);
                 temperature.publish(stamp, &warm)?;
             }
