@@ -18,8 +18,8 @@ pub const MAX_LENGTH: usize = 64 * 1024;
 /// Header of plain little-endian CDR: representation identifier 0x0001, options zero.
 const HEADER_LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];
 
-/// RTPS pads a payload to a multiple of four bytes; more left over than that is no padding.
-const MAX_PADDING: usize = 3;
+/// RTPS pads a payload to a multiple of four bytes; more left over than that is no padding \[byte\].
+pub const MAX_PADDING: usize = 3;
 
 /// Writes `message` with its header into `bytes`, replacing what was there.
 /// The buffer grows on the first messages only.

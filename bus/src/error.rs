@@ -65,7 +65,7 @@ pub enum OpenError {
     },
     /// No permission to use the directory or shared memory.
     #[error(
-        "no permission for shared memory at {path} ({reason}); run as the user who started the session, or mend the directory's owner"
+        "no permission for shared memory at {path} ({reason}); run as the user who started the session, or correct the directory's owner"
     )]
     NoPermission {
         /// The directory or segment.
@@ -83,7 +83,7 @@ pub enum OpenError {
         /// What the system said.
         reason: String,
     },
-    /// What remains: the library's own words.
+    /// Anything else, in the library's words.
     #[error("cannot open {transport}: {reason}")]
     Middleware {
         /// Which way across.
@@ -103,7 +103,7 @@ pub enum CreateError {
         topic: String,
         /// The type asked for.
         wanted: String,
-        /// The type that the topic carries.
+        /// The type of the topic.
         found: String,
     },
     /// All places on the topic are taken.
@@ -162,7 +162,7 @@ pub enum CreateError {
         /// What the library said.
         reason: String,
     },
-    /// What remains: the library's own words.
+    /// Anything else, in the library's words.
     #[error("cannot create a {what} on {topic} over {transport}: {reason}")]
     Middleware {
         /// Which way across.
@@ -203,7 +203,7 @@ pub enum PublishError {
         /// What the system said.
         reason: String,
     },
-    /// What remains: the library's own words.
+    /// Anything else, in the library's words.
     #[error("{topic} cannot be sent over {transport}: {reason}")]
     Middleware {
         /// Which way across.
@@ -320,7 +320,7 @@ pub enum SendError {
         /// Bytes allowed.
         limit: usize,
     },
-    /// What remains: the library's own words.
+    /// Anything else, in the library's words.
     #[error("cannot send on {link}: {reason}")]
     Middleware {
         /// The link's key.

@@ -11,6 +11,7 @@ use ferntast_bus::{
     mcap::{BagReader, McapBus, info, repair},
 };
 use ferntast_msgs::{Time, sample::JointSample, topics::FOLLOWER_MEASURED_JS};
+use mcap::records::op;
 use mcap_samples::write_sample_bag;
 use proptest::prelude::*;
 
@@ -59,6 +60,39 @@ fn use_bytes(bytes: &[u8]) -> (usize, Option<u64>) {
     let path = directory.path().join("any.mcap");
     fs::write(&path, bytes).unwrap();
     use_it(&path, &directory.path().join("mended.mcap"))
+}
+
+fn record(opcode: u8, body: &[u8]) -> Vec<u8> {
+    [&[opcode][..], &(body.len() as u64).to_le_bytes(), body].concat()
+}
+
+/// Footer and magic number of a file whose summary begins at `start`.
+fn end(start: u64) -> Vec<u8> {
+    let body = [&start.to_le_bytes()[..], &[0; 12]].concat();
+    [record(op::FOOTER, &body), mcap::MAGIC.to_vec()].concat()
+}
+
+/// The `mcap` crate's own readers panic at these, or never end.
+#[test]
+fn files_that_the_library_does_not_survive() {
+    // An attachment without its checksum: in the summary, and in the data.
+    let attachment = record(op::ATTACHMENT, &[0; 32]);
+    for summary_start in [0, 8] {
+        let file = [mcap::MAGIC, &attachment, &end(summary_start)].concat();
+        assert_eq!(use_bytes(&file), (0, Some(0)));
+    }
+    // A chunk that says how long it is and does not hold it; the index, and
+    // the summary with it, is found by the library's writer.
+    let whole = &RECORDING.0;
+    let chunk = mcap::Summary::read(whole).unwrap().unwrap().chunk_indexes[0].clone();
+    let data = chunk.compressed_data_offset().unwrap() as usize;
+    for place in [data, data + chunk.compressed_size as usize / 2] {
+        let mut file = whole.clone();
+        file[place] ^= 0xFF;
+        let (read, repaired) = use_bytes(&file);
+        assert!(read > 0, "messages of the other chunks");
+        assert_eq!(repaired, Some(read as u64));
+    }
 }
 
 proptest! {

@@ -12,9 +12,11 @@
 //! * [`lab`]: recordings and experiments of a folder.
 
 pub mod assets;
+mod error;
 pub mod guard;
 pub mod lab;
 pub mod server;
 pub mod session;
 
-pub use server::{Listen, Server, ServerError};
+pub use error::ServerError;
+pub use server::{Listen, Server};

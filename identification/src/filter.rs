@@ -8,6 +8,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::signals::quantile;
+
 /// A finite impulse response, centred.
 #[derive(Clone, Debug)]
 pub struct Kernel {
@@ -172,12 +174,11 @@ pub fn noise_level(signal: &[f64]) -> f64 {
         return 0.0;
     }
     let rms = (differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64).sqrt();
-    let middle = differences.len() / 2;
-    let (_, median, _) = differences.select_nth_unstable_by(middle, f64::total_cmp);
+    let median = quantile(&mut differences, 0.5);
     // A coarse encoder stands still most of the time: its median is zero then,
     // and the root mean square says more.
-    let level = if *median > 0.2 * rms {
-        *median / 0.6745
+    let level = if median > 0.2 * rms {
+        median / 0.6745
     } else {
         rms
     };

@@ -7,6 +7,7 @@ use crate::data::{Dataset, Session};
 use crate::effects::Point;
 use crate::filter::{Kernel, least_width, noise_level, thin};
 use crate::stated_filter::StatedFilter;
+use crate::statistics;
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
 /// Sampling faster than this \[s\] tells nothing more about friction.
@@ -193,13 +194,9 @@ impl Filters {
     }
 }
 
-/// The value below which a share of the numbers lies; 0 for none.
-pub fn quantile(numbers: &mut [f64], share: f64) -> f64 {
-    if numbers.is_empty() {
-        return 0.0;
-    }
-    let at = ((numbers.len() - 1) as f64 * share).round() as usize;
-    *numbers.select_nth_unstable_by(at, f64::total_cmp).1
+/// The [quantile](statistics::quantile) of the numbers; 0 of none.
+pub(crate) fn quantile(numbers: &mut [f64], share: f64) -> f64 {
+    statistics::quantile(numbers, share, f64::total_cmp).unwrap_or(0.0)
 }
 
 impl Signals {

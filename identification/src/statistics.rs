@@ -1,8 +1,24 @@
-//! Tests of significance.
+//! Quantiles and tests of significance.
+
+use std::cmp::Ordering;
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::gram::pseudo_inverse;
+
+/// The quantile of n numbers at `share` (0: the least, 1: the largest): the one
+/// of rank round((n − 1) · share), not interpolated, so that the median of an
+/// even count is the larger of the middle two. `None` of no numbers, which are
+/// left in another order.
+pub fn quantile<T: Copy>(
+    numbers: &mut [T],
+    share: f64,
+    order: impl FnMut(&T, &T) -> Ordering,
+) -> Option<T> {
+    let last = numbers.len().checked_sub(1)?;
+    let rank = (last as f64 * share).round() as usize;
+    Some(*numbers.select_nth_unstable_by(rank.min(last), order).1)
+}
 
 /// Probability that an F-distributed number with `numerator` and
 /// `denominator` degrees of freedom exceeds `f`.

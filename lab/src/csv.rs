@@ -1,7 +1,8 @@
 //! Signals from CSV: columns by the names in the first line.
 
 use std::{
-    io::Read,
+    fs::File,
+    io::{self, BufReader, Read},
     path::{Path, PathBuf},
 };
 
@@ -20,10 +21,10 @@ pub enum CsvError {
         /// The file.
         path: PathBuf,
         /// What the system said.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// The file is not CSV: lines of different length, not UTF-8, cut off.
-    #[error("{}: {reason}; mend the line, or export the file anew", path.display())]
+    #[error("{}: {reason}; correct the line, or export the file again", path.display())]
     Format {
         /// The file.
         path: PathBuf,
@@ -113,11 +114,8 @@ pub fn read_file(
     time: Option<&str>,
     wanted: &[(&str, &str)],
 ) -> Result<Columns, CsvError> {
-    let file = std::fs::File::open(path).map_err(|source| CsvError::Open {
-        path: path.to_owned(),
-        source,
-    })?;
-    read(std::io::BufReader::new(file), path, time, wanted)
+    let file = File::open(path).map_err(|source| open_error(path, source))?;
+    read(BufReader::new(file), path, time, wanted)
 }
 
 /// The names of the file's columns.
@@ -126,11 +124,20 @@ pub fn read_file(
 ///
 /// [`CsvError`].
 pub fn column_names(path: &Path) -> Result<Vec<String>, CsvError> {
-    let file = std::fs::File::open(path).map_err(|source| CsvError::Open {
+    let file = File::open(path).map_err(|source| open_error(path, source))?;
+    Ok(open(BufReader::new(file), path)?.1)
+}
+
+fn open_error(path: &Path, source: io::Error) -> CsvError {
+    let path = path.to_owned();
+    CsvError::Open { path, source }
+}
+
+fn format_error(path: &Path, error: &csv::Error) -> CsvError {
+    CsvError::Format {
         path: path.to_owned(),
-        source,
-    })?;
-    Ok(open(std::io::BufReader::new(file), path)?.1)
+        reason: error.to_string(),
+    }
 }
 
 /// The same from anything that can be read; `path` is for messages.
@@ -144,10 +151,6 @@ pub fn read(
     time: Option<&str>,
     wanted: &[(&str, &str)],
 ) -> Result<Columns, CsvError> {
-    let format = |error: csv::Error| CsvError::Format {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    };
     let (mut reader, names) = open(source, path)?;
     let columns = Selected::new(path, &names, time, wanted)?;
     let mut read = Columns {
@@ -156,7 +159,10 @@ pub fn read(
         lines: Vec::new(),
     };
     let mut record = csv::StringRecord::new();
-    while reader.read_record(&mut record).map_err(format)? {
+    while reader
+        .read_record(&mut record)
+        .map_err(|error| format_error(path, &error))?
+    {
         let line = record.position().map_or(0, csv::Position::line);
         columns.take(path, &record, line, &mut read)?;
     }
@@ -173,24 +179,13 @@ fn open<R: Read>(
     mut source: R,
     path: &Path,
 ) -> Result<(csv::Reader<impl Read + use<R>>, Vec<String>), CsvError> {
-    let format = |error: csv::Error| CsvError::Format {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    };
-    // The first bytes tell what stands between the columns.
-    let mut head = vec![0; 4096];
-    let mut length = 0;
-    while let Some(room) = head.get_mut(length..).filter(|room| !room.is_empty()) {
-        match source.read(room) {
-            Ok(0) => break,
-            Ok(count) => length += count,
-            Err(source) => {
-                let path = path.to_owned();
-                return Err(CsvError::Open { path, source });
-            }
-        }
-    }
-    head.truncate(length);
+    // The first bytes show what separates the columns.
+    let mut head = Vec::new();
+    source
+        .by_ref()
+        .take(4096)
+        .read_to_end(&mut head)
+        .map_err(|source| open_error(path, source))?;
     // A byte order mark says nothing in UTF-8.
     if head.starts_with(b"\xef\xbb\xbf") {
         head.drain(..3);
@@ -199,10 +194,10 @@ fn open<R: Read>(
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .delimiter(delimiter(&head))
-        .from_reader(std::io::Cursor::new(head).chain(source));
+        .from_reader(io::Cursor::new(head).chain(source));
     let names: Vec<String> = reader
         .headers()
-        .map_err(format)?
+        .map_err(|error| format_error(path, &error))?
         .iter()
         .map(str::to_owned)
         .collect();

@@ -9,11 +9,12 @@
 //! * [`report`]: a page to look at,
 //! * [`work`]: what is done with all that, by command line and page alike.
 //!
-//! What the data say about a model is told by `ferntast-identification`.
+//! What the data say about a model is the work of `ferntast-identification`.
 
 pub mod csv;
 pub mod experiment;
 pub mod message_path;
+mod numbers;
 pub mod recording;
 pub mod report;
 pub mod schema;

@@ -7,13 +7,16 @@
 //! * the **ROS 2 form** ([`ros`]): the standard type that a stock ROS 2 knows,
 //!   with strings and sequences. It exists on DDS, on Zenoh and in recordings.
 //!
-//! [`Message`] ties the two together. Names of topics are in [`topics`], the
+//! [`Message`] ties the two together. A message of ferntast's own is declared
+//! once (`sample/own.rs`): its sample, ROS 2 form, conversions, checks and
+//! `.msg` text come from that, and `msgs/msg/` is written by a test. Names of topics are in [`topics`], the
 //! `.msg` texts, schemas and RIHS01 type hashes in [`interface`].
 //!
 //! This folder is at the same time the ROS 2 package `ferntast_msgs`
 //! (`package.xml`, `CMakeLists.txt`, `msg/`).
 
 pub mod interface;
+mod layout;
 mod message;
 pub mod ros;
 pub mod sample;
@@ -21,6 +24,7 @@ mod text;
 mod time;
 pub mod topics;
 
+pub use layout::Sample;
 pub use message::{InvalidMessage, Message, RosMessage};
 pub use text::Text;
 pub use time::Time;

@@ -2,33 +2,33 @@
 
 use serde::{Serialize, de::DeserializeOwned};
 
-use crate::Time;
+use crate::{layout::Sample, time::Time};
 
 /// A message in its ROS 2 form: a serde struct whose fields follow the
 /// `.msg` definition in order, so that CDR comes out right.
 pub trait RosMessage:
-    Serialize + DeserializeOwned + Clone + PartialEq + Send + Sync + 'static
+    Serialize + DeserializeOwned + Clone + std::fmt::Debug + PartialEq + Send + Sync + 'static
 {
     /// Full interface name, `package/msg/Type`.
     const INTERFACE: &'static str;
+    /// The `.msg` text, where the message is declared in Rust; those of other
+    /// packages are in `msgs/standard/`.
+    const DEFINITION: Option<&'static str> = None;
 }
 
-/// A message in its sample form.
-///
-/// # Safety
-///
-/// The type is `repr(C)`, holds no pointer, no `bool`, no `enum` and no other
-/// type with forbidden bit patterns: it is read from shared memory as found
-/// there, and every bit pattern must be a value (that [`Message::check`] may
-/// then refuse).
-pub unsafe trait Message:
-    Copy + std::fmt::Debug + PartialEq + Send + Sync + 'static
-{
+/// A message: the sample that nodes read and write, and its ROS 2 form.
+/// Shared memory is read as found there: what is wrong with a sample,
+/// [`Message::check`] says.
+pub trait Message: Sample {
     /// The same message as ROS 2 knows it.
     type Ros: RosMessage;
 
     /// When the content was measured or commanded.
     fn stamp(&self) -> Time;
+
+    /// Notes who sent it, as the middleware tells senders apart, where the
+    /// message has a place for that.
+    fn set_source(&mut self, _source: u64) {}
 
     /// The ROS 2 form. Allocates: not for the control path.
     fn to_ros(&self) -> Self::Ros;

@@ -89,10 +89,10 @@ fn numbers_that_are_not_finite_are_refused_by_field() {
     assert_eq!(refused(wrench.check()), "wrench.force");
     let temperature = TemperatureSample::new(STAMP, f64::NEG_INFINITY);
     assert_eq!(refused(temperature.check()), "temperature");
-    let mut link = LinkStatusSample::idle(STAMP, LinkEnd::LEADER);
+    let mut link = LinkStatusSample::initial(STAMP);
     link.round_trip = f64::INFINITY;
     assert_eq!(refused(link.check()), "round_trip");
-    let mut contact = ContactStateSample::unknown(STAMP);
+    let mut contact = ContactStateSample::initial(STAMP);
     contact.friction_coefficient_error = f64::NEG_INFINITY;
     assert_eq!(refused(contact.check()), "friction_coefficient_error");
     let mut health = HealthSample::new(STAMP, "servo");
@@ -102,14 +102,20 @@ fn numbers_that_are_not_finite_are_refused_by_field() {
 
 #[test]
 fn what_was_not_measured_yet_is_valid() {
-    let link = LinkStatusSample::idle(STAMP, LinkEnd::FOLLOWER);
+    let link = LinkStatusSample::initial(STAMP);
     assert!(link.round_trip.is_nan() && link.check().is_ok());
     assert!(link.to_ros().delay.is_nan());
-    let contact = ContactStateSample::unknown(STAMP);
+    let contact = ContactStateSample::initial(STAMP);
     let ros = contact.to_ros();
     assert!(ros.friction_coefficient.is_nan());
     assert_eq!(ros.friction_coefficient_error, f64::INFINITY);
-    assert_eq!(ContactStateSample::from_ros(&ros), Ok(contact));
+    let back = ContactStateSample::from_ros(&ros).unwrap();
+    assert!(back.friction_coefficient.is_nan());
+    let half = ContactStateSample {
+        friction_coefficient_error: 0.1,
+        ..contact
+    };
+    assert!(half.check().is_err(), "an error without a number");
     let health = HealthSample::new(STAMP, "servo");
     assert!(health.input_age.is_nan() && health.check().is_ok());
 }
@@ -162,8 +168,13 @@ fn codes_without_a_name_are_refused_on_both_sides() {
         "state",
     );
     refused(StateCommandSample::new(STAMP, StateCommand(9)), "string");
-    refused(LinkStatusSample::idle(STAMP, LinkEnd(9)), "end");
-    let mut contact = ContactStateSample::unknown(STAMP);
+    let end = LinkEnd(9);
+    let link = LinkStatusSample {
+        end,
+        ..LinkStatusSample::initial(STAMP)
+    };
+    refused(link, "end");
+    let mut contact = ContactStateSample::initial(STAMP);
     contact.edge = Edge(9);
     refused(contact, "edge");
     let mut health = HealthSample::new(STAMP, "servo");
@@ -213,10 +224,14 @@ fn laws_have_names_of_at_most_24_bytes() {
 }
 
 #[test]
-fn friction_is_told_of_a_known_joint_from_a_known_source() {
-    let good = FrictionStatusSample::nothing(STAMP, 1);
+fn friction_is_told_of_a_joint_from_a_known_source() {
+    let good = FrictionStatusSample {
+        joint: Text::new("joint_2"),
+        ..FrictionStatusSample::initial(STAMP)
+    };
     assert_eq!(FrictionStatusSample::from_ros(&good.to_ros()), Ok(good));
-    refused(FrictionStatusSample::nothing(STAMP, 9), "joint");
+    let nameless = FrictionStatusSample::initial(STAMP);
+    assert_eq!(known(nameless.check().map(|()| nameless)).0, "joint");
     let mut status = good.to_ros();
     status.source = "guessed".to_owned();
     let found = known(FrictionStatusSample::from_ros(&status));
@@ -232,7 +247,8 @@ fn friction_is_told_of_a_known_joint_from_a_known_source() {
 fn a_twin_s_lists_are_of_one_length_and_fit() {
     let known_sample = TwinParametersSample {
         count: 2,
-        ..TwinParametersSample::nothing(STAMP, 1)
+        joint: Text::new("joint_2"),
+        ..TwinParametersSample::initial(STAMP)
     };
     let good = known_sample.to_ros();
     assert_eq!(TwinParametersSample::from_ros(&good), Ok(known_sample));
@@ -257,12 +273,11 @@ fn a_twin_s_lists_are_of_one_length_and_fit() {
     let mut many = known_sample;
     many.count = MOST_PARAMETERS as u32 + 1;
     assert!(many.check().is_err());
-    refused(TwinParametersSample::nothing(STAMP, 9), "joint");
 }
 
 #[test]
 fn identities_are_hexadecimal() {
-    let mut sample = AuthoritySample::nobody(STAMP);
+    let mut sample = AuthoritySample::initial(STAMP);
     sample.holder = 0xab;
     let mut ros = sample.to_ros();
     assert_eq!(
@@ -352,7 +367,12 @@ fn error_texts_list_every_name() {
             $(assert_eq!(list(&$code::ALL, |code| code.name().unwrap()), $code::KNOWN);)*
         };
     }
-    same!(Edge LinkEnd OperatingState StateCommand);
+    same!(Edge FrictionCommand FrictionSource LinkEnd OperatingState RecorderAction StateCommand TwinVerdict);
+    let levels: Vec<String> = Level::ALL
+        .iter()
+        .map(|level| format!("{} ({})", level.0, level.name().unwrap()))
+        .collect();
+    assert_eq!(levels.join(", "), Level::KNOWN);
     let frames = list(&Frame::ALL, |frame| frame.name().unwrap());
     assert_eq!(format!("(empty){frames}"), Frame::KNOWN);
     assert_eq!(list(&Fault::ALL, |fault| fault.name()), Fault::KNOWN);

@@ -3,7 +3,7 @@
 
 use std::{path::Path, time::Instant};
 
-use ferntast_nodes::{config, lockstep::LockstepSession};
+use ferntast_nodes::{arm, config, lockstep::LockstepSession};
 
 /// Virtual time of one run \[s\].
 const SECONDS: f64 = 20.0;
@@ -38,7 +38,8 @@ fn report(name: &str, mut run: impl FnMut() -> Result<f64, String>) {
 
 /// Virtual seconds per second.
 fn run(record: Option<&Path>) -> Result<f64, String> {
-    let mut loaded = config::load_scenario("rokviss").map_err(|error| error.to_string())?;
+    let mut loaded =
+        config::load_scenario("rokviss", arm::load_arm).map_err(|error| error.to_string())?;
     loaded.complete().map_err(|error| error.to_string())?;
     let begun = Instant::now();
     let mut session = LockstepSession::new(&loaded, record).map_err(|error| error.to_string())?;

@@ -4,7 +4,7 @@
 use ferntast_bus::{Bus, CreateError, Depth, Publisher, Subscriber, SubscriberCounts};
 use ferntast_msgs::{
     Message, Time,
-    topics::{self, Delivery, Topic, Visitor},
+    topics::{self, Row, Topic, Visitor},
 };
 
 /// How a topic is carried.
@@ -47,7 +47,6 @@ struct TypedLane<M: Message> {
     carry: Carry,
     due: Time,
     stamp: Stamp,
-    prepare: fn(&mut M, u64),
 }
 
 /// Which time a carried message is published with.
@@ -62,7 +61,10 @@ pub enum Stamp {
 impl<M: Message> TypedLane<M> {
     fn send(&mut self, now: Time, received: ferntast_bus::Received<M>, carried: &mut Carried) {
         let mut message = received.message;
-        (self.prepare)(&mut message, received.source);
+        if received.source != 0 {
+            // Commands are told apart by their sender.
+            message.set_source(received.source);
+        }
         let time = match self.stamp {
             Stamp::Round => now,
             Stamp::Received => received.received,
@@ -128,7 +130,7 @@ impl Carrier {
         from: &Bus,
         to: &Bus,
         stamp: Stamp,
-        how: impl Fn(&str, Delivery) -> Carry,
+        how: impl Fn(Row) -> Carry,
     ) -> Result<(), CreateError> {
         struct Add<'a, F> {
             carrier: &'a mut Carrier,
@@ -138,13 +140,13 @@ impl Carrier {
             how: F,
             result: Result<(), CreateError>,
         }
-        impl<F: Fn(&str, Delivery) -> Carry> Visitor for Add<'_, F> {
+        impl<F: Fn(Row) -> Carry> Visitor for Add<'_, F> {
             fn topic<M: Message>(&mut self, topic: Topic<M>) {
-                let carry = (self.how)(topic.name, topic.delivery);
+                let carry = (self.how)(topic.row());
                 if carry != Carry::Not && self.result.is_ok() {
-                    self.result =
-                        self.carrier
-                            .add(topic, self.from, self.to, self.stamp, carry, |_, _| {});
+                    self.result = self
+                        .carrier
+                        .add(topic, self.from, self.to, self.stamp, carry);
                 }
             }
         }
@@ -160,8 +162,7 @@ impl Carrier {
         add.result
     }
 
-    /// Adds one topic; `prepare` may change a message given its source before
-    /// it is sent on.
+    /// Adds one topic.
     ///
     /// # Errors
     ///
@@ -173,7 +174,6 @@ impl Carrier {
         to: &Bus,
         stamp: Stamp,
         carry: Carry,
-        prepare: fn(&mut M, u64),
     ) -> Result<(), CreateError> {
         let depth = match carry {
             Carry::Every { queue } => Depth::Queue(queue),
@@ -186,7 +186,6 @@ impl Carrier {
             carry,
             due: Time::INVALID,
             stamp,
-            prepare,
         }));
         Ok(())
     }

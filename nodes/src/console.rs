@@ -11,13 +11,13 @@ use ferntast_console::{
     session::{Desk, GripModel, PageHand, SessionPorts},
 };
 use ferntast_control::delay::Law;
+use ferntast_emulation::{
+    channel::{ChannelConfig, Jitter},
+    hand::{HandImpedance, ImpedanceParameters},
+};
 use ferntast_msgs::{
     sample::{Fault, Faults, Level},
     topics,
-};
-use ferntast_sim::{
-    channel::{ChannelConfig, Jitter},
-    hand::{HandImpedance, ImpedanceParameters},
 };
 use serde_json::{Value, json};
 

@@ -31,8 +31,8 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     let mut relay = Relay::new(around, PERIOD_NANOS)?;
     let mut carrier = Carrier::default();
     let to = Bus::Foxglove(foxglove);
-    carrier.add_topics(&around.bus, &to, Stamp::Received, |topic, delivery| {
-        goes_out(topic, delivery, section)
+    carrier.add_topics(&around.bus, &to, Stamp::Received, |topic| {
+        goes_out(topic, section)
     })?;
     relay.begin(carrier);
     pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {

@@ -4,15 +4,12 @@
 //! process with DDS or a Zenoh router.
 
 use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
-use ferntast_msgs::{
-    sample::PoseSample,
-    topics::{self, Delivery},
-};
+use ferntast_msgs::topics::{Authority, Delivery, Row, Switch};
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
     choice_parameter::ChoiceParameter,
-    config::{GatewaySection, HandSource, Middleware},
+    config::{GatewaySection, HandSource, Middleware, Scenario},
     pace,
     process::{PERIOD_NANOS, ProcessError, Surroundings},
     relay::Relay,
@@ -40,25 +37,24 @@ pub fn open_ros(section: &GatewaySection) -> Result<Bus, ferntast_bus::OpenError
     })
 }
 
-/// Topics that come in from ROS 2 and are not sent out.
-fn comes_in(topic: &str, crtk: bool) -> bool {
-    topic == topics::FOLLOWER_STATE_COMMAND.name
-        || topic == topics::LEADER_STATE_COMMAND.name
-        || topic == topics::LINK_LAW_COMMAND.name
-        || topic == topics::FOLLOWER_FRICTION_COMMAND.name
-        || topic == topics::FOLLOWER_SERVO_JP.name
-        || topic == topics::LINK_COMMAND.name
-        || topic == topics::RECORDER_COMMAND.name
-        || (crtk && topic == topics::LEADER_MEASURED_CP.name)
+/// Whether peers on ROS 2 may publish a topic of that authority into a session
+/// of that scenario. What comes in does not go out.
+pub fn comes_in(authority: Authority, scenario: &Scenario) -> bool {
+    match authority {
+        Authority::Never => false,
+        Authority::Always => true,
+        Authority::ByScenario(Switch::ServoJp) => scenario.gateway.servo_jp,
+        Authority::ByScenario(Switch::CrtkHand) => scenario.hand.source == HandSource::Crtk,
+    }
 }
 
 /// How a topic goes out to those who watch.
-pub fn goes_out(topic: &str, delivery: Delivery, section: &GatewaySection) -> Carry {
-    match delivery {
+pub fn goes_out(topic: Row, section: &GatewaySection) -> Carry {
+    match topic.delivery {
         Delivery::State => Carry::Newest { period_nanos: 0 },
         Delivery::Event => Carry::Every { queue: 64 },
         Delivery::Stream => {
-            let rate = if topic.starts_with("/leader/") {
+            let rate = if topic.name.starts_with("/leader/") {
                 section.leader_rate
             } else {
                 section.stream_rate
@@ -78,45 +74,20 @@ pub fn goes_out(topic: &str, delivery: Delivery, section: &GatewaySection) -> Ca
 pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
     let scenario = &around.context.loaded.scenario;
     let section = &scenario.gateway;
-    let crtk = scenario.hand.source == HandSource::Crtk;
     let ros = open_ros(section)?;
     let mut carrier = Carrier::default();
-    carrier.add_topics(&around.bus, &ros, Stamp::Round, |topic, delivery| {
-        if comes_in(topic, crtk) {
-            Carry::Not
-        } else {
-            goes_out(topic, delivery, section)
+    carrier.add_topics(&around.bus, &ros, Stamp::Round, |topic| {
+        match comes_in(topic.authority, scenario) {
+            true => Carry::Not,
+            false => goes_out(topic, section),
         }
     })?;
-    let every = Carry::Every { queue: 64 };
-    let (bus, stamp) = (&around.bus, Stamp::Round);
-    for topic in [topics::FOLLOWER_STATE_COMMAND, topics::LEADER_STATE_COMMAND] {
-        carrier.add(topic, &ros, bus, stamp, every, |_, _| {})?;
-    }
-    carrier.add(topics::LINK_LAW_COMMAND, &ros, bus, stamp, every, |_, _| {})?;
-    let friction = topics::FOLLOWER_FRICTION_COMMAND;
-    carrier.add(friction, &ros, bus, stamp, every, |_, _| {})?;
-    carrier.add(
-        topics::FOLLOWER_SERVO_JP,
-        &ros,
-        bus,
-        stamp,
-        every,
-        |_, _| {},
-    )?;
-    carrier.add(topics::LINK_COMMAND, &ros, bus, stamp, every, |_, _| {})?;
-    carrier.add(topics::RECORDER_COMMAND, &ros, bus, stamp, every, |_, _| {})?;
-    if crtk {
-        carrier.add(
-            topics::LEADER_MEASURED_CP,
-            &ros,
-            bus,
-            stamp,
-            every,
-            // The master tells hands apart by their sender.
-            |pose: &mut PoseSample, source| pose.source = source,
-        )?;
-    }
+    carrier.add_topics(&ros, &around.bus, Stamp::Round, |topic| {
+        match comes_in(topic.authority, scenario) {
+            true => Carry::Every { queue: 64 },
+            false => Carry::Not,
+        }
+    })?;
 
     let mut parameters = [
         ChoiceParameter::law(around, &ros)?,
@@ -131,4 +102,53 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         relay.round(wake.now, wake, |_, _| {})
     });
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use ferntast_msgs::{
+        Message,
+        topics::{self, Topic, Visitor},
+    };
+
+    use super::*;
+
+    struct ComesIn<'a>(&'a Scenario, Vec<&'static str>);
+
+    impl Visitor for ComesIn<'_> {
+        fn topic<M: Message>(&mut self, topic: Topic<M>) {
+            if comes_in(topic.authority, self.0) {
+                self.1.push(topic.name);
+            }
+        }
+    }
+
+    fn incoming(scenario: &Scenario) -> Vec<&'static str> {
+        let mut visitor = ComesIn(scenario, Vec::new());
+        topics::visit(&mut visitor);
+        visitor.1
+    }
+
+    #[test]
+    fn joint_positions_come_in_only_where_the_scenario_says_so() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../config/scenarios");
+        let text = std::fs::read_to_string(folder.join("rokviss.toml")).unwrap();
+        let mut scenario: Scenario = toml::from_str(&text).unwrap();
+        scenario.hand.source = HandSource::Scripted;
+        let usual = [
+            "/follower/state_command",
+            "/follower/friction_command",
+            "/leader/state_command",
+            "/link/law_command",
+            "/link/command",
+            "/recorder/command",
+        ];
+        assert_eq!(incoming(&scenario), usual);
+        scenario.gateway.servo_jp = true;
+        scenario.hand.source = HandSource::Crtk;
+        let all = incoming(&scenario);
+        assert!(all.contains(&topics::FOLLOWER_SERVO_JP.name));
+        assert!(all.contains(&topics::LEADER_MEASURED_CP.name));
+        assert_eq!(all.len(), usual.len() + 2);
+    }
 }

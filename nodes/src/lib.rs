@@ -1,25 +1,20 @@
-//! The nodes, their supervisor and the ferntast command.
+//! The nodes, their configuration, and what runs them: supervisor, lockstep, replay.
 
 pub mod arm;
 pub mod carry;
-pub mod challenge;
 mod choice_parameter;
 pub mod clock;
-pub mod command;
 pub mod config;
 mod console;
-pub mod doctor;
 pub mod estimator;
-pub mod experiment;
 mod foxglove;
-mod gateway;
+pub mod gateway;
 pub mod link;
 pub mod lockstep;
 pub mod master;
 pub mod node;
 pub mod node_name;
 mod pace;
-pub mod paper;
 mod player;
 pub mod process;
 mod recorder;
@@ -28,6 +23,5 @@ pub mod replay;
 mod say;
 pub mod servo;
 pub mod session;
-mod stop;
-pub mod sweep;
+pub mod stop;
 pub mod twin;

@@ -1,5 +1,9 @@
 //! All nodes in one process and virtual time.
 
+mod executor;
+
+pub use executor::{Lockstep, LockstepError};
+
 use std::collections::BTreeMap;
 
 use ferntast_bus::{Bus, CreateError, McapBus, MemoryBus, frames, mcap::BagOptions};
@@ -13,10 +17,7 @@ use ferntast_msgs::{
     },
     topics::{self, Topic},
 };
-use ferntast_sim::{
-    arm::SimulatedArmError,
-    lockstep::{Lockstep, LockstepError},
-};
+use ferntast_sim::arm::SimulatedArmError;
 
 use crate::{
     arm::{ArmNode, ArmPorts},
@@ -94,7 +95,10 @@ pub struct LockstepSession {
 }
 
 /// Puts a node on the bus and among the executor's tasks.
-pub(crate) fn add<P: Ports + 'static>(
+/// # Errors
+///
+/// A topic that cannot be opened.
+pub fn add<P: Ports + 'static>(
     executor: &mut Lockstep<'static, Bus>,
     bus: &Bus,
     name: NodeName,
@@ -156,7 +160,7 @@ impl LockstepSession {
         let ports = LinkPorts::new(FollowerLinkPorts::connect(&bus)?, at_follower);
         let node = FollowerLinkNode::new(loaded.laws(), session, scenario.link.buffer);
         add(&mut executor, &bus, NodeName::LinkFollower, node, ports)?;
-        let servo = ServoNode::new(&loaded.arm.model(), &scenario.servo)?;
+        let servo = ServoNode::new(&loaded.arm.model, &scenario.servo)?;
         add(
             &mut executor,
             &bus,
@@ -164,7 +168,7 @@ impl LockstepSession {
             servo,
             ServoPorts::connect(&bus)?,
         )?;
-        let estimator = EstimatorNode::new(&loaded.arm.model(), &loaded.arm.estimator)?;
+        let estimator = EstimatorNode::new(&loaded.arm.model, &loaded.arm.estimator)?;
         add(
             &mut executor,
             &bus,
@@ -172,7 +176,7 @@ impl LockstepSession {
             estimator,
             EstimatorPorts::connect(&bus)?,
         )?;
-        let arm = ArmNode::new(&loaded.arm, seed)?;
+        let arm = ArmNode::new(&loaded.arm.whole()?, seed)?;
         add(
             &mut executor,
             &bus,
@@ -199,12 +203,9 @@ impl LockstepSession {
                 let recording = McapBus::create_with(folder, bag_options(loaded, "lockstep"))
                     .map_err(|error| RunError::Recording(error.to_string()))?;
                 let mut carrier = Carrier::default();
-                carrier.add_topics(
-                    &bus,
-                    &Bus::Mcap(recording.clone()),
-                    Stamp::Received,
-                    |_, _| Carry::Every { queue: 64 },
-                )?;
+                carrier.add_topics(&bus, &Bus::Mcap(recording.clone()), Stamp::Received, |_| {
+                    Carry::Every { queue: 64 }
+                })?;
                 executor.add(PERIOD_NANOS, move |now: Time, _: &mut Bus| {
                     carrier.carry(now);
                 })?;

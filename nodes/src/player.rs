@@ -28,19 +28,14 @@ fn open(
     let recording = McapBus::open(path).map_err(|error| bad(error.to_string()))?;
     let except = &around.context.play.except;
     let mut carrier = Carrier::default();
-    carrier.add_topics(
-        &Bus::Mcap(recording),
-        &around.bus,
-        Stamp::Round,
-        |topic, _| {
-            let recorded = info.topics.iter().any(|own| own.name == topic);
-            if recorded && !except.iter().any(|name| name == topic) {
-                Carry::Every { queue: 512 }
-            } else {
-                Carry::Not
-            }
-        },
-    )?;
+    carrier.add_topics(&Bus::Mcap(recording), &around.bus, Stamp::Round, |topic| {
+        let recorded = info.topics.iter().any(|own| own.name == topic.name);
+        if recorded && !except.iter().any(|name| name == topic.name) {
+            Carry::Every { queue: 512 }
+        } else {
+            Carry::Not
+        }
+    })?;
     Ok((carrier, start, end))
 }
 

@@ -9,9 +9,10 @@ use ferntast_bus::{
     Bus, CreateError, OpenError, SharedMemoryBus, SharedMemoryConfig,
     frames::{LinkDirection, LinkEndpoint, ZenohLink, ZenohLinkConfig},
 };
+use ferntast_emulation::channel::ChannelConfig;
 use ferntast_model::ParameterError;
 use ferntast_msgs::sample::{Fault, Faults};
-use ferntast_sim::{arm::SimulatedArmError, channel::ChannelConfig};
+use ferntast_sim::arm::SimulatedArmError;
 
 use crate::{
     arm::{ArmNode, ArmPorts},
@@ -197,17 +198,17 @@ pub fn run(
     match name {
         NodeName::Arm => around.run(
             standing,
-            ArmNode::new(&loaded.arm, scenario.seed)?,
+            ArmNode::new(&loaded.arm.whole()?, scenario.seed)?,
             ArmPorts::connect(bus)?,
         ),
         NodeName::Servo => around.run(
             standing,
-            ServoNode::new(&loaded.arm.model(), &scenario.servo)?,
+            ServoNode::new(&loaded.arm.model, &scenario.servo)?,
             ServoPorts::connect(bus)?,
         ),
         NodeName::Estimator => around.run(
             standing,
-            EstimatorNode::new(&loaded.arm.model(), &loaded.arm.estimator)?,
+            EstimatorNode::new(&loaded.arm.model, &loaded.arm.estimator)?,
             EstimatorPorts::connect(bus)?,
         ),
         NodeName::Twin => {

@@ -77,10 +77,8 @@ fn begin(
     let bag = create(&folder, options)?;
     let to = Bus::Mcap(bag.clone());
     let mut carrier = Carrier::default();
-    carrier.add_topics(&around.bus, &to, Stamp::Received, |_, delivery| {
-        Carry::Every {
-            queue: SharedMemoryBus::max_queue(delivery),
-        }
+    carrier.add_topics(&around.bus, &to, Stamp::Received, |topic| Carry::Every {
+        queue: SharedMemoryBus::max_queue(topic.delivery),
     })?;
     relay.begin(carrier);
     Ok(Recording { folder, bag })
@@ -109,7 +107,7 @@ pub fn run(around: &Surroundings) -> Result<(), ProcessError> {
         Some(bag) => Some(begin(around, &mut relay, folder(bag, around.generation))?),
         None => None,
     };
-    let mut status = RecorderStatusSample::idle(around.clock.now());
+    let mut status = RecorderStatusSample::initial(around.clock.now());
     let mut trouble = Text::<96>::EMPTY;
     let mut due = Time::INVALID;
     pace::run(around.clock, PERIOD_NANOS, around.stop, |wake| {

@@ -11,13 +11,13 @@ use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Message, Time,
     sample::Faults,
-    topics::{self, Delivery, Topic},
+    topics::{self, Topic},
 };
 use serde::Serialize;
 
 use crate::{
     carry::{Carrier, Carry, Stamp},
-    config::Scenario,
+    config::{ArmFile, Scenario},
     estimator::{EstimatorNode, EstimatorPorts},
     node::{HealthMeter, Runner},
     node_name::NodeName,
@@ -168,7 +168,7 @@ pub fn run(
     }
     let bad = |error: serde_json::Error| ReplayError::Origin(error.to_string());
     let scenario: Scenario = serde_json::from_str(entry("scenario")).map_err(bad)?;
-    let arm: ferntast_sim::arm::ArmConfig = serde_json::from_str(entry("arm")).map_err(bad)?;
+    let arm: ArmFile = serde_json::from_str(entry("arm")).map_err(bad)?;
 
     let bus = Bus::Memory(MemoryBus::new());
     let recording = Bus::Mcap(ferntast_bus::McapBus::open(path).map_err(|error| open(&error))?);
@@ -183,7 +183,8 @@ pub fn run(
     };
     let there = |name: &str| topics_there.iter().any(|own| own == name);
     let mut carrier = Carrier::default();
-    carrier.add_topics(&recording, &bus, Stamp::Received, |topic, _: Delivery| {
+    carrier.add_topics(&recording, &bus, Stamp::Received, |topic| {
+        let topic = topic.name;
         let wanted = INPUTS.contains(&topic)
             || match twin.is_some() {
                 true => OF_THE_TWIN.contains(&topic),
@@ -231,14 +232,14 @@ pub fn run(
 
     let meter =
         |name: NodeName| HealthMeter::new(name.as_str(), 0, PERIOD_NANOS, Faults::default());
-    let servo = ServoNode::new(&arm.model(), &scenario.servo)?;
+    let servo = ServoNode::new(&arm.model, &scenario.servo)?;
     let mut servo = Runner::new(
         &bus,
         servo,
         ServoPorts::connect(&bus)?,
         meter(NodeName::Servo),
     )?;
-    let estimator = EstimatorNode::new(&arm.model(), &arm.estimator)?;
+    let estimator = EstimatorNode::new(&arm.model, &arm.estimator)?;
     let ports = EstimatorPorts::connect(&bus)?;
     let mut estimator = Runner::new(&bus, estimator, ports, meter(NodeName::Estimator))?;
 

@@ -4,17 +4,19 @@
 use std::fs;
 
 use ferntast_bus::{Depth, Subscriber};
+use ferntast_emulation::hand::Motion;
 use ferntast_msgs::{
     sample::{Fault, FrictionCommand, JointSample},
     topics,
 };
 use ferntast_nodes::{
+    arm::{arm_file, load_arm},
     config::{self, Loaded},
     lockstep::LockstepSession,
     servo::FrictionSummary,
     twin,
 };
-use ferntast_sim::hand::Motion;
+use ferntast_sim::arm::ArmConfig;
 
 /// The joint of the tests, from 0.
 const JOINT: usize = 1;
@@ -39,9 +41,11 @@ effects = ["coulomb", "load_coulomb", "viscous", "quadratic_viscous", "cubic_vis
 /// The scenario at 10 °C; where `free` the hand stays clear of everything and
 /// is quicker: so friction shows over speed.
 fn scenario(seed: u64, free: bool) -> Loaded {
-    let mut loaded = config::load_scenario("rokviss").expect("a session in lockstep");
+    let mut loaded = config::load_scenario("rokviss", load_arm).expect("a session in lockstep");
     loaded.scenario.seed = seed;
-    loaded.arm.truth.environment.temperature = Some([10.0; 2]);
+    change_arm(&mut loaded, |arm| {
+        arm.truth.environment.temperature = Some([10.0; 2]);
+    });
     if free {
         let hand = loaded
             .scenario
@@ -62,16 +66,25 @@ fn scenario(seed: u64, free: bool) -> Loaded {
 
 /// All of joint 2's true friction times `factor`.
 fn worn(loaded: &mut Loaded, factor: f64) {
-    let friction = &mut loaded.arm.truth.joint[JOINT].friction;
-    for value in [
-        &mut friction.b_0,
-        &mut friction.b_0t,
-        &mut friction.b_1,
-        &mut friction.b_2,
-        &mut friction.b_3,
-    ] {
-        *value *= factor;
-    }
+    change_arm(loaded, |arm| {
+        let friction = &mut arm.truth.joint[JOINT].friction;
+        for value in [
+            &mut friction.b_0,
+            &mut friction.b_0t,
+            &mut friction.b_1,
+            &mut friction.b_2,
+            &mut friction.b_3,
+        ] {
+            *value *= factor;
+        }
+    });
+}
+
+/// Changes the simulated arm.
+fn change_arm(loaded: &mut Loaded, change: impl FnOnce(&mut ArmConfig)) {
+    let mut arm = loaded.arm.whole().expect("a simulated arm");
+    change(&mut arm);
+    loaded.arm = arm_file(&arm).expect("a simulated arm");
 }
 
 /// A twin, fitted to 40 s of `loaded` with another seed.
@@ -242,8 +255,10 @@ fn five_minutes_of_a_right_model_raise_no_alarm() {
 #[test]
 fn a_rising_temperature_is_a_drift() {
     let mut loaded = scenario(8, true);
-    loaded.arm.truth.environment.temperature = None;
-    loaded.arm.truth.joint[JOINT].thermal.capacity = 3000.0;
+    change_arm(&mut loaded, |arm| {
+        arm.truth.environment.temperature = None;
+        arm.truth.joint[JOINT].thermal.capacity = 3000.0;
+    });
     let mut session = LockstepSession::new(&loaded, None).unwrap();
     session.add_twin(twin_of(&loaded)).unwrap();
     session.run(240.0);

@@ -10,9 +10,9 @@ use ferntast_control::haptics::{HandCommand, Master, MasterConfig};
 use ferntast_control::meter::{Arrival, LinkMeasurement, Meter};
 use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{Command, Measurement, Servo, ServoConfig, ServoInput, Target};
+use ferntast_emulation::channel::{Blackout, Channel, ChannelConfig, LinkConfig};
+use ferntast_emulation::hand::{Hand, ScriptedHand, ScriptedHandConfig};
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
-use ferntast_sim::channel::{Blackout, Channel, ChannelConfig, LinkConfig};
-use ferntast_sim::hand::{Hand, ScriptedHand, ScriptedHandConfig};
 
 const TICK: f64 = 1e-3;
 const TICK_NS: i64 = 1_000_000;

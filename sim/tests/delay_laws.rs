@@ -1,7 +1,7 @@
 //! What the literature says of each delay law, reached in simulation.
 
 use ferntast_control::delay::Law;
-use ferntast_sim::channel::{ChannelConfig, LinkConfig};
+use ferntast_emulation::channel::{ChannelConfig, LinkConfig};
 use ferntast_sim::teleoperation::{Environment, Outcome, Trial};
 
 fn run(name: &str, round_trip: f64, environment: Environment) -> Outcome {

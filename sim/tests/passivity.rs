@@ -6,11 +6,11 @@
 //! `FERNTAST_PASSIVITY_CASES` sets how many seeds are tried.
 
 use ferntast_control::delay::{Guarantee, Law};
-use ferntast_model::ParameterError;
-use ferntast_sim::channel::{
+use ferntast_emulation::channel::{
     Bandwidth, Blackout, ChannelConfig, Jitter, LinkConfig, Loss, Reordering,
 };
-use ferntast_sim::hand::ImpedanceParameters;
+use ferntast_emulation::hand::ImpedanceParameters;
+use ferntast_model::ParameterError;
 use ferntast_sim::teleoperation::{Environment, Outcome, Trial};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{RngCore, SeedableRng};

@@ -8,7 +8,7 @@ use ros2_client::{
     qos::{Durability, History, WhenFull},
 };
 
-/// How long a reliable writer waits for room before it gives up on a message.
+/// How long a reliable writer waits for space before it gives up on a message.
 const WAIT: WhenFull = WhenFull::Wait(Duration::from_millis(10));
 
 /// What is offered, and, with the reader's own depth, asked for.

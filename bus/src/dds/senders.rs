@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use ros2_client::{Gid, dds::rustdds::DomainParticipant};
 
-/// How many senders are remembered before they are looked up anew.
+/// How many senders are remembered before they are looked up again.
 const REMEMBERED: usize = 256;
 
 /// What is known of the senders of one topic.

@@ -9,7 +9,7 @@ use super::{DdsBus, MAX_QUEUE, create_topic, middleware, qos::qos, senders::Send
 use crate::{
     cdr,
     error::{CreateError, DecodeError, EncodeError},
-    gaps::{self, Gaps},
+    sequence_gaps::{self, SequenceGaps},
     types::{Depth, Received, SubscriberCounts},
 };
 
@@ -20,7 +20,7 @@ pub struct DdsSubscriber<M: Message> {
     depth: Depth,
     waiting: VecDeque<Received<M>>,
     counts: SubscriberCounts,
-    gaps: Gaps,
+    gaps: SequenceGaps,
     senders: Senders,
     // Kept: a reader without its participant is dead.
     _bus: DdsBus,
@@ -54,7 +54,7 @@ impl<M: Message> DdsSubscriber<M> {
             depth,
             waiting: VecDeque::with_capacity(depth.places()),
             counts: SubscriberCounts::default(),
-            gaps: Gaps::default(),
+            gaps: SequenceGaps::default(),
             senders: Senders::new(bus.participant.clone(), type_name::<M>().dds_msg_type()),
             _bus: bus.clone(),
         })
@@ -161,7 +161,7 @@ impl<M: Message> DdsSubscriber<M> {
             received: info
                 .received_timestamp()
                 .map_or(Time::INVALID, |time| Time::from_nanos(time.to_nanos())),
-            source: gaps::source(sender.as_bytes()),
+            source: sequence_gaps::source(sender.as_bytes()),
         })
     }
 }

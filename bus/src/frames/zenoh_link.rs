@@ -24,7 +24,7 @@ use crate::{
     error::{OpenError, SendError},
 };
 
-/// Tells the time of arrival; called where Zenoh receives.
+/// Gives the time of arrival; called where Zenoh receives.
 pub type Clock = Arc<dyn Fn() -> Time + Send + Sync>;
 
 /// Which way a frame goes.
@@ -71,7 +71,7 @@ pub struct ZenohLinkConfig {
     pub endpoint: LinkEndpoint,
     /// The way that this end sends.
     pub sends: LinkDirection,
-    /// Tells the time of arrival.
+    /// Gives the time of arrival.
     pub clock: Clock,
 }
 

@@ -4,13 +4,20 @@ use std::{collections::BTreeSet, fs::File, io, os::unix::fs::FileExt};
 
 use mcap::{
     McapError,
-    records::{Record, op},
+    records::{MessageHeader, Record, op},
     sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
 };
 
-use super::records::{
-    FRAME, LARGEST_RECORD, MESSAGE_HEADER, MessageHeader, Records, frame, message_header,
-};
+/// Opcode and length in front of every record \[bytes\].
+pub(super) const FRAME: usize = 9;
+
+/// Channel, sequence, log time and publish time in front of a message's data \[bytes\].
+pub(super) const MESSAGE_HEADER: usize = 22;
+
+/// The longest record and the largest chunk that is read \[bytes\]: what
+/// garbage may claim must not exhaust the memory. rosbag2's chunks have less
+/// than 1 MiB.
+const MAX_RECORD: usize = 256 << 20;
 
 /// A part of a file's data section.
 #[derive(Clone, Debug)]
@@ -71,6 +78,25 @@ impl DecodedBlock {
     pub(super) fn size(&self) -> usize {
         self.bytes.len() + self.entries.len() * size_of::<Entry>()
     }
+
+    /// Appends the message record whose content is `body`.
+    fn push(&mut self, body: &[u8]) -> Result<(), String> {
+        let header = message_header(body).ok_or("a message has no header")?;
+        let data = &body[MESSAGE_HEADER..];
+        if self.bytes.len() + data.len() > MAX_RECORD {
+            return Err(format!(
+                "the chunk holds more than the {MAX_RECORD} bytes that are read"
+            ));
+        }
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(data);
+        self.entries.push(Entry {
+            header,
+            start,
+            end: self.bytes.len(),
+        });
+        Ok(())
+    }
 }
 
 /// What is wrong with a part of a file.
@@ -92,10 +118,10 @@ pub(super) enum BlockError {
 pub(super) fn read_at(file: &File, offset: u64, length: u64) -> Result<Vec<u8>, BlockError> {
     let fault = |reason: String| BlockError::Fault(Fault { offset, reason });
     let length = match usize::try_from(length) {
-        Ok(length) if length <= LARGEST_RECORD => length,
+        Ok(length) if length <= MAX_RECORD => length,
         _ => {
             return Err(fault(format!(
-                "{length} bytes in one record are more than the {LARGEST_RECORD} that are read"
+                "{length} bytes in one record are more than the {MAX_RECORD} that are read"
             )));
         }
     };
@@ -116,72 +142,57 @@ pub(super) fn decode(
     block: &Block,
     definitions: &mut Vec<Record<'static>>,
 ) -> Result<DecodedBlock, BlockError> {
-    let fault = |reason: String| {
-        BlockError::Fault(Fault {
+    let bytes = read_at(file, block.offset, block.length)?;
+    let is_chunk = frame(&bytes).is_some_and(|(opcode, length)| {
+        opcode == op::CHUNK && length.checked_add(FRAME as u64) == Some(block.length)
+    });
+    let mut decoded = DecodedBlock {
+        offset: block.offset,
+        ..DecodedBlock::default()
+    };
+    let read = match block.kind {
+        BlockKind::Chunk if !is_chunk => {
+            Err("the index points at something that is no chunk".to_owned())
+        }
+        // With its checksum compared before anything counts, where it is whole.
+        kind => for_each_record(
+            &bytes,
+            kind == BlockKind::Chunk,
+            |opcode, body| match opcode {
+                op::MESSAGE => decoded.push(body),
+                op::SCHEMA | op::CHANNEL => {
+                    definitions.push(parse(opcode, body)?.into_owned());
+                    Ok(())
+                }
+                _ => Ok(()),
+            },
+        ),
+    };
+    match read {
+        // That it ends in an error is known; what came before counts.
+        Err(reason) if block.kind != BlockKind::CutChunk => Err(BlockError::Fault(Fault {
             offset: block.offset,
             reason,
-        })
-    };
-    let bytes = read_at(file, block.offset, block.length)?;
-    let mut decoded = match block.kind {
-        BlockKind::Plain => plain(bytes, definitions),
-        BlockKind::Chunk => match frame(&bytes) {
-            Some((op::CHUNK, length)) if length.checked_add(FRAME as u64) == Some(block.length) => {
-                let mut decoded = DecodedBlock::default();
-                unpack(&bytes, true, &mut decoded, definitions).map(|()| decoded)
-            }
-            _ => Err("the index points at something that is no chunk".to_owned()),
-        },
-        BlockKind::CutChunk => {
-            let mut decoded = DecodedBlock::default();
-            // That it ends in an error is known; what came before counts.
-            let _ = unpack(&bytes, false, &mut decoded, definitions);
+        })),
+        _ => {
+            decoded.entries.sort_by_key(|entry| entry.header.log_time);
             Ok(decoded)
         }
     }
-    .map_err(fault)?;
-    decoded.offset = block.offset;
-    decoded.entries.sort_by_key(|entry| entry.header.log_time);
-    Ok(decoded)
 }
 
-fn plain(bytes: Vec<u8>, definitions: &mut Vec<Record<'static>>) -> Result<DecodedBlock, String> {
-    let mut entries = Vec::new();
-    let mut position = 0;
-    let mut records = Records::new(&bytes);
-    for record in &mut records {
-        let body = position + FRAME;
-        position = body + record.body.len();
-        match record.opcode {
-            op::MESSAGE => entries.push(entry(record.body, body)?),
-            opcode => define(opcode, record.body, definitions)?,
-        }
-    }
-    if records.left() > 0 {
-        return Err("a record is longer than the data it stands in".to_owned());
-    }
-    Ok(DecodedBlock {
-        offset: 0,
-        bytes,
-        entries,
-    })
-}
-
-/// Unpacks the chunk record in `bytes`; with `check` its checksum is compared
-/// before anything counts.
-fn unpack(
+/// Hands opcode and content of every record in `bytes` to `each`, and in place
+/// of a chunk the records in it; `check` compares its checksum first.
+pub(super) fn for_each_record(
     bytes: &[u8],
     check: bool,
-    decoded: &mut DecodedBlock,
-    definitions: &mut Vec<Record<'static>>,
+    mut each: impl FnMut(u8, &[u8]) -> Result<(), String>,
 ) -> Result<(), String> {
-    let mut options = LinearReaderOptions::default()
+    let options = LinearReaderOptions::default()
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
-        .with_record_length_limit(LARGEST_RECORD);
-    if check {
-        options = options.with_prevalidate_chunk_crcs(true);
-    }
+        .with_record_length_limit(MAX_RECORD)
+        .with_prevalidate_chunk_crcs(check);
     let mut reader = LinearReader::new_with_options(options);
     let mut rest = bytes;
     while let Some(event) = reader.next_event() {
@@ -192,49 +203,83 @@ fn unpack(
                 reader.notify_read(taken.len());
                 rest = left;
             }
-            LinearReadEvent::Record { data, opcode } => match opcode {
-                op::MESSAGE => {
-                    if decoded.bytes.len() + data.len() > LARGEST_RECORD {
-                        return Err(format!(
-                            "the chunk holds more than the {LARGEST_RECORD} bytes that are read"
-                        ));
-                    }
-                    let entry = entry(data, decoded.bytes.len())?;
-                    decoded.bytes.extend_from_slice(data);
-                    decoded.entries.push(entry);
-                }
-                opcode => define(opcode, data, definitions)?,
-            },
+            LinearReadEvent::Record { data, opcode } => each(opcode, data)?,
         }
     }
     Ok(())
 }
 
-/// The message in `body`, which stands at `start` of the block's bytes.
-fn entry(body: &[u8], start: usize) -> Result<Entry, String> {
-    let header = message_header(body).ok_or("a message has no header")?;
-    Ok(Entry {
-        header,
-        start: start + MESSAGE_HEADER,
-        end: start + body.len(),
-    })
+/// Opcode and length of the record at the front of `bytes`.
+pub(super) fn frame(bytes: &[u8]) -> Option<(u8, u64)> {
+    let (opcode, rest) = bytes.split_first()?;
+    Some((*opcode, u64::from_le_bytes(*rest.first_chunk()?)))
 }
 
-/// Keeps a schema or channel; other records are of no use here. They are
-/// parsed only when they are wanted: the parser does not take every garbage.
-fn define(opcode: u8, body: &[u8], definitions: &mut Vec<Record<'static>>) -> Result<(), String> {
-    if matches!(opcode, op::SCHEMA | op::CHANNEL) {
-        let record = mcap::parse_record(opcode, body).map_err(|error| describe(&error))?;
-        definitions.push(record.into_owned());
+/// The header in a message record's content; `None` when that is too short.
+pub(super) fn message_header(body: &[u8]) -> Option<MessageHeader> {
+    match mcap::parse_record(op::MESSAGE, body) {
+        Ok(Record::Message { header, .. }) => Some(header),
+        _ => None,
     }
-    Ok(())
+}
+
+/// The record with that content. Records are parsed only where they are
+/// wanted: the library's parser panics at an attachment that is too short.
+pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
+    mcap::parse_record(opcode, body).map_err(|error| describe(&error))
 }
 
 /// The library's error with its cause, in one line.
-pub(super) fn describe(error: &McapError) -> String {
+fn describe(error: &McapError) -> String {
     match error {
         McapError::Parse(_) => "a record cannot be parsed".to_owned(),
         McapError::Io(cause) => format!("cannot be unpacked: {cause}"),
         error => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cut_record_ends_in_an_error_behind_what_is_whole() {
+        let mut bytes = vec![0x80, 2, 0, 0, 0, 0, 0, 0, 0, 0xAA, 0xBB];
+        let mut read = Vec::new();
+        let whole = for_each_record(&bytes, true, |opcode, body| {
+            read.push((opcode, body.to_vec()));
+            Ok(())
+        });
+        assert_eq!((whole, read), (Ok(()), vec![(0x80, vec![0xAA, 0xBB])]));
+        for cut in [
+            &[5, 200, 0, 0, 0, 0, 0, 0, 0, 1][..],
+            &[5, 255, 255, 255, 255, 255, 255, 255, 255, 0],
+        ] {
+            bytes.truncate(11);
+            bytes.extend(cut);
+            let mut records = 0;
+            let read = for_each_record(&bytes, true, |_, _| {
+                records += 1;
+                Ok(())
+            });
+            assert!(read.is_err());
+            assert_eq!(records, 1);
+        }
+    }
+
+    #[test]
+    fn a_message_header_is_22_bytes() {
+        let mut body = vec![3, 0, 9, 0, 0, 0];
+        body.extend(11_u64.to_le_bytes());
+        body.extend(12_u64.to_le_bytes());
+        let header = MessageHeader {
+            channel_id: 3,
+            sequence: 9,
+            log_time: 11,
+            publish_time: 12,
+        };
+        assert_eq!(message_header(&body), Some(header));
+        assert_eq!(body.len(), MESSAGE_HEADER);
+        assert_eq!(message_header(&body[..21]), None);
     }
 }

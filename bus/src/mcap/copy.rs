@@ -46,7 +46,7 @@ pub(super) fn copy(
     let mut channels = BTreeMap::new();
     for channel in layout.channels.values() {
         let schema = match layout.schemas.get(&channel.schema_id) {
-            Some(schema) => writer.schema(&schema.name, &schema.encoding, &schema.text)?,
+            Some(schema) => writer.schema(&schema.name, &schema.encoding, &schema.data)?,
             None => 0,
         };
         let id = writer.channel(
@@ -72,14 +72,12 @@ pub(super) fn copy(
         };
         for entry in &decoded.entries {
             // Without a description nobody could read it.
-            let Some(&channel_id) = channels.get(&entry.header.channel) else {
+            let Some(&channel_id) = channels.get(&entry.header.channel_id) else {
                 continue;
             };
             let header = MessageHeader {
                 channel_id,
-                sequence: entry.header.sequence,
-                log_time: entry.header.log_time,
-                publish_time: entry.header.publish_time,
+                ..entry.header
             };
             writer.message(&header, decoded.data(entry))?;
         }

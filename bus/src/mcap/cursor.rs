@@ -17,7 +17,7 @@ const CACHED_BLOCKS: usize = 4;
 /// Memory that blocks overlapping in time may take together \[bytes\]. Files
 /// are written about in the order of time, so one or two blocks do; an index
 /// that says otherwise is broken.
-const MOST_OVERLAP: usize = 1 << 30;
+const MAX_OVERLAP: usize = 1 << 30;
 
 /// One file, shared by all that read it.
 #[derive(Debug)]
@@ -80,119 +80,145 @@ pub(super) struct Found {
     pub(super) entry: Entry,
 }
 
+/// A block of a file.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    /// Log time of its first message, as the file says \[ns\].
+    start: u64,
+    file: usize,
+    index: usize,
+}
+
 /// A block that is being read.
 #[derive(Debug)]
 struct Active {
+    file: usize,
     index: usize,
     block: Arc<DecodedBlock>,
     position: usize,
 }
 
-/// Goes through one file.
+impl Active {
+    fn entry(&self) -> Option<Entry> {
+        self.block.entries.get(self.position).copied()
+    }
+}
+
+/// Goes through several files at once.
 #[derive(Debug)]
-struct FileCursor {
-    file: Arc<SharedFile>,
-    /// The channels wanted; `None` for all.
-    channels: Option<BTreeSet<u16>>,
+pub(super) struct Cursor {
+    files: Vec<Arc<SharedFile>>,
+    /// The channels wanted of each file; `None` for all.
+    channels: Option<Vec<BTreeSet<u16>>>,
     /// Messages logged before are passed over \[ns\].
     from: u64,
     /// Blocks not read yet, in the order of their first log time.
-    waiting: VecDeque<usize>,
+    waiting: VecDeque<Waiting>,
     active: Vec<Active>,
 }
 
-impl FileCursor {
-    fn new(file: Arc<SharedFile>, channels: Option<BTreeSet<u16>>, from: u64) -> FileCursor {
-        let blocks = &file.layout.blocks;
-        let wanted = |index: &usize| {
-            let block = &blocks[*index];
-            let holds = match (&block.channels, &channels) {
-                (Some(there), Some(wanted)) => !there.is_disjoint(wanted),
-                _ => true,
-            };
-            holds && block.end >= from
-        };
-        let mut waiting: Vec<usize> = (0..blocks.len()).filter(wanted).collect();
-        waiting.sort_by_key(|&index| (blocks[index].start, index));
-        FileCursor {
-            file,
+impl Cursor {
+    /// `channels` are those wanted of each file, `None` for all; messages
+    /// logged before `from` \[ns\] are passed over.
+    pub(super) fn new(
+        files: &[Arc<SharedFile>],
+        channels: Option<Vec<BTreeSet<u16>>>,
+        from: u64,
+    ) -> Cursor {
+        let mut cursor = Cursor {
+            files: files.to_vec(),
             channels,
             from,
-            waiting: waiting.into(),
+            waiting: VecDeque::new(),
             active: Vec::new(),
+        };
+        let mut waiting = Vec::new();
+        for (file, shared) in files.iter().enumerate() {
+            for (index, block) in shared.layout.blocks.iter().enumerate() {
+                let wanted = |channels: &BTreeSet<u16>| {
+                    channels.iter().any(|&channel| cursor.wants(file, channel))
+                };
+                if block.end >= from && block.channels.as_ref().is_none_or(wanted) {
+                    let start = block.start;
+                    waiting.push(Waiting { start, file, index });
+                }
+            }
         }
+        waiting.sort_by_key(|block| (block.start, block.file, block.index));
+        cursor.waiting = waiting.into();
+        cursor
     }
 
-    /// Log time of the next message \[ns\].
-    fn peek(&mut self) -> Result<Option<u64>, ReadMessageError> {
+    fn wants(&self, file: usize, channel: u16) -> bool {
+        self.channels.as_ref().is_none_or(|files| {
+            files
+                .get(file)
+                .is_some_and(|wanted| wanted.contains(&channel))
+        })
+    }
+
+    /// Log time of the next message \[ns\]; `None` at the end.
+    pub(super) fn peek(&mut self) -> Result<Option<u64>, ReadMessageError> {
         Ok(self.first()?.map(|(log_time, _)| log_time))
     }
 
-    /// Takes the next message.
-    fn take(&mut self) -> Result<Option<(Arc<DecodedBlock>, Entry)>, ReadMessageError> {
+    /// Takes the next message; `None` at the end. After an error reading goes
+    /// on behind the fault.
+    pub(super) fn take(&mut self) -> Result<Option<Found>, ReadMessageError> {
         let Some((_, place)) = self.first()? else {
             return Ok(None);
         };
         let Some(active) = self.active.get_mut(place) else {
             return Ok(None);
         };
-        let taken = active.block.entries.get(active.position).copied();
-        let block = active.block.clone();
+        let found = active.entry().map(|entry| Found {
+            file: active.file,
+            block: active.block.clone(),
+            entry,
+        });
         active.position += 1;
         self.settle(place);
-        Ok(taken.map(|entry| (block, entry)))
+        Ok(found)
     }
 
     /// Log time and place among the active blocks of the next message. Blocks
     /// that may hold an earlier one are read first.
     fn first(&mut self) -> Result<Option<(u64, usize)>, ReadMessageError> {
         loop {
-            let first = self
-                .active
-                .iter()
-                .enumerate()
-                .filter_map(|(place, active)| {
-                    let entry = active.block.entries.get(active.position)?;
-                    Some((entry.header.log_time, active.index, place))
-                })
-                .min();
-            let next_start = self.waiting.front().map(|&index| self.start(index));
-            match (first, next_start) {
-                (Some((log_time, _, place)), Some(start)) if log_time < start => {
-                    return Ok(Some((log_time, place)));
+            let next = |(place, active): (usize, &Active)| {
+                let log_time = active.entry()?.header.log_time;
+                Some((log_time, active.file, active.index, place))
+            };
+            let first = self.active.iter().enumerate().filter_map(next).min();
+            let found = first.map(|(log_time, .., place)| (log_time, place));
+            match (found, self.waiting.front()) {
+                (Some((log_time, _)), Some(waiting)) if waiting.start > log_time => {
+                    return Ok(found);
                 }
-                (_, Some(_)) => self.activate()?,
-                (first, None) => return Ok(first.map(|(log_time, _, place)| (log_time, place))),
+                (_, None) => return Ok(found),
+                _ => self.activate()?,
             }
         }
     }
 
-    fn start(&self, index: usize) -> u64 {
-        self.file
-            .layout
-            .blocks
-            .get(index)
-            .map_or(0, |block| block.start)
-    }
-
     fn activate(&mut self) -> Result<(), ReadMessageError> {
-        let Some(index) = self.waiting.pop_front() else {
+        let Some(Waiting { file, index, .. }) = self.waiting.pop_front() else {
             return Ok(());
         };
-        let block = self.file.load(index)?;
+        let Some(shared) = self.files.get(file) else {
+            return Ok(());
+        };
+        let block = shared.load(index)?;
         let memory: usize = self.active.iter().map(|active| active.block.size()).sum();
-        if memory > MOST_OVERLAP {
-            return Err(self.file.error(BlockError::Fault(Fault {
-                offset: self
-                    .file
-                    .layout
-                    .blocks
-                    .get(index)
-                    .map_or(0, |block| block.offset),
+        if memory > MAX_OVERLAP {
+            let blocks = &shared.layout.blocks;
+            return Err(shared.error(BlockError::Fault(Fault {
+                offset: blocks.get(index).map_or(0, |block| block.offset),
                 reason: "too many chunks claim the same time".to_owned(),
             })));
         }
         self.active.push(Active {
+            file,
             index,
             block,
             position: 0,
@@ -204,86 +230,18 @@ impl FileCursor {
     /// Moves an active block on to its next message that is wanted, and drops
     /// it when there is none.
     fn settle(&mut self, place: usize) {
-        let Some(active) = self.active.get_mut(place) else {
+        let Some(active) = self.active.get(place) else {
             return;
         };
-        let rest = active
-            .block
-            .entries
-            .get(active.position..)
-            .unwrap_or_default();
         let wanted = |entry: &Entry| {
-            entry.header.log_time >= self.from
-                && self
-                    .channels
-                    .as_ref()
-                    .is_none_or(|channels| channels.contains(&entry.header.channel))
+            entry.header.log_time >= self.from && self.wants(active.file, entry.header.channel_id)
         };
-        match rest.iter().position(wanted) {
-            Some(skipped) => active.position += skipped,
+        let mut rest = active.block.entries.iter().skip(active.position);
+        match rest.position(wanted) {
+            Some(skipped) => self.active[place].position += skipped,
             None => {
                 self.active.swap_remove(place);
             }
         }
-    }
-}
-
-/// Goes through several files at once.
-#[derive(Debug)]
-pub(super) struct Cursor {
-    files: Vec<FileCursor>,
-}
-
-impl Cursor {
-    /// `channels` are those wanted of each file, `None` for all; messages
-    /// logged before `from` \[ns\] are passed over.
-    pub(super) fn new(
-        files: &[Arc<SharedFile>],
-        channels: Option<Vec<BTreeSet<u16>>>,
-        from: u64,
-    ) -> Cursor {
-        let mut channels = channels.map(Vec::into_iter);
-        Cursor {
-            files: files
-                .iter()
-                .map(|file| {
-                    let channels = channels
-                        .as_mut()
-                        .map(|each| each.next().unwrap_or_default());
-                    FileCursor::new(file.clone(), channels, from)
-                })
-                .collect(),
-        }
-    }
-
-    /// Log time of the next message \[ns\]; `None` at the end.
-    pub(super) fn peek(&mut self) -> Result<Option<u64>, ReadMessageError> {
-        Ok(self.first()?.map(|(log_time, _)| log_time))
-    }
-
-    /// Takes the next message; `None` at the end. After an error reading goes
-    /// on behind the fault.
-    pub(super) fn take(&mut self) -> Result<Option<Found>, ReadMessageError> {
-        let Some((_, file)) = self.first()? else {
-            return Ok(None);
-        };
-        let Some(cursor) = self.files.get_mut(file) else {
-            return Ok(None);
-        };
-        Ok(cursor
-            .take()?
-            .map(|(block, entry)| Found { file, block, entry }))
-    }
-
-    fn first(&mut self) -> Result<Option<(u64, usize)>, ReadMessageError> {
-        let mut first: Option<(u64, usize)> = None;
-        for (file, cursor) in self.files.iter_mut().enumerate() {
-            if let Some(log_time) = cursor.peek()?
-                && first.is_none_or(|(earliest, _)| log_time < earliest)
-            {
-                first = Some((log_time, file));
-            }
-        }
-        Ok(first)
     }
 }

@@ -16,7 +16,7 @@ use super::{
     error::WriteBagError,
     metadata::FileEntry,
     options::{BagOptions, ChunkCompression},
-    sink::{Sink, Store},
+    sink::{Sink, Storage},
 };
 
 /// The tool named in the file's header. It holds no version: the same
@@ -27,7 +27,7 @@ const LIBRARY: &str = "ferntast";
 const MESSAGE_OVERHEAD: u64 = 31;
 
 /// An MCAP file with profile `ros2`.
-pub(super) struct FileWriter<S: Store = File> {
+pub(super) struct FileWriter<S: Storage = File> {
     /// `None` once closed.
     writer: Option<mcap::Writer<Sink<S>>>,
     path: PathBuf,
@@ -51,7 +51,7 @@ impl FileWriter<File> {
     }
 }
 
-impl<S: Store> FileWriter<S> {
+impl<S: Storage> FileWriter<S> {
     /// A file over any store.
     pub(super) fn over(store: S, path: &Path, options: &BagOptions) -> io::Result<FileWriter<S>> {
         let writer = mcap::WriteOptions::new()
@@ -187,7 +187,7 @@ impl<S: Store> FileWriter<S> {
 
     /// Writes the summary and closes the file. Bytes in the file.
     pub(super) fn finish(&mut self) -> Result<u64, WriteBagError> {
-        // With the chunks on disk first, a summary that finds no room leaves
+        // With the chunks on disk first, a summary that finds no space leaves
         // a file that can be repaired.
         self.flush()?;
         let Some(mut writer) = self.writer.take() else {
@@ -237,7 +237,7 @@ impl<S: Store> FileWriter<S> {
     }
 }
 
-impl<S: Store> Drop for FileWriter<S> {
+impl<S: Storage> Drop for FileWriter<S> {
     fn drop(&mut self) {
         if self.writer.is_some() {
             let _ = self.finish();

@@ -24,7 +24,7 @@ const GAP_FACTOR: i64 = 5;
 const SHORTEST_GAP: i64 = 100_000_000;
 
 /// … on a topic with at least so many messages.
-const FEWEST_MESSAGES: usize = 10;
+const MIN_MESSAGES: usize = 10;
 
 /// So many gaps of a topic are listed, the longest first.
 const LISTED_GAPS: usize = 10;
@@ -233,7 +233,7 @@ fn topic_info(topic: &BagTopic, times: &[Time]) -> TopicInfo {
     let shortest = median.saturating_mul(GAP_FACTOR).max(SHORTEST_GAP);
     let mut gaps: Vec<(i64, Time)> = intervals
         .into_iter()
-        .filter(|(interval, _)| times.len() >= FEWEST_MESSAGES && *interval > shortest)
+        .filter(|(interval, _)| times.len() >= MIN_MESSAGES && *interval > shortest)
         .collect();
     gaps.sort_by_key(|&(interval, start)| (std::cmp::Reverse(interval), start));
     TopicInfo {

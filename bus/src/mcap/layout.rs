@@ -1,21 +1,21 @@
 //! Where the messages of one MCAP file stand.
 
 use std::{
-    collections::BTreeMap,
+    borrow::Cow,
+    collections::{BTreeMap, btree_map::Entry},
     fs::File,
     io,
     path::{Path, PathBuf},
 };
 
 use mcap::{
-    MAGIC,
-    records::{self, ChunkIndex, Metadata, Record, SchemaHeader, Statistics, op},
+    MAGIC, Schema,
+    records::{Channel, ChunkIndex, Footer, Metadata, Record, SchemaHeader, Statistics, op},
 };
 
 use super::{
-    block::{Block, BlockError, BlockKind, Fault, describe, read_at},
+    block::{Block, BlockError, BlockKind, FRAME, Fault, for_each_record, frame, parse, read_at},
     error::OpenBagError,
-    records::{FRAME, Records, frame, u32_at},
     scan::scan,
 };
 
@@ -35,8 +35,8 @@ pub(super) struct Layout {
     pub(super) path: PathBuf,
     /// Size of the file \[bytes\].
     pub(super) length: u64,
-    pub(super) schemas: BTreeMap<u16, Schema>,
-    pub(super) channels: BTreeMap<u16, records::Channel>,
+    pub(super) schemas: BTreeMap<u16, Schema<'static>>,
+    pub(super) channels: BTreeMap<u16, Channel>,
     /// In the order of the file.
     pub(super) blocks: Vec<Block>,
     pub(super) statistics: Option<Statistics>,
@@ -45,14 +45,6 @@ pub(super) struct Layout {
     pub(super) closed: bool,
     /// What is broken, in the order of the file.
     pub(super) faults: Vec<Fault>,
-}
-
-/// A schema record.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Schema {
-    pub(super) name: String,
-    pub(super) encoding: String,
-    pub(super) text: Vec<u8>,
 }
 
 impl Layout {
@@ -105,29 +97,30 @@ impl Layout {
             return Ok(None);
         };
         let record = self.bytes(end, DATA_END)?;
-        let Some(expected) = u32_at(&record, FRAME) else {
-            return Ok(None);
+        let expected = match parse(op::DATA_END, &record[FRAME..]) {
+            Ok(Record::DataEnd(end)) if frame(&record) == Some((op::DATA_END, 4)) => {
+                end.data_section_crc
+            }
+            _ => 0,
         };
-        if frame(&record) != Some((op::DATA_END, 4)) || expected == 0 {
-            return Ok(None);
-        }
         // Some writers count the magic number, some do not.
-        for start in [0, MAGIC.len() as u64] {
-            let mut hasher = crc32fast::Hasher::new();
-            let mut offset = start;
-            while offset < end {
-                let length = (end - offset).min(1 << 20);
-                hasher.update(&self.bytes(offset, length)?);
-                offset += length;
-            }
-            if hasher.finalize() == expected {
-                return Ok(None);
-            }
-        }
-        Ok(Some(Fault {
+        let intact = expected == 0
+            || self.checksum(0, end)? == expected
+            || self.checksum(MAGIC.len() as u64, end)? == expected;
+        Ok((!intact).then(|| Fault {
             offset: end,
             reason: "the checksum of all data is wrong".to_owned(),
         }))
+    }
+
+    /// Checksum of the bytes from `start` to `end`.
+    fn checksum(&self, start: u64, end: u64) -> Result<u32, OpenBagError> {
+        const PIECE: u64 = 1 << 20;
+        let mut hasher = crc32fast::Hasher::new();
+        for offset in (start..end).step_by(PIECE as usize) {
+            hasher.update(&self.bytes(offset, PIECE.min(end - offset))?);
+        }
+        Ok(hasher.finalize())
     }
 
     /// Opens a file that begins as an MCAP file.
@@ -165,88 +158,75 @@ impl Layout {
     }
 
     /// The footer; `None` when the file does not end as one that was closed.
-    pub(super) fn footer(&self) -> Result<Option<records::Footer>, OpenBagError> {
+    pub(super) fn footer(&self) -> Result<Option<Footer>, OpenBagError> {
         let Some(start) = self.length.checked_sub(TAIL).filter(|&start| start >= 8) else {
             return Ok(None);
         };
         let tail = self.bytes(start, TAIL)?;
-        if tail[FOOTER as usize..] != *MAGIC || frame(&tail) != Some((op::FOOTER, 20)) {
-            return Ok(None);
-        }
-        match mcap::parse_record(op::FOOTER, &tail[FRAME..FOOTER as usize]) {
-            Ok(Record::Footer(footer)) => Ok(Some(footer)),
+        let (record, magic) = tail.split_at(FOOTER as usize);
+        match parse(op::FOOTER, &record[FRAME..]) {
+            Ok(Record::Footer(footer))
+                if magic == MAGIC && frame(record) == Some((op::FOOTER, 20)) =>
+            {
+                Ok(Some(footer))
+            }
             _ => Ok(None),
         }
     }
 
-    fn read_summary(&mut self, footer: &records::Footer) -> Result<(), OpenBagError> {
+    fn read_summary(&mut self, footer: &Footer) -> Result<(), OpenBagError> {
         let end = self.length - TAIL;
-        let start = footer.summary_start;
-        let fault = |reason: &str| Fault {
-            offset: start,
-            reason: reason.to_owned(),
+        let offset = footer.summary_start;
+        let fault = |reason: String| Fault { offset, reason };
+        let Some(length) = end.checked_sub(offset).filter(|_| offset >= 8) else {
+            let reason = "the summary is said to begin outside the file";
+            return Err(self.damaged(fault(reason.to_owned())));
         };
-        let Some(length) = end.checked_sub(start).filter(|_| start >= 8) else {
-            return Err(self.damaged(fault("the summary is said to begin outside the file")));
-        };
-        let summary = self.bytes(start, length)?;
-        if footer.summary_crc != 0 {
-            // Of the footer, all that stands before the checksum counts.
-            let mut hasher = crc32fast::Hasher::new();
-            hasher.update(&summary);
-            hasher.update(&self.bytes(end, FOOTER - 4)?);
-            if hasher.finalize() != footer.summary_crc {
-                return Err(self.damaged(fault("the summary's checksum is wrong")));
-            }
+        let summary = self.bytes(offset, length)?;
+        // Of the footer, all that stands before the checksum counts.
+        if footer.summary_crc != 0 && self.checksum(offset, end + FOOTER - 4)? != footer.summary_crc
+        {
+            return Err(self.damaged(fault("the summary's checksum is wrong".to_owned())));
         }
-        let mut records = Records::new(&summary);
-        for record in &mut records {
-            match self.read_summary_record(record.opcode, record.body) {
-                Ok(()) => {}
-                Err(BlockError::Fault(fault)) => return Err(self.damaged(fault)),
-                Err(BlockError::Io(error)) => return Err(self.io_error(&error)),
-            }
-        }
-        if records.left() > 0 {
-            return Err(self.damaged(fault("the summary ends in the middle of a record")));
+        let mut metadata = Vec::new();
+        for_each_record(&summary, false, |opcode, body| {
+            self.read_summary_record(opcode, body, &mut metadata)
+        })
+        .map_err(|reason| self.damaged(fault(reason)))?;
+        for (offset, length) in metadata {
+            let record = read_metadata(&self.file, offset, length);
+            self.metadata
+                .push(record.map_err(|error| self.error(error))?);
         }
         Ok(())
     }
 
-    fn read_summary_record(&mut self, opcode: u8, body: &[u8]) -> Result<(), BlockError> {
-        let offset = self.length - TAIL;
-        let fault = |reason: String| BlockError::Fault(Fault { offset, reason });
-        if !matches!(
-            opcode,
-            op::SCHEMA | op::CHANNEL | op::CHUNK_INDEX | op::STATISTICS | op::METADATA_INDEX
-        ) {
-            return Ok(());
+    /// Takes what is of use of a record of the summary; where metadata records
+    /// stand, offset and length, goes to `metadata`.
+    fn read_summary_record(
+        &mut self,
+        opcode: u8,
+        body: &[u8],
+        metadata: &mut Vec<(u64, u64)>,
+    ) -> Result<(), String> {
+        match opcode {
+            op::SCHEMA | op::CHANNEL | op::CHUNK_INDEX | op::STATISTICS | op::METADATA_INDEX => {}
+            _ => return Ok(()),
         }
-        let record = mcap::parse_record(opcode, body).map_err(|error| fault(describe(&error)))?;
-        match record {
+        match parse(opcode, body)? {
             Record::ChunkIndex(index) => {
                 let block = chunk_block(&index);
-                if block
-                    .offset
-                    .checked_add(block.length)
-                    .is_none_or(|end| end > self.length)
-                {
-                    return Err(fault("the index points outside the file".to_owned()));
+                let end = block.offset.checked_add(block.length);
+                if end.is_none_or(|end| end > self.length) {
+                    return Err("the index points outside the file".to_owned());
                 }
                 self.blocks.push(block);
-                Ok(())
             }
-            Record::Statistics(statistics) => {
-                self.statistics = Some(statistics);
-                Ok(())
-            }
-            Record::MetadataIndex(index) => {
-                let metadata = read_metadata(&self.file, index.offset, index.length)?;
-                self.metadata.push(metadata);
-                Ok(())
-            }
-            record => self.define(record.into_owned()).map_err(fault),
+            Record::Statistics(statistics) => self.statistics = Some(statistics),
+            Record::MetadataIndex(index) => metadata.push((index.offset, index.length)),
+            record => self.define(record)?,
         }
+        Ok(())
     }
 
     /// Whether the summary says where all messages are and what they are.
@@ -254,7 +234,7 @@ impl Layout {
         let Some(statistics) = &self.statistics else {
             return false;
         };
-        let described = |channel: &records::Channel| {
+        let described = |channel: &Channel| {
             channel.schema_id == 0 || self.schemas.contains_key(&channel.schema_id)
         };
         self.channels.len() == statistics.channel_count as usize
@@ -263,44 +243,39 @@ impl Layout {
     }
 
     /// Takes a schema or channel; a repetition must be the same.
-    pub(super) fn define(&mut self, record: Record<'static>) -> Result<(), String> {
+    pub(super) fn define(&mut self, record: Record<'_>) -> Result<(), String> {
         match record {
+            Record::Schema { header, .. } if header.id == 0 => {
+                Err("a schema has the number 0".to_owned())
+            }
             Record::Schema { header, data } => {
                 let SchemaHeader { id, name, encoding } = header;
-                let text = data.into_owned();
+                let data = Cow::Owned(data.into_owned());
                 let schema = Schema {
+                    id,
                     name,
                     encoding,
-                    text,
+                    data,
                 };
-                if id == 0 {
-                    return Err("a schema has the number 0".to_owned());
-                }
-                let known = self.schemas.entry(id).or_insert_with(|| schema.clone());
-                if *known != schema {
-                    return Err(format!("schema {id} is there twice, and unlike"));
-                }
+                take_once(&mut self.schemas, id, schema, "schema")
             }
             Record::Channel(channel) => {
-                let known = self
-                    .channels
-                    .entry(channel.id)
-                    .or_insert_with(|| channel.clone());
-                if *known != channel {
-                    return Err(format!("channel {} is there twice, and unlike", channel.id));
-                }
+                take_once(&mut self.channels, channel.id, channel, "channel")
             }
-            _ => {}
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Reads bytes of the file.
     pub(super) fn bytes(&self, offset: u64, length: u64) -> Result<Vec<u8>, OpenBagError> {
-        read_at(&self.file, offset, length).map_err(|error| match error {
+        read_at(&self.file, offset, length).map_err(|error| self.error(error))
+    }
+
+    fn error(&self, error: BlockError) -> OpenBagError {
+        match error {
             BlockError::Fault(fault) => self.damaged(fault),
             BlockError::Io(error) => self.io_error(&error),
-        })
+        }
     }
 
     pub(super) fn io_error(&self, error: &io::Error) -> OpenBagError {
@@ -331,20 +306,38 @@ fn chunk_block(index: &ChunkIndex) -> Block {
     }
 }
 
+fn take_once<T: PartialEq>(
+    known: &mut BTreeMap<u16, T>,
+    id: u16,
+    record: T,
+    what: &str,
+) -> Result<(), String> {
+    match known.entry(id) {
+        Entry::Occupied(known) if *known.get() != record => {
+            return Err(format!("{what} {id} is there twice, and unlike"));
+        }
+        Entry::Occupied(_) => {}
+        Entry::Vacant(place) => {
+            place.insert(record);
+        }
+    }
+    Ok(())
+}
+
 /// The metadata record at `offset`; `length` counts its frame.
 pub(super) fn read_metadata(file: &File, offset: u64, length: u64) -> Result<Metadata, BlockError> {
     let bytes = read_at(file, offset, length)?;
-    let parsed = match Records::new(&bytes).next() {
-        Some(record) if record.opcode == op::METADATA => {
-            mcap::parse_record(op::METADATA, record.body).ok()
-        }
+    match (frame(&bytes), bytes.get(FRAME..)) {
+        (Some((op::METADATA, _)), Some(body)) => match parse(op::METADATA, body) {
+            Ok(Record::Metadata(metadata)) => Some(metadata),
+            _ => None,
+        },
         _ => None,
-    };
-    match parsed {
-        Some(Record::Metadata(metadata)) => Ok(metadata),
-        _ => Err(BlockError::Fault(Fault {
+    }
+    .ok_or_else(|| {
+        BlockError::Fault(Fault {
             offset,
             reason: "a metadata record cannot be parsed".to_owned(),
-        })),
-    }
+        })
+    })
 }

@@ -57,7 +57,7 @@ pub struct RawMessages {
 }
 
 impl RawMessages {
-    /// `channels` says by file what topic each channel carries.
+    /// `channels` says by file the topic of each channel.
     pub(super) fn new(cursor: Cursor, channels: Vec<BTreeMap<u16, Arc<BagTopic>>>) -> RawMessages {
         RawMessages { cursor, channels }
     }
@@ -91,7 +91,7 @@ impl RawMessages {
     /// topic.
     fn named(&self, found: Found) -> Option<RawMessage> {
         let header = found.entry.header;
-        let topic = self.channels.get(found.file)?.get(&header.channel)?;
+        let topic = self.channels.get(found.file)?.get(&header.channel_id)?;
         Some(RawMessage {
             topic: topic.clone(),
             log_time: time(header.log_time),

@@ -1,10 +1,13 @@
 //! `metadata.yaml` of a rosbag2 directory.
+//!
+//! It is written as text in the form that rosbag2 gives it: a serializer of
+//! YAML would need more lines of structures, one for each of the nested maps.
 
-use std::{collections::BTreeMap, fmt::Write};
+use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use super::qos::{QosProfile, to_yaml};
+use super::qos::{QosProfile, indented, to_yaml};
 
 /// The file's name in a rosbag2 directory.
 pub(super) const METADATA_FILE: &str = "metadata.yaml";
@@ -58,107 +61,80 @@ pub(super) fn join_bounds(
 impl BagMetadata {
     /// The content of `metadata.yaml`.
     pub(super) fn to_file(&self) -> String {
-        let mut text = String::from("rosbag2_bagfile_information:\n");
-        for line in self.to_yaml().lines() {
-            let _ = writeln!(text, "  {line}");
-        }
-        text
+        let content = indented(&self.to_yaml(), 2);
+        format!("rosbag2_bagfile_information:\n{content}")
     }
 
     /// The same without the outermost key, as in the MCAP record `rosbag2`.
     pub(super) fn to_yaml(&self) -> String {
-        let mut text = String::new();
-        // Writing to a String cannot fail.
-        let _ = self.put(&mut text);
-        text
-    }
-
-    fn put(&self, text: &mut String) -> std::fmt::Result {
         let messages: u64 = self.files.iter().map(|file| file.messages).sum();
-        writeln!(text, "version: {VERSION}")?;
-        writeln!(text, "storage_identifier: mcap")?;
-        put_bounds(
-            text,
-            join_bounds(self.files.iter().map(|file| file.bounds)),
-            0,
-            false,
-        )?;
-        writeln!(text, "message_count: {messages}")?;
-        put_list_head(text, "topics_with_message_count", self.topics.is_empty())?;
-        for topic in &self.topics {
-            writeln!(text, "  - topic_metadata:")?;
-            writeln!(text, "      name: {}", scalar(&topic.name))?;
-            writeln!(text, "      type: {}", scalar(&topic.schema_name))?;
-            writeln!(
-                text,
-                "      serialization_format: {}",
-                scalar(&topic.message_encoding)
-            )?;
-            if topic.qos.is_empty() {
-                writeln!(text, "      offered_qos_profiles: []")?;
-            } else {
-                writeln!(text, "      offered_qos_profiles:")?;
-                text.push_str(&to_yaml(&topic.qos, 8));
-            }
-            writeln!(
-                text,
-                "      type_description_hash: {}",
-                scalar(&topic.type_hash)
-            )?;
-            writeln!(text, "    message_count: {}", topic.messages)?;
-        }
-        writeln!(text, "compression_format: \"\"\ncompression_mode: \"\"")?;
-        put_list_head(text, "relative_file_paths", self.files.is_empty())?;
-        for file in &self.files {
-            writeln!(text, "  - {}", scalar(&file.name))?;
-        }
-        put_list_head(text, "files", self.files.is_empty())?;
-        for file in &self.files {
-            writeln!(text, "  - path: {}", scalar(&file.name))?;
-            put_bounds(text, file.bounds, 4, true)?;
-            writeln!(text, "    message_count: {}", file.messages)?;
-        }
-        if self.custom_data.is_empty() {
-            writeln!(text, "custom_data: ~")?;
-        } else {
-            writeln!(text, "custom_data:")?;
-            for (key, value) in &self.custom_data {
-                writeln!(text, "  {}: {}", quoted(key), quoted(value))?;
-            }
-        }
-        writeln!(text, "ros_distro: {}", scalar(&self.ros_distro))
+        let (start, duration) = times(join_bounds(self.files.iter().map(|file| file.bounds)));
+        let topics = self.topics.iter().map(TopicEntry::to_yaml).collect();
+        let path = |file: &FileEntry| format!("  - {}\n", scalar(&file.name));
+        let paths = self.files.iter().map(path).collect();
+        let files = self.files.iter().map(FileEntry::to_yaml).collect();
+        let entry =
+            |(key, value): (&String, &String)| format!("  {}: {}\n", quoted(key), quoted(value));
+        let custom_data = self.custom_data.iter().map(entry).collect();
+        [
+            format!("version: {VERSION}\nstorage_identifier: mcap\n"),
+            format!("{duration}{start}message_count: {messages}\n"),
+            block("topics_with_message_count", topics, "[]"),
+            "compression_format: \"\"\ncompression_mode: \"\"\n".to_owned(),
+            block("relative_file_paths", paths, "[]"),
+            block("files", files, "[]"),
+            block("custom_data", custom_data, "~"),
+            format!("ros_distro: {}\n", scalar(&self.ros_distro)),
+        ]
+        .concat()
     }
 }
 
-fn put_list_head(text: &mut String, key: &str, empty: bool) -> std::fmt::Result {
-    writeln!(text, "{key}:{}", if empty { " []" } else { "" })
+impl TopicEntry {
+    fn to_yaml(&self) -> String {
+        let metadata = [
+            format!("name: {}\n", scalar(&self.name)),
+            format!("type: {}\n", scalar(&self.schema_name)),
+            format!("serialization_format: {}\n", scalar(&self.message_encoding)),
+            block(
+                "offered_qos_profiles",
+                indented(&to_yaml(&self.qos), 2),
+                "[]",
+            ),
+            format!("type_description_hash: {}\n", scalar(&self.type_hash)),
+        ]
+        .concat();
+        let metadata = indented(&metadata, 6);
+        let messages = self.messages;
+        format!("  - topic_metadata:\n{metadata}    message_count: {messages}\n")
+    }
 }
 
-/// Duration and start; rosbag2 writes them in one order for the recording and
-/// in the other for its files, and the largest number as start of nothing.
-fn put_bounds(
-    text: &mut String,
-    bounds: Option<(u64, u64)>,
-    indent: usize,
-    start_first: bool,
-) -> std::fmt::Result {
-    let (start, duration) = match bounds {
-        Some((first, last)) => (first, last.saturating_sub(first)),
-        None => (i64::MAX as u64, 0),
-    };
-    let start = format!(
-        "{:indent$}starting_time:\n{:indent$}  nanoseconds_since_epoch: {start}\n",
-        "", ""
-    );
-    let duration = format!(
-        "{:indent$}duration:\n{:indent$}  nanoseconds: {duration}\n",
-        "", ""
-    );
-    if start_first {
-        write!(text, "{start}{duration}")
-    } else {
-        write!(text, "{duration}{start}")
+impl FileEntry {
+    fn to_yaml(&self) -> String {
+        let (start, duration) = times(self.bounds);
+        let times = indented(&format!("{start}{duration}"), 4);
+        let (name, messages) = (scalar(&self.name), self.messages);
+        format!("  - path: {name}\n{times}    message_count: {messages}\n")
     }
+}
+
+/// A list or map behind its key; `empty` stands for one without `lines`.
+fn block(key: &str, lines: String, empty: &str) -> String {
+    if lines.is_empty() {
+        return format!("{key}: {empty}\n");
+    }
+    format!("{key}:\n{lines}")
+}
+
+/// Start and duration; rosbag2 writes the largest number as start of nothing.
+fn times(bounds: Option<(u64, u64)>) -> (String, String) {
+    let (start, last) = bounds.unwrap_or((i64::MAX as u64, 0));
+    let duration = last.saturating_sub(start);
+    (
+        format!("starting_time:\n  nanoseconds_since_epoch: {start}\n"),
+        format!("duration:\n  nanoseconds: {duration}\n"),
+    )
 }
 
 /// Plain where YAML reads it as a text for sure, else quoted.
@@ -258,7 +234,7 @@ mod tests {
                 name: "/link/status".to_owned(),
                 schema_name: "ferntast_msgs/msg/LinkStatus".to_owned(),
                 message_encoding: "cdr".to_owned(),
-                qos: vec![QosProfile::of(Delivery::Stream)],
+                qos: vec![QosProfile::for_delivery(Delivery::Stream)],
                 type_hash: "RIHS01_00".to_owned(),
                 messages: 3,
             }],

@@ -10,10 +10,17 @@
 //!   time later, also when the process is killed,
 //! * [`BagReader`] reads any rosbag2 directory or MCAP file, its own or not,
 //!   in the order of log time and a chunk at a time,
-//! * [`info`] says what a recording holds, [`repair`] mends one that was cut
+//! * [`info`] says what a recording holds, [`repair`] restores one that was cut
 //!   off,
 //! * [`McapBus`] is a way across like the others: publish into a recording,
 //!   subscribe to one.
+//!
+//! The `mcap` crate (0.26) parses, unpacks and compares checksums; finding and
+//! ordering messages is done here, because its `SummaryReader` panics at a
+//! short attachment record, and its `IndexedReader` asserts on the content of
+//! chunks, asks for ever for one that cannot be unpacked, reads no messages
+//! outside chunks, compares no checksum and does not say where a message is
+//! (`bus/tests/mcap_garbage.rs` has such files).
 //!
 //! The same messages give the same bytes: nothing in a recording comes from a
 //! clock, from chance or from the order of a hash table.
@@ -33,7 +40,6 @@ mod options;
 mod publisher;
 mod qos;
 mod reader;
-mod records;
 mod repair;
 mod scan;
 mod sink;

@@ -1,7 +1,5 @@
 //! Quality of service as rosbag2 writes it.
 
-use std::fmt::Write;
-
 use ferntast_msgs::topics::{Delivery, EVENT_QUEUE};
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +21,7 @@ pub struct QosProfile {
 }
 
 /// rmw's `RMW_DURATION_INFINITE`, split as `rmw_time_t` is.
-const INFINITE: &str = "sec: 9223372036\nnsec: 854775807\n";
+const INFINITE: &str = "\n    sec: 9223372036\n    nsec: 854775807";
 
 const HISTORY: &[&str] = &["system_default", "keep_last", "keep_all", "unknown"];
 const RELIABILITY: &[&str] = &[
@@ -50,7 +48,7 @@ const LIVELINESS: &[&str] = &[
 
 impl QosProfile {
     /// What a topic of that delivery is offered with.
-    pub fn of(delivery: Delivery) -> QosProfile {
+    pub fn for_delivery(delivery: Delivery) -> QosProfile {
         let (depth, reliability, durability) = match delivery {
             Delivery::Stream => (1, "best_effort", "volatile"),
             Delivery::State => (1, "reliable", "transient_local"),
@@ -74,33 +72,30 @@ impl QosProfile {
     }
 }
 
-/// The profiles as YAML, every line behind `indent` spaces.
-pub(super) fn to_yaml(profiles: &[QosProfile], indent: usize) -> String {
-    let mut text = String::new();
-    for profile in profiles {
-        let mut put = |dash: &str, key: &str, value: &str| {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{:indent$}{dash}{key}:{value}", "");
-        };
-        put("- ", "history", &format!(" {}", profile.history));
-        put("  ", "depth", &format!(" {}", profile.depth));
-        put("  ", "reliability", &format!(" {}", profile.reliability));
-        put("  ", "durability", &format!(" {}", profile.durability));
-        for key in ["deadline", "lifespan"] {
-            put("  ", key, &duration(indent));
-        }
-        put("  ", "liveliness", &format!(" {}", profile.liveliness));
-        put("  ", "liveliness_lease_duration", &duration(indent));
-        put("  ", "avoid_ros_namespace_conventions", " false");
-    }
-    text
+/// The profiles as YAML.
+pub(super) fn to_yaml(profiles: &[QosProfile]) -> String {
+    let profile = |own: &QosProfile| {
+        let QosProfile {
+            history,
+            depth,
+            reliability,
+            durability,
+            liveliness,
+        } = own;
+        format!(
+            "- history: {history}\n  depth: {depth}\n  reliability: {reliability}\n  \
+             durability: {durability}\n  deadline:{INFINITE}\n  lifespan:{INFINITE}\n  \
+             liveliness: {liveliness}\n  liveliness_lease_duration:{INFINITE}\n  \
+             avoid_ros_namespace_conventions: false\n"
+        )
+    };
+    profiles.iter().map(profile).collect()
 }
 
-fn duration(indent: usize) -> String {
-    let indent = indent + 4;
-    INFINITE
-        .lines()
-        .map(|line| format!("\n{:indent$}{line}", ""))
+/// Every line behind `indent` spaces.
+pub(super) fn indented(text: &str, indent: usize) -> String {
+    text.lines()
+        .map(|line| format!("{:indent$}{line}\n", ""))
         .collect()
 }
 
@@ -150,15 +145,15 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         for delivery in [Delivery::Stream, Delivery::State, Delivery::Event] {
-            let profile = QosProfile::of(delivery);
-            let text = to_yaml(std::slice::from_ref(&profile), 0);
+            let profile = QosProfile::for_delivery(delivery);
+            let text = to_yaml(std::slice::from_ref(&profile));
             assert_eq!(QosProfile::parse(&text), [profile]);
         }
     }
 
     #[test]
     fn the_text_is_rosbag2s() {
-        let text = to_yaml(&[QosProfile::of(Delivery::State)], 0);
+        let text = to_yaml(&[QosProfile::for_delivery(Delivery::State)]);
         let expected = "- history: keep_last\n  depth: 1\n  reliability: reliable\n  \
             durability: transient_local\n  deadline:\n    sec: 9223372036\n    nsec: 854775807\n  \
             lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: automatic\n  \

@@ -45,7 +45,7 @@ pub struct BagReader {
     files: Vec<Arc<SharedFile>>,
     /// In the order of the files' channels, each once.
     topics: Vec<Arc<BagTopic>>,
-    /// By file: the topic that each channel carries.
+    /// By file: the topic of each channel.
     channels: Vec<BTreeMap<u16, Arc<BagTopic>>>,
 }
 
@@ -55,7 +55,7 @@ impl BagReader {
     /// # Errors
     ///
     /// [`OpenBagError`]; a recording that was cut off is refused here and
-    /// mended by [`repair`](super::repair).
+    /// repaired by [`repair`](super::repair).
     pub fn open(path: &Path) -> Result<BagReader, OpenBagError> {
         let layouts: Result<Vec<_>, _> = bag_files(path)?
             .iter()
@@ -174,7 +174,7 @@ impl BagReader {
         Ok(Messages::new(self.typed_raw::<M>(topic, from)?))
     }
 
-    /// The messages of a topic that carries what `M` is in ROS 2.
+    /// The messages of a topic whose type is what `M` is in ROS 2.
     pub(super) fn typed_raw<M: Message>(
         &self,
         topic: &str,
@@ -250,7 +250,7 @@ fn check_type<M: Message>(topic: &BagTopic) -> Result<(), SelectTopicError> {
     }
 }
 
-/// The topic that a channel carries.
+/// The topic of a channel.
 pub(super) fn topic_of(layout: &Layout, channel: u16) -> Option<BagTopic> {
     let channel = layout.channels.get(&channel)?;
     let schema = layout.schemas.get(&channel.schema_id);
@@ -262,7 +262,7 @@ pub(super) fn topic_of(layout: &Layout, channel: u16) -> Option<BagTopic> {
             .map(|schema| schema.encoding.clone())
             .unwrap_or_default(),
         schema_text: schema
-            .map(|schema| String::from_utf8_lossy(&schema.text).into_owned())
+            .map(|schema| String::from_utf8_lossy(&schema.data).into_owned())
             .unwrap_or_default(),
         message_encoding: channel.message_encoding.clone(),
         type_hash: entry("topic_type_hash"),

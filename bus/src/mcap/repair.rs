@@ -1,4 +1,4 @@
-//! Mending recordings that were cut off or damaged.
+//! Repairing recordings that were cut off or damaged.
 
 use std::{
     fs, io,
@@ -43,7 +43,7 @@ pub struct RepairedFile {
     pub breaks: Vec<Break>,
 }
 
-/// Mends the MCAP file or rosbag2 directory at `path`: what can be read is
+/// Repairs the MCAP file or rosbag2 directory at `path`: what can be read is
 /// written into a whole file, with `metadata.yaml` for a rosbag2 directory or
 /// a file in one.
 ///
@@ -93,11 +93,11 @@ pub fn repair(path: &Path, output: Option<&Path>) -> Result<RepairReport, Repair
             return Ok(report);
         }
     }
-    let mended = repair_file(path, target, output.is_none())?;
+    let repaired = repair_file(path, target, output.is_none())?;
     Ok(RepairReport {
         path: target.to_owned(),
-        messages: mended.file.messages,
-        files: vec![mended.file],
+        messages: repaired.file.messages,
+        files: vec![repaired.file],
         metadata_written: false,
     })
 }
@@ -118,15 +118,15 @@ fn repair_bag(
     directory: &Path,
     in_place: bool,
 ) -> Result<RepairReport, RepairError> {
-    let mut mended = Vec::new();
+    let mut repaired = Vec::new();
     for (source, target) in sources {
-        mended.push(repair_file(source, target, in_place)?);
+        repaired.push(repair_file(source, target, in_place)?);
     }
-    let changed = mended.iter().any(|one| !one.file.breaks.is_empty());
+    let changed = repaired.iter().any(|one| !one.file.breaks.is_empty());
     let readable = bag_files(directory).is_ok() && directory.join(METADATA_FILE).exists();
     let metadata_written = changed || !readable || !in_place;
     if metadata_written {
-        let metadata = mended
+        let metadata = repaired
             .iter()
             .map(|one| one.metadata.clone())
             .reduce(join)
@@ -141,21 +141,21 @@ fn repair_bag(
     }
     Ok(RepairReport {
         path: directory.to_owned(),
-        messages: mended.iter().map(|one| one.file.messages).sum(),
-        files: mended.into_iter().map(|one| one.file).collect(),
+        messages: repaired.iter().map(|one| one.file.messages).sum(),
+        files: repaired.into_iter().map(|one| one.file).collect(),
         metadata_written,
     })
 }
 
 /// A file that is whole now.
-struct Mended {
+struct RepairOutcome {
     file: RepairedFile,
     metadata: BagMetadata,
 }
 
 /// Writes what can be read of `source` to `target`. In place, a file that is
 /// whole is left alone.
-fn repair_file(source: &Path, target: &Path, in_place: bool) -> Result<Mended, RepairError> {
+fn repair_file(source: &Path, target: &Path, in_place: bool) -> Result<RepairOutcome, RepairError> {
     let layout = Layout::salvage(source)?;
     let part = with_suffix(target, ".part")?;
     let written = copy(&layout, target, &part);
@@ -180,7 +180,7 @@ fn repair_file(source: &Path, target: &Path, in_place: bool) -> Result<Mended, R
         }
         fs::rename(&part, target).map_err(|error| write_error(target, &error))?;
     }
-    Ok(Mended {
+    Ok(RepairOutcome {
         file: RepairedFile {
             path: target.to_owned(),
             backup,

@@ -11,10 +11,11 @@ use mcap::{
 };
 
 use super::{
-    block::{Block, BlockError, BlockKind, Fault, decode},
+    block::{
+        Block, BlockError, BlockKind, FRAME, Fault, MESSAGE_HEADER, decode, frame, message_header,
+    },
     error::OpenBagError,
     layout::{Layout, read_metadata},
-    records::{FRAME, MESSAGE_HEADER, frame, message_header},
 };
 
 /// Messages outside chunks are taken together up to this length \[bytes\].
@@ -96,7 +97,7 @@ impl Scanner {
                     }
                     reader.read_exact(&mut header)?;
                     if let Some(header) = message_header(&header) {
-                        self.message(layout, length, header.channel, header.log_time);
+                        self.message(layout, length, header.channel_id, header.log_time);
                     }
                     reader.seek_relative(-(MESSAGE_HEADER as i64))?;
                 }
@@ -131,7 +132,7 @@ impl Scanner {
                 let times = || decoded.entries.iter().map(|entry| entry.header.log_time);
                 block.start = times().min().unwrap_or(0);
                 block.end = times().max().unwrap_or(0);
-                let channels = decoded.entries.iter().map(|entry| entry.header.channel);
+                let channels = decoded.entries.iter().map(|entry| entry.header.channel_id);
                 block.channels = Some(channels.collect());
                 if !decoded.entries.is_empty() {
                     layout.blocks.push(block);

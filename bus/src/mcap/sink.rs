@@ -6,14 +6,14 @@ use std::{
 };
 
 /// A file, as far as a recording needs one.
-pub(super) trait Store: Write + Send {
+pub(super) trait Storage: Write + Send {
     /// Cuts the store to `length` bytes; the next write goes to its end.
     fn cut(&mut self, length: u64) -> io::Result<()>;
     /// Brings what was written to the disk.
     fn sync(&mut self) -> io::Result<()>;
 }
 
-impl Store for File {
+impl Storage for File {
     fn cut(&mut self, length: u64) -> io::Result<()> {
         self.set_len(length)?;
         self.seek(SeekFrom::Start(length)).map(|_| ())
@@ -27,14 +27,14 @@ impl Store for File {
 /// Gathers bytes in memory and hands them to the store at [`Write::flush`],
 /// all of them or, when the store refuses, none: then they wait for the next
 /// flush, and the store ends behind the last chunk that is whole.
-pub(super) struct Sink<S: Store> {
+pub(super) struct Sink<S: Storage> {
     store: S,
     stored: u64,
     staged: Vec<u8>,
     torn: bool,
 }
 
-impl<S: Store> Sink<S> {
+impl<S: Storage> Sink<S> {
     pub(super) fn new(store: S) -> Sink<S> {
         Sink {
             store,
@@ -49,13 +49,13 @@ impl<S: Store> Sink<S> {
         self.stored
     }
 
-    /// See [`Store::sync`].
+    /// See [`Storage::sync`].
     pub(super) fn sync(&mut self) -> io::Result<()> {
         self.store.sync()
     }
 }
 
-impl<S: Store> Write for Sink<S> {
+impl<S: Storage> Write for Sink<S> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.staged.extend_from_slice(bytes);
         Ok(bytes.len())
@@ -86,7 +86,7 @@ impl<S: Store> Write for Sink<S> {
 }
 
 /// The MCAP writer only asks where it is.
-impl<S: Store> Seek for Sink<S> {
+impl<S: Storage> Seek for Sink<S> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         match to {
             SeekFrom::Current(0) | SeekFrom::End(0) => Ok(self.stored + self.staged.len() as u64),
@@ -134,7 +134,7 @@ pub(super) mod tests {
         }
     }
 
-    impl Store for SmallDisk {
+    impl Storage for SmallDisk {
         fn cut(&mut self, length: u64) -> io::Result<()> {
             self.content.lock().unwrap().truncate(length as usize);
             Ok(())

@@ -17,7 +17,7 @@ impl fmt::Display for BagInfo {
             if self.closed {
                 "closed"
             } else {
-                "NOT CLOSED: ferntast bag repair mends it"
+                "NOT CLOSED: repair it with `ferntast bag repair`"
             }
         )?;
         for place in &self.breaks {

@@ -129,11 +129,11 @@ impl BagWriter {
         };
         let schema = interface::schema(interface).map_err(no_schema)?;
         let type_hash = interface::type_hash(interface).map_err(no_schema)?;
-        let qos = QosProfile::of(topic.delivery);
+        let qos = QosProfile::for_delivery(topic.delivery);
         let metadata = BTreeMap::from([
             (
                 "offered_qos_profiles".to_owned(),
-                to_yaml(std::slice::from_ref(&qos), 0).trim_end().to_owned(),
+                to_yaml(std::slice::from_ref(&qos)).trim_end().to_owned(),
             ),
             ("topic_type_hash".to_owned(), type_hash.clone()),
         ]);

@@ -28,7 +28,7 @@ impl<M: Copy> Ring<M> {
         }
     }
 
-    /// Makes room for a queue of that depth; the only place that allocates.
+    /// Allocates a queue of that depth; the only place that allocates.
     pub(super) fn reserve(&mut self, depth: usize) {
         let places = AHEAD + depth;
         if places > self.places {

@@ -2,7 +2,7 @@
 //!
 //! It belongs to a node of its own beside the bus's, so that its name is short
 //! (`ros2 param set /link law wave`). Whoever opens it hears what others wish,
-//! and tells what became of it.
+//! and reports the result.
 
 mod dds;
 mod zenoh;
@@ -47,7 +47,7 @@ enum Kind {
 
 impl ParameterNode {
     /// Offers `choice` on the ROS 2 that `bus` is on; `None` on a bus that is
-    /// not ROS 2. To be told about by [`ParameterNode::tell`] from this thread.
+    /// not ROS 2. Reported to by [`ParameterNode::tell`] from this thread.
     ///
     /// # Errors
     ///
@@ -75,7 +75,7 @@ impl ParameterNode {
         self.wishes.try_iter().last()
     }
 
-    /// Tells what is chosen in truth. Gives the library's reason where it refuses.
+    /// Publishes what is in effect. Gives the library's reason where it refuses.
     ///
     /// # Errors
     ///

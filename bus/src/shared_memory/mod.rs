@@ -4,10 +4,10 @@
 //! publisher never waits. Each session has a prefix and a directory of its
 //! own, so that two sessions on one host do not meet.
 
-mod keeper;
+mod free_memory;
+mod late_joiners;
 mod payload;
 mod publisher;
-mod room;
 mod service;
 mod session;
 mod subscriber;
@@ -30,7 +30,7 @@ use crate::{
     error::{CleanUpError, CreateError, OpenError},
     types::Depth,
 };
-use keeper::Keeper;
+use late_joiners::ConnectionUpdater;
 
 /// iceoryx2's service variant: ports may move between threads.
 type Service = ipc_threadsafe::Service;
@@ -56,7 +56,7 @@ pub struct SharedMemoryConfig {
 pub struct SharedMemoryBus {
     session: String,
     node: Arc<Node<Service>>,
-    keeper: Arc<Keeper>,
+    connections: Arc<ConnectionUpdater>,
 }
 
 impl SharedMemoryBus {
@@ -74,7 +74,7 @@ impl SharedMemoryBus {
         let session = &config.session;
         let settings = session::config(session)?;
         session::check_access(session)?;
-        room::for_session()?;
+        free_memory::check_for_session()?;
         let node = NodeBuilder::new()
             .config(&settings)
             .signal_handling_mode(SignalHandlingMode::Disabled)
@@ -96,7 +96,7 @@ impl SharedMemoryBus {
         Ok(SharedMemoryBus {
             session: session.clone(),
             node: Arc::new(node),
-            keeper: Arc::new(Keeper::default()),
+            connections: Arc::new(ConnectionUpdater::default()),
         })
     }
 

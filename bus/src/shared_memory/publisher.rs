@@ -9,10 +9,9 @@ use ferntast_msgs::{
 use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
 
 use super::{
-    MAX_PUBLISHERS, Service, SharedMemoryBus,
-    keeper::Keeper,
+    MAX_PUBLISHERS, Service, SharedMemoryBus, free_memory,
+    late_joiners::ConnectionUpdater,
     payload::Payload,
-    room,
     service::{self, Factory},
 };
 use crate::error::{CreateError, PublishError};
@@ -24,7 +23,7 @@ pub struct SharedMemoryPublisher<M: Message> {
     port: Arc<Publisher<Service, Payload<M>, ()>>,
     sent: u64,
     // Kept: the thread that serves late joiners, and the service.
-    _keeper: Arc<Keeper>,
+    _connections: Arc<ConnectionUpdater>,
     _service: Factory<M>,
 }
 
@@ -33,7 +32,7 @@ impl<M: Message> SharedMemoryPublisher<M> {
         bus: &SharedMemoryBus,
         topic: Topic<M>,
     ) -> Result<SharedMemoryPublisher<M>, CreateError> {
-        room::for_publisher(topic)?;
+        free_memory::check_for_publisher(topic)?;
         let service = service::open(bus, topic, "publisher")?;
         let port = service
             .publisher_builder()
@@ -58,7 +57,7 @@ impl<M: Message> SharedMemoryPublisher<M> {
             })?;
         let port = Arc::new(port);
         if topic.delivery == Delivery::State {
-            bus.keeper
+            bus.connections
                 .serve(&port)
                 .map_err(|error| CreateError::Middleware {
                     transport: "shared memory",
@@ -71,7 +70,7 @@ impl<M: Message> SharedMemoryPublisher<M> {
             topic,
             port,
             sent: 0,
-            _keeper: bus.keeper.clone(),
+            _connections: bus.connections.clone(),
             _service: service,
         })
     }

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     error::CreateError,
-    gaps::Gaps,
+    sequence_gaps::SequenceGaps,
     types::{Depth, Received, SubscriberCounts},
 };
 
@@ -20,7 +20,7 @@ pub struct SharedMemorySubscriber<M: Message> {
     port: Subscriber<Service, Payload<M>, ()>,
     depth: Depth,
     counts: SubscriberCounts,
-    gaps: Gaps,
+    gaps: SequenceGaps,
     _service: Factory<M>,
 }
 
@@ -61,7 +61,7 @@ impl<M: Message> SharedMemorySubscriber<M> {
             port,
             depth,
             counts: SubscriberCounts::default(),
-            gaps: Gaps::default(),
+            gaps: SequenceGaps::default(),
             _service: service,
         })
     }

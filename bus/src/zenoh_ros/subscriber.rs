@@ -14,7 +14,7 @@ use super::{
 use crate::{
     cdr,
     error::{CreateError, DecodeError},
-    gaps::{self, Gaps},
+    sequence_gaps::{self, SequenceGaps},
     types::{Depth, Received, SubscriberCounts},
 };
 
@@ -25,7 +25,7 @@ pub struct ZenohSubscriber<M: Message> {
     port: ZSub<Raw, Sample, SerdeCdrSerdes<Raw>>,
     depth: Depth,
     counts: SubscriberCounts,
-    gaps: Gaps,
+    gaps: SequenceGaps,
     // Kept: the session.
     _bus: ZenohBus,
 }
@@ -58,7 +58,7 @@ impl<M: Message> ZenohSubscriber<M> {
             port,
             depth,
             counts: SubscriberCounts::default(),
-            gaps: Gaps::default(),
+            gaps: SequenceGaps::default(),
             _bus: bus.clone(),
         })
     }
@@ -115,7 +115,7 @@ impl<M: Message> ZenohSubscriber<M> {
     /// Who sent it, by the attachment that rmw_zenoh sends along; gaps in its numbers are counted.
     fn sender(&mut self, sample: &Sample) -> u64 {
         let Some(Ok(attachment)) = sample.attachment().map(Attachment::try_from) else {
-            return gaps::source(&[]);
+            return sequence_gaps::source(&[]);
         };
         let guid = attachment.source_gid;
         if let Ok(number) = u64::try_from(attachment.sequence_number) {
@@ -124,7 +124,7 @@ impl<M: Message> ZenohSubscriber<M> {
                 self.counts.overflowed += missing;
             }
         }
-        gaps::source(&guid)
+        sequence_gaps::source(&guid)
     }
 }
 

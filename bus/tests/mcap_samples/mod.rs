@@ -12,9 +12,8 @@ use ferntast_msgs::{
         FrictionCommandSample, FrictionSource, FrictionStatusSample, HealthSample, JointFields,
         JointSample, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
         OperatingState, OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
-        RecorderStatusSample, RefusedFrames, RobotDescriptionSample, StateCommand,
-        StateCommandSample, TemperatureSample, TransformsSample, TwinParametersSample, TwinVerdict,
-        WrenchSample,
+        RecorderStatusSample, RobotDescriptionSample, StateCommand, StateCommandSample,
+        TemperatureSample, TransformsSample, TwinParametersSample, TwinVerdict, WrenchSample,
     },
     topics::{self, Topic, Visitor},
 };
@@ -70,7 +69,7 @@ pub fn joint(x: f64, stamp: Time) -> JointSample {
         velocity: [1.5 + x, -2.5 - x],
         effort: [10.5 + x, -20.25 - x],
         fields: JointFields::ALL,
-        reserved: 0,
+        reserved: [0; 4],
     }
 }
 
@@ -81,7 +80,7 @@ fn pose(x: f64, stamp: Time) -> PoseSample {
         orientation: [0.0, 0.0, 0.0, 1.0],
         source: 0,
         frame: Frame::FOLLOWER_BASE,
-        reserved: 0,
+        reserved: [0; 7],
     }
 }
 
@@ -106,7 +105,7 @@ fn wrench(x: f64, stamp: Time) -> WrenchSample {
         force: [3.5 + x, -4.5, 0.0],
         torque: [0.0, 0.0, 0.75],
         frame: Frame::CONTACT,
-        reserved: 0,
+        reserved: [0; 7],
     }
 }
 
@@ -170,7 +169,8 @@ fn friction_status(k: u32, stamp: Time) -> FrictionStatusSample {
         refused: Text::new("no twin was heard"),
         count: 1,
         source: FrictionSource::TWIN,
-        ..FrictionStatusSample::nothing(stamp, 1)
+        joint: Text::new("joint_2"),
+        ..FrictionStatusSample::initial(stamp)
     };
     sample.names[0] = Text::new("b_0");
     sample.configured[0] = 12.5;
@@ -204,16 +204,14 @@ fn link_status(k: u32, stamp: Time) -> LinkStatusSample {
         sent: 1000 + count,
         received: 998 + count,
         lost: 1,
-        refused: RefusedFrames {
-            length: 1,
-            version: 2,
-            session: 3,
-            checksum: 4,
-            time: 5,
-            value: 6,
-            replayed: 7,
-            late: 8,
-        },
+        refused_length: 1,
+        refused_version: 2,
+        refused_session: 3,
+        refused_checksum: 4,
+        refused_time: 5,
+        refused_value: 6,
+        refused_replayed: 7,
+        refused_late: 8,
         law: Text::new("position_force"),
         session: 7,
         end: LinkEnd::FOLLOWER,
@@ -237,7 +235,8 @@ fn twin_parameters(k: u32, stamp: Time) -> TwinParametersSample {
         count: 2,
         out_of_band: 1,
         verdict: TwinVerdict::MISSING,
-        ..TwinParametersSample::nothing(stamp, 1)
+        joint: Text::new("joint_2"),
+        ..TwinParametersSample::initial(stamp)
     };
     for (i, name) in ["b0", "b1"].into_iter().enumerate() {
         let x = i as f64;
@@ -288,7 +287,7 @@ fn recorder_status(k: u32, stamp: Time) -> RecorderStatusSample {
         messages: u64::from(k),
         folder: Text::new("recordings/first"),
         recording: 1,
-        ..RecorderStatusSample::idle(stamp)
+        ..RecorderStatusSample::initial(stamp)
     }
 }
 

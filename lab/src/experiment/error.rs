@@ -30,7 +30,7 @@ pub enum ExperimentError {
         path: PathBuf,
         /// The key.
         key: String,
-        /// What is wrong, and how to mend it.
+        /// What is wrong, and how to correct it.
         reason: String,
     },
     /// The recording that should stand for an experiment cannot be opened.
@@ -86,7 +86,7 @@ pub enum WriteError {
         /// The effect.
         effect: String,
     },
-    /// The recordings cannot be read to be told apart by their hash.
+    /// The recordings cannot be read for their hash.
     #[error("cannot read {}: {source}", path.display())]
     Data {
         /// The file.

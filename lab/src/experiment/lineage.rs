@@ -44,7 +44,7 @@ pub struct Lineage {
 pub struct FittedParameter {
     /// Its value.
     pub value: f64,
-    /// Its standard error; nothing where it could not be told.
+    /// Its standard error; nothing where it could not be determined.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub std_error: Option<f64>,
     /// Unit of both.

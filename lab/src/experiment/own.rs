@@ -8,7 +8,7 @@ use ferntast_model::{friction, joint::JointParameters};
 use ferntast_msgs::topics;
 
 use super::{Experiment, ExperimentError, Signals};
-use crate::recording::numbers_of;
+use crate::numbers::numbers_of;
 
 /// Name of the metadata record that a recording of ours carries: what it was
 /// made of.

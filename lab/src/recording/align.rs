@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use ferntast_identification::statistics::quantile;
+
 use super::{LoadError, Series, VALID};
 
 /// An interval more than that many periods long is a gap.
@@ -107,11 +109,7 @@ fn median_interval(series: &Series) -> i64 {
         .windows(2)
         .map(|pair| pair[1].saturating_sub(pair[0]))
         .collect();
-    let middle = intervals.len() / 2;
-    match intervals.is_empty() {
-        true => 0,
-        false => *intervals.select_nth_unstable(middle).1,
-    }
+    quantile(&mut intervals, 0.5, i64::cmp).unwrap_or(0)
 }
 
 impl<'a> Timed<'a> {

@@ -12,7 +12,7 @@
 //!   samples are left out.
 //! * Unevenly sampled sessions are interpolated onto their mean period.
 //! * Sessions keep the time between them where files carry a date; files whose
-//!   clock begins anew are put one behind the other.
+//!   clock starts again are put one behind the other.
 
 mod align;
 mod bag;
@@ -24,7 +24,6 @@ use ferntast_identification::{Dataset, Session};
 
 use crate::{csv, experiment::Experiment};
 
-pub(crate) use bag::numbers_of;
 pub use error::LoadError;
 
 /// The signal that says which samples count.

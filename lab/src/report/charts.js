@@ -51,8 +51,9 @@ const allCharts = [];
 
 /**
  * A chart in `parent`. `curves`: [{name, x, y, colour, band (half width, as
- * long as y), dots, visible}], x ascending; `labels`: {x, y, step (least
- * distance of ticks on x)}; `height` in px.
+ * long as y), dots, hollow (which of the dots), tell (text on a point),
+ * visible}], x ascending; `labels`: {x, y, step (least distance of ticks on
+ * x)}; `height` in px.
  */
 function chart(parent, curves, labels, height) {
   const box = document.createElement("div");
@@ -196,7 +197,10 @@ function chart(parent, curves, labels, height) {
         if (curve.y[i] === null) continue;
         pen.beginPath();
         pen.arc(f.x(curve.x[i]), f.y(curve.y[i]), 3.5, 0, 7);
+        const hollow = curve.hollow && curve.hollow[i];
+        pen.fillStyle = hollow ? colour("--panel") : pen.strokeStyle;
         pen.fill();
+        if (hollow) pen.stroke();
       }
     }
   }

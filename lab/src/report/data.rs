@@ -115,7 +115,7 @@ pub struct Candidate {
     pub unit: String,
     /// Probability of such a gain by chance.
     pub p_value: f64,
-    /// What it cannot be told apart from.
+    /// What it cannot be distinguished from.
     pub indistinguishable_from: Vec<String>,
     /// What would separate them; may be empty.
     pub separate_by: String,
@@ -148,7 +148,7 @@ pub struct Parameter {
     pub name: String,
     /// Its value.
     pub value: f64,
-    /// Its standard error; `None` where it could not be told.
+    /// Its standard error; `None` where it could not be determined.
     pub std_error: Option<f64>,
     /// Unit of both.
     pub unit: String,

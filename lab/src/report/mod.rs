@@ -19,6 +19,7 @@ pub use data::{
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 const CHARTS: &str = include_str!("charts.js");
+const KIT: &str = include_str!("kit.js");
 const SECTIONS: &str = include_str!("sections.js");
 
 /// Why there is no page.
@@ -36,8 +37,9 @@ pub fn render(report: &Report) -> Result<String, RenderError> {
     Ok(page(&report.title, SECTIONS, "showReport", &data))
 }
 
-/// A page in the same style: `data` is JSON that the function named `show` of
-/// the script `sections` takes; charts are at its hand.
+/// A page of the same kit: `data` is JSON that the function named `show` of
+/// the script `sections` takes, which has charts (`charts.js`), tables and the
+/// like (`kit.js`) at hand.
 pub fn page(title: &str, sections: &str, show: &str, data: &str) -> String {
     let data = in_script(data);
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
@@ -47,6 +49,7 @@ pub fn page(title: &str, sections: &str, show: &str, data: &str) -> String {
             ("@TITLE@", title.as_str()),
             ("@STYLE@", STYLE),
             ("@CHARTS@", CHARTS),
+            ("@KIT@", KIT),
             ("@SECTIONS@", sections),
             ("@DATA@", &data),
             ("@SHOW@", show),
@@ -56,12 +59,12 @@ pub fn page(title: &str, sections: &str, show: &str, data: &str) -> String {
 
 /// JSON as it may stand in a script element: nothing in it ends the element or
 /// begins a comment.
-pub fn in_script(json: &str) -> String {
+fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
 /// `template` with its marks, in the order of `parts`, replaced by content.
-pub fn fill(template: &str, parts: &[(&str, &str)]) -> String {
+fn fill(template: &str, parts: &[(&str, &str)]) -> String {
     let content: usize = parts.iter().map(|(_, content)| content.len()).sum();
     // Piece by piece, so that what is put in is never searched.
     let mut page = String::with_capacity(template.len() + content);

@@ -1,67 +1,9 @@
-// What the page shows, from top to bottom.
-
-function make(parent, tag, text, kind) {
-  const element = document.createElement(tag);
-  if (text !== undefined && text !== null) element.textContent = text;
-  if (kind) element.className = kind;
-  parent.append(element);
-  return element;
-}
+// What a report shows, from top to bottom.
 
 function percent(before, after) {
   if (!(before > 0) || !isFinite(after)) return "–";
   const change = (100 * (after - before)) / before;
   return (change > 0 ? "+" : "−") + Math.abs(change).toFixed(1) + " %";
-}
-
-function section(page, title, words) {
-  const part = make(page, "section");
-  make(part, "h2", title);
-  if (words) make(part, "p", words, "quiet");
-  return part;
-}
-
-/** A table; columns: [title, whether it holds numbers]. */
-function table(parent, columns, rows) {
-  const scroll = make(parent, "div", null, "scroll panel");
-  const grid = make(scroll, "table");
-  const head = make(make(grid, "thead"), "tr");
-  for (const [title, number] of columns) {
-    make(head, "th", title, number ? "number" : "").scope = "col";
-  }
-  const body = make(grid, "tbody");
-  for (const row of rows) {
-    const line = make(body, "tr");
-    row.forEach((cell, n) => {
-      const place = make(line, "td", cell instanceof Node ? null : cell, columns[n][1] ? "number" : "");
-      if (cell instanceof Node) place.append(cell);
-    });
-  }
-}
-
-const curveColours = new Map();
-function colourOf(name) {
-  if (!curveColours.has(name)) curveColours.set(name, "--curve-" + (curveColours.size % 4));
-  return curveColours.get(name);
-}
-
-function showTheme(header) {
-  const button = make(header, "button");
-  const dark = window.matchMedia("(prefers-color-scheme: dark)");
-  let chosen = null;
-  const apply = () => {
-    const theme = chosen || (dark.matches ? "dark" : "light");
-    document.documentElement.dataset.theme = theme;
-    button.textContent = theme === "dark" ? "Light" : "Dark";
-    for (const each of allCharts) each.draw();
-  };
-  button.addEventListener("click", () => {
-    chosen = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
-    apply();
-  });
-  dark.addEventListener("change", apply);
-  window.addEventListener("beforeprint", () => { chosen = "light"; apply(); });
-  apply();
 }
 
 function showTraces(page, plots) {
@@ -77,29 +19,17 @@ function showTraces(page, plots) {
   } else {
     make(bar, "h3", plots[0].title);
   }
-  const hidden = new Set();
+  const names = [...new Set(plots.flatMap((plot) => plot.curves.map((curve) => curve.name)))];
+  const colourOf = (name) => curveColour(names.indexOf(name));
+  const hidden = legend(bar, names, colourOf, () => {
+    for (const curve of drawn.curves) curve.visible = !hidden.has(curve.name);
+    drawn.draw();
+  });
   const curves = (plot) => plot.curves.map((curve) => ({
     ...curve, colour: colourOf(curve.name), visible: !hidden.has(curve.name),
   }));
-  const names = new Set(plots.flatMap((plot) => plot.curves.map((curve) => curve.name)));
-  const buttons = [];
-  for (const name of names) {
-    const button = make(bar, "button");
-    make(button, "span", null, "swatch").style.background = "var(" + colourOf(name) + ")";
-    button.append(name);
-    button.setAttribute("aria-pressed", "true");
-    buttons.push([name, button]);
-  }
   const labels = { x: "time [s]", y: "[" + plots[0].unit + "]" };
   const drawn = chart(panel, curves(plots[0]), labels, 340);
-  for (const [name, button] of buttons) {
-    button.addEventListener("click", () => {
-      if (!hidden.delete(name)) hidden.add(name);
-      button.setAttribute("aria-pressed", String(!hidden.has(name)));
-      for (const curve of drawn.curves) curve.visible = !hidden.has(curve.name);
-      drawn.draw();
-    });
-  }
   const show = (n) => {
     labels.y = "[" + plots[n].unit + "]";
     drawn.show(curves(plots[n]));
@@ -164,12 +94,7 @@ function showHistory(page, steps) {
 }
 
 function showReport(report) {
-  const page = document.getElementById("page");
-  const header = make(page, "header");
-  const words = make(header, "div");
-  make(words, "h1", report.title);
-  if (report.subtitle) make(words, "p", report.subtitle, "quiet");
-  showTheme(header);
+  const page = begin(report.title, report.subtitle);
   if (report.verdict) {
     const box = make(page, "div", null, "verdict " + report.verdict.kind);
     make(box, "b", report.verdict.kind);

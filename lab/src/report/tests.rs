@@ -1,7 +1,7 @@
 //! The page is whole in itself, and holds what it was given.
 
 use super::{
-    thin::{MOST, points},
+    thin::{MAX_POINTS, points},
     *,
 };
 
@@ -49,9 +49,16 @@ fn the_page_holds_the_data_and_asks_nothing_of_a_network() {
         .replace(&nasty.replace('<', "\\u003c"), "")
         .replace(&nasty.replace('<', "&lt;"), "");
     assert!(
-        ["@TITLE@", "@STYLE@", "@CHARTS@", "@SECTIONS@", "@DATA@"]
-            .iter()
-            .all(|mark| !without.contains(mark))
+        [
+            "@TITLE@",
+            "@STYLE@",
+            "@CHARTS@",
+            "@KIT@",
+            "@SECTIONS@",
+            "@DATA@"
+        ]
+        .iter()
+        .all(|mark| !without.contains(mark))
     );
 }
 
@@ -62,7 +69,7 @@ fn a_long_curve_is_thinned_out_and_keeps_its_peaks() {
     values[400_001] = -9.0;
     let points = points("measured", 0.0, 0.001, &values);
     assert!(
-        points.x.len() <= MOST && points.x.len() > MOST / 2,
+        points.x.len() <= MAX_POINTS && points.x.len() > MAX_POINTS / 2,
         "{}",
         points.x.len()
     );

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Report, Trace};
 
 /// A curve keeps at most that many values; a screen has fewer columns.
-pub(super) const MOST: usize = 20_000;
+pub(super) const MAX_POINTS: usize = 20_000;
 
 /// A report with its curves as points.
 #[derive(Debug, Serialize)]
@@ -57,11 +57,11 @@ fn plot(trace: &Trace) -> Plot {
 
 pub(super) fn points(name: &str, start: f64, period: f64, values: &[f64]) -> Points {
     let mut kept: Vec<usize> = Vec::new();
-    if values.len() <= MOST {
+    if values.len() <= MAX_POINTS {
         kept.extend(0..values.len());
     } else {
         // Two of every stretch, the smallest and the largest, in their order.
-        let stretch = values.len().div_ceil(MOST / 2);
+        let stretch = values.len().div_ceil(MAX_POINTS / 2);
         for first in (0..values.len()).step_by(stretch) {
             let range = first..(first + stretch).min(values.len());
             let value = |index: &usize| values.get(*index).copied().unwrap_or(f64::NAN);

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use ferntast_bus::cdr::MAX_PADDING;
 use ferntast_msgs::interface::Count;
 
 use super::{
@@ -11,9 +12,6 @@ use super::{
     select::{Move, Selection, Test},
 };
 use crate::message_path::Literal;
-
-/// RTPS pads a payload to a multiple of four bytes.
-const MAX_PADDING: usize = 3;
 
 /// What a message has where a path points.
 #[derive(Clone, Copy, Debug, PartialEq)]

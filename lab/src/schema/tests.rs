@@ -184,7 +184,7 @@ fn a_path_that_does_not_fit_says_why() {
 #[test]
 fn every_kind_of_field_is_passed_over_and_read() {
     let schema = "\
-int32 LIMIT=3  # a constant takes no room
+int32 LIMIT=3  # a constant takes no space
 bool flag true
 byte raw
 char letter

@@ -92,7 +92,7 @@ pub(super) fn fitted(
 }
 
 impl Opened {
-    /// Adds `effect`, fits anew, and writes the new experiment to `output`.
+    /// Adds `effect`, fits again, and writes the new experiment to `output`.
     ///
     /// # Errors
     ///

@@ -76,7 +76,7 @@ pub enum WorkError {
         /// Why.
         reason: String,
     },
-    /// An effect of one's own is not told as it has to be.
+    /// A custom effect is not described as it has to be.
     #[error("{0}")]
     OwnEffect(String),
 }

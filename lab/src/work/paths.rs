@@ -6,7 +6,7 @@ use ferntast_bus::mcap::BagReader;
 use serde::Serialize;
 
 use super::WorkError;
-use crate::{csv, experiment::ExperimentError, recording};
+use crate::{csv, experiment::ExperimentError, numbers::numbers_of};
 
 /// The numbers of a recording that can be signals.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -39,7 +39,7 @@ pub fn offered(path: &Path) -> Result<Offered, WorkError> {
     }
     let bag = BagReader::open(path).map_err(ExperimentError::from)?;
     Ok(Offered {
-        paths: recording::numbers_of(&bag),
+        paths: numbers_of(&bag),
         time: None,
         own: bag.metadata().contains_key(crate::experiment::RECORD),
     })

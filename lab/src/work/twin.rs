@@ -8,7 +8,7 @@ use std::{
 use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{Term, add};
 use ferntast_msgs::{
-    sample::{TwinParametersSample, TwinVerdict},
+    sample::{JOINT_NAMES, TwinParametersSample, TwinVerdict},
     topics,
 };
 use serde::Serialize;
@@ -64,11 +64,17 @@ fn last_word(path: &Path) -> Result<(TwinParametersSample, f64), WorkError> {
     let (mut squares, mut count) = (0.0, 0_u64);
     for residual in residuals {
         let residual = residual.map_err(|error| twin(error.to_string()))?.message;
-        let own = residual.effort.get(usize::from(last.joint)).copied();
+        let own = index(&last).and_then(|joint| residual.effort.get(joint).copied());
         squares += own.unwrap_or(0.0).powi(2);
         count += 1;
     }
     Ok((last, (squares / count.max(1) as f64).sqrt()))
+}
+
+/// Where the twin's joint stands in joint states.
+fn index(word: &TwinParametersSample) -> Option<usize> {
+    let name = word.joint.as_str();
+    JOINT_NAMES.iter().position(|known| *known == name)
 }
 
 /// Writes to `output` the experiment `model` on the `recording` in which its
@@ -90,12 +96,11 @@ pub fn from_twin(model: &Path, recording: &Path, output: &Path) -> Result<FromTw
         path: recording.to_owned(),
         reason,
     };
-    let joint = usize::from(word.joint);
-    if !parent.signals.position.ends_with(&format!("[{joint}]")) {
+    let position = &parent.signals.position;
+    if !index(&word).is_some_and(|joint| position.ends_with(&format!("[{joint}]"))) {
         return Err(other(format!(
-            "its twin followed joint_{}, the experiment's position is {}",
-            joint + 1,
-            parent.signals.position
+            "its twin followed {}, the experiment's position is {position}",
+            word.joint
         )));
     }
     let opened = Opened::read(Experiment {

@@ -85,9 +85,53 @@ const STANDARD: &[(&str, &str)] = &[
     ),
 ];
 
+/// Those that recordings were made with, as they have always been.
+const OWN: &[(&str, &str)] = &[
+    (
+        "crtk_msgs/msg/OperatingState",
+        "RIHS01_5cc57eea589b217fe5194bf2735b91d4a7f2dd5ac1245ae657f7ea7590c2c80e",
+    ),
+    (
+        "crtk_msgs/msg/StringStamped",
+        "RIHS01_83efb802e6596e03f69ac322e3231037329946f2bd13ed48874d97f5b8f5db1d",
+    ),
+    (
+        "ferntast_msgs/msg/Authority",
+        "RIHS01_9bee3496c113cd8cea62c1da34c5651906bee5054649fc703cf2214594e48e2d",
+    ),
+    (
+        "ferntast_msgs/msg/ContactState",
+        "RIHS01_186c33178c01ee02207e8f8b693d09d692b44f8d33475ed5890403622dc7810c",
+    ),
+    (
+        "ferntast_msgs/msg/FrictionStatus",
+        "RIHS01_c89fc37bbeef45cb28d98e70bf2cbbb74fe17f95a39e1c205a505db894810531",
+    ),
+    (
+        "ferntast_msgs/msg/LinkCommand",
+        "RIHS01_586dcc74219d70aa69032e1ee5e30a5bc973feabd75622bf133c108007e793bf",
+    ),
+    (
+        "ferntast_msgs/msg/LinkStatus",
+        "RIHS01_ac971d8551c4f3ebe841c402a06a8280b788ef79eedc48d9c05e13923ac2d245",
+    ),
+    (
+        "ferntast_msgs/msg/RecorderCommand",
+        "RIHS01_947fc351cd130e8ad9481296bf391799d924821e4811032fda515bcd3981a0c8",
+    ),
+    (
+        "ferntast_msgs/msg/RecorderStatus",
+        "RIHS01_a48be59753232ea0011e41372dbd01510bdce0e7c2373e4e960c966607148f38",
+    ),
+    (
+        "ferntast_msgs/msg/TwinParameters",
+        "RIHS01_5846b7c6268d5ce6fdfb8e40d5cf6a4968ca2199b903317ced6503f2b96b8592",
+    ),
+];
+
 #[test]
-fn the_standard_types_hash_as_in_ros_2() {
-    for (name, hash) in STANDARD {
+fn types_hash_as_in_ros_2_and_as_ever() {
+    for (name, hash) in STANDARD.iter().chain(OWN) {
         assert_eq!(type_hash(name).unwrap(), *hash, "{name}");
     }
 }

@@ -23,9 +23,14 @@ pub use value::Value;
 
 use serde::Serialize;
 
+use crate::{
+    Message, RosMessage,
+    topics::{self, Topic, Visitor},
+};
+
 macro_rules! texts {
     ($($name:literal: $path:literal;)*) => {
-        /// Name and `.msg` text of every interface that is built in.
+        /// Name and `.msg` text of the interfaces of other packages.
         const TEXTS: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../", $path)))),*];
     };
 }
@@ -51,27 +56,36 @@ texts! {
     "diagnostic_msgs/msg/DiagnosticArray": "standard/diagnostic_msgs/msg/DiagnosticArray.msg";
     "crtk_msgs/msg/OperatingState": "standard/crtk_msgs/msg/OperatingState.msg";
     "crtk_msgs/msg/StringStamped": "standard/crtk_msgs/msg/StringStamped.msg";
-    "ferntast_msgs/msg/Authority": "msg/Authority.msg";
-    "ferntast_msgs/msg/ContactState": "msg/ContactState.msg";
-    "ferntast_msgs/msg/FrictionStatus": "msg/FrictionStatus.msg";
-    "ferntast_msgs/msg/LinkCommand": "msg/LinkCommand.msg";
-    "ferntast_msgs/msg/LinkStatus": "msg/LinkStatus.msg";
-    "ferntast_msgs/msg/RecorderCommand": "msg/RecorderCommand.msg";
-    "ferntast_msgs/msg/RecorderStatus": "msg/RecorderStatus.msg";
-    "ferntast_msgs/msg/TwinParameters": "msg/TwinParameters.msg";
+}
+
+/// Name and `.msg` text of every interface: those of other packages, then
+/// those of ferntast's own that the table of topics names.
+fn texts() -> Vec<(&'static str, &'static str)> {
+    struct Own(Vec<(&'static str, &'static str)>);
+    impl Visitor for Own {
+        fn topic<M: Message>(&mut self, _: Topic<M>) {
+            let text = M::Ros::DEFINITION.map(|text| (M::Ros::INTERFACE, text));
+            self.0.extend(text);
+        }
+    }
+    let mut own = Own(Vec::new());
+    topics::visit(&mut own);
+    own.0.sort_unstable();
+    own.0.dedup();
+    [TEXTS, &own.0].concat()
 }
 
 /// Full names (`package/msg/Type`) of the interfaces that are built in.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    TEXTS.iter().map(|&(name, _)| name)
+    texts().into_iter().map(|(name, _)| name)
 }
 
 /// The `.msg` text of a built-in interface.
 pub fn definition(name: &str) -> Option<&'static str> {
-    TEXTS
-        .iter()
-        .find(|&&(known, _)| known == name)
-        .map(|&(_, text)| text)
+    let mut texts = texts().into_iter();
+    texts
+        .find(|&(known, _)| known == name)
+        .map(|(_, text)| text)
 }
 
 /// The built-in interfaces, read.
@@ -81,7 +95,7 @@ pub fn definition(name: &str) -> Option<&'static str> {
 /// None in practice: a test reads them all.
 pub fn library() -> Result<Library, InterfaceError> {
     let mut library = Library::default();
-    for (name, text) in TEXTS {
+    for (name, text) in texts() {
         library.insert(name, text)?;
     }
     Ok(library)

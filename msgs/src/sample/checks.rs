@@ -1,10 +1,6 @@
 //! What the checks and conversions of several samples share.
 
-use super::JOINT_NAMES;
-use crate::{InvalidMessage, Time};
-
-/// Every joint, for error texts.
-pub(super) const KNOWN_JOINTS: &str = "joint_1, joint_2";
+use crate::{InvalidMessage, Text, Time};
 
 /// Refuses a stamp of zero and one that ROS 2 cannot hold.
 pub(super) fn stamp(stamp: Time) -> Result<(), InvalidMessage> {
@@ -26,12 +22,16 @@ pub(super) fn finite(field: &'static str, values: &[f64]) -> Result<(), InvalidM
     }
 }
 
-/// Refuses infinity; NaN stands for "not measured yet".
-pub(super) fn finite_or_nan(field: &'static str, value: f64) -> Result<(), InvalidMessage> {
-    if value.is_nan() {
-        Ok(())
-    } else {
-        finite(field, &[value])
+/// Refuses NaN and infinity, unless they stand for something.
+pub(super) fn number(
+    field: &'static str,
+    value: f64,
+    or_nan: bool,
+    or_infinite: bool,
+) -> Result<(), InvalidMessage> {
+    match (or_nan && value.is_nan()) || (or_infinite && value == f64::INFINITY) {
+        true => Ok(()),
+        false => finite(field, &[value]),
     }
 }
 
@@ -60,25 +60,29 @@ pub(super) fn flag(field: &'static str, flag: u8) -> Result<(), InvalidMessage> 
     }
 }
 
-/// Refuses a code without a name.
-pub(super) fn code(
+/// A text that must not be cut.
+pub(super) fn whole<const N: usize>(
     field: &'static str,
-    name: Option<&'static str>,
-    code: impl ToString,
+    text: &str,
     known: &'static str,
-) -> Result<(), InvalidMessage> {
-    match name {
-        Some(_) => Ok(()),
-        None => Err(unknown(field, code, known)),
+) -> Result<Text<N>, InvalidMessage> {
+    let own = Text::new(text);
+    match own.as_str() == text {
+        true => Ok(own),
+        false => Err(unknown(field, text, known)),
     }
 }
 
-/// The joint of that name, from 0.
-pub(super) fn joint(name: &str) -> Result<u8, InvalidMessage> {
-    let joint = JOINT_NAMES.iter().position(|known| *known == name);
-    joint
-        .and_then(|index| u8::try_from(index).ok())
-        .ok_or_else(|| unknown("joint", name, KNOWN_JOINTS))
+/// Refuses an empty text.
+pub(super) fn not_empty(
+    field: &'static str,
+    text: &str,
+    known: &'static str,
+) -> Result<(), InvalidMessage> {
+    match text.is_empty() {
+        true => Err(unknown(field, text, known)),
+        false => Ok(()),
+    }
 }
 
 /// The error for a word or code that is not among `known`.
@@ -93,22 +97,3 @@ pub(super) fn unknown(
         known,
     }
 }
-
-/// The name on the wire. A code without a name comes out as a word that the
-/// way back refuses.
-pub(super) fn wire_name(name: Option<&'static str>, code: impl ToString) -> String {
-    match name {
-        Some(name) => name.to_owned(),
-        None => format!("unknown {}", code.to_string()),
-    }
-}
-
-/// Fails to compile unless the sample is as large as its fields together,
-/// that is, unless it has no padding, whose bytes would cross shared memory
-/// unset.
-macro_rules! no_padding {
-    ($sample:ty: $($field:ty),+ $(,)?) => {
-        const _: () = assert!(size_of::<$sample>() == 0 $(+ size_of::<$field>())+);
-    };
-}
-pub(super) use no_padding;

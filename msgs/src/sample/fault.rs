@@ -1,135 +1,100 @@
 //! What can be wrong.
 
-/// One thing that can be wrong with a node's input or work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u8)]
-pub enum Fault {
-    /// No valid command for longer than the watchdog allows.
-    CommandSilent = 0,
-    /// No measurement for longer than the watchdog allows.
-    MeasurementSilent,
-    /// A command was not finite, had a stamp of zero, or the wrong joint count.
-    CommandInvalid,
-    /// A command was outside the workspace or joint limits.
-    CommandOutOfRange,
-    /// A command jumped further than the arm could move.
-    CommandJumped,
-    /// A command came from a source without authority.
-    CommandUnauthorised,
-    /// A measurement was not finite or out of its range.
-    MeasurementInvalid,
-    /// A torque sensor is at the end of its range.
-    TorqueSaturated,
-    /// The motor torque was limited.
-    EffortLimited,
-    /// The velocity of the setpoint was limited.
-    VelocityLimited,
-    /// The reflected force was limited.
-    ForceLimited,
-    /// The Jacobian is singular here: contact forces cannot be told.
-    Singular,
-    /// The link to the other end is down.
-    LinkDown,
-    /// The loop's deadline was missed.
-    DeadlineMissed,
-    /// No permission for real-time priority: it runs on without.
-    NoRealtime,
-    /// Messages were lost on the way into the recording.
-    RecordingLost,
-    /// The recording cannot be written.
-    RecordingFailed,
-    /// A state command was not known or not allowed now.
-    StateCommandRefused,
-    /// The joint left its position limits.
-    JointLimit,
-    /// The joint is faster than allowed.
-    JointOverspeed,
-    /// The tip touches two surfaces: the force's split along one is not defined.
-    ContactAmbiguous,
-    /// A torque sensor gives the same number while its joint turns.
-    TorqueStuck,
-    /// The motor torque that the twin's model leaves unexplained has left its band.
-    ResidualOutOfBand,
-    /// The lab finds an effect missing in the twin's model.
-    ModelIncomplete,
-    /// What the twin found was not taken over into the servo's feed-forward.
-    TakeOverRefused,
+use super::Plain;
+
+/// Declares the faults: each with its name on the wire.
+macro_rules! faults {
+    (
+        $(#[$doc:meta])*
+        pub enum $set:ident {
+            $(#[$first_doc:meta])* $first:ident $first_name:literal,
+            $($(#[$each:meta])* $fault:ident $name:literal,)*
+        }
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u8)]
+        pub enum $set {
+            $(#[$first_doc])* $first = 0,
+            $($(#[$each])* $fault,)*
+        }
+
+        impl $set {
+            /// Every fault.
+            pub const ALL: [$set; [$first_name $(, $name)*].len()] = [$set::$first $(, $set::$fault)*];
+
+            /// Every name, for error texts.
+            pub const KNOWN: &str = concat!($first_name $(, ", ", $name)*);
+
+            /// The fault in words, as on the wire.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $set::$first => $first_name,
+                    $($set::$fault => $name,)*
+                }
+            }
+
+            /// The fault of that name.
+            pub fn from_name(name: &str) -> Option<$set> {
+                $set::ALL.into_iter().find(|fault| fault.name() == name)
+            }
+        }
+    };
 }
 
-impl Fault {
-    /// Every fault.
-    pub const ALL: [Fault; 25] = [
-        Fault::CommandSilent,
-        Fault::MeasurementSilent,
-        Fault::CommandInvalid,
-        Fault::CommandOutOfRange,
-        Fault::CommandJumped,
-        Fault::CommandUnauthorised,
-        Fault::MeasurementInvalid,
-        Fault::TorqueSaturated,
-        Fault::EffortLimited,
-        Fault::VelocityLimited,
-        Fault::ForceLimited,
-        Fault::Singular,
-        Fault::LinkDown,
-        Fault::DeadlineMissed,
-        Fault::NoRealtime,
-        Fault::RecordingLost,
-        Fault::RecordingFailed,
-        Fault::StateCommandRefused,
-        Fault::JointLimit,
-        Fault::JointOverspeed,
-        Fault::ContactAmbiguous,
-        Fault::TorqueStuck,
-        Fault::ResidualOutOfBand,
-        Fault::ModelIncomplete,
-        Fault::TakeOverRefused,
-    ];
-
-    /// Every name, for error texts.
-    pub const KNOWN: &str = "command silent, measurement silent, command invalid, \
-        command out of range, command jumped, command unauthorised, \
-        measurement invalid, torque saturated, effort limited, \
-        velocity limited, force limited, singular configuration, link down, \
-        deadline missed, no realtime priority, recording lost, \
-        recording failed, state command refused, joint limit, joint overspeed, \
-        contact ambiguous, torque sensor stuck, residual out of its band, \
-        model incomplete, take-over refused";
-
-    /// The fault in words, as on the wire.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Fault::CommandSilent => "command silent",
-            Fault::MeasurementSilent => "measurement silent",
-            Fault::CommandInvalid => "command invalid",
-            Fault::CommandOutOfRange => "command out of range",
-            Fault::CommandJumped => "command jumped",
-            Fault::CommandUnauthorised => "command unauthorised",
-            Fault::MeasurementInvalid => "measurement invalid",
-            Fault::TorqueSaturated => "torque saturated",
-            Fault::EffortLimited => "effort limited",
-            Fault::VelocityLimited => "velocity limited",
-            Fault::ForceLimited => "force limited",
-            Fault::Singular => "singular configuration",
-            Fault::LinkDown => "link down",
-            Fault::DeadlineMissed => "deadline missed",
-            Fault::NoRealtime => "no realtime priority",
-            Fault::RecordingLost => "recording lost",
-            Fault::RecordingFailed => "recording failed",
-            Fault::StateCommandRefused => "state command refused",
-            Fault::JointLimit => "joint limit",
-            Fault::JointOverspeed => "joint overspeed",
-            Fault::ContactAmbiguous => "contact ambiguous",
-            Fault::TorqueStuck => "torque sensor stuck",
-            Fault::ResidualOutOfBand => "residual out of its band",
-            Fault::ModelIncomplete => "model incomplete",
-            Fault::TakeOverRefused => "take-over refused",
-        }
-    }
-
-    /// The fault of that name.
-    pub fn from_name(name: &str) -> Option<Fault> {
-        Fault::ALL.into_iter().find(|fault| fault.name() == name)
+faults! {
+    /// One thing that can be wrong with a node's input or work; its place is its bit.
+    pub enum Fault {
+        /// No valid command for longer than the watchdog allows.
+        CommandSilent "command silent",
+        /// No measurement for longer than the watchdog allows.
+        MeasurementSilent "measurement silent",
+        /// A command was not finite, had a stamp of zero, or the wrong joint count.
+        CommandInvalid "command invalid",
+        /// A command was outside the workspace or joint limits.
+        CommandOutOfRange "command out of range",
+        /// A command jumped further than the arm could move.
+        CommandJumped "command jumped",
+        /// A command came from a source without authority.
+        CommandUnauthorised "command unauthorised",
+        /// A measurement was not finite or out of its range.
+        MeasurementInvalid "measurement invalid",
+        /// A torque sensor is at the end of its range.
+        TorqueSaturated "torque saturated",
+        /// The motor torque was limited.
+        EffortLimited "effort limited",
+        /// The velocity of the setpoint was limited.
+        VelocityLimited "velocity limited",
+        /// The reflected force was limited.
+        ForceLimited "force limited",
+        /// The Jacobian is singular here: contact forces cannot be told.
+        Singular "singular configuration",
+        /// The link to the other end is down.
+        LinkDown "link down",
+        /// The loop's deadline was missed.
+        DeadlineMissed "deadline missed",
+        /// No permission for real-time priority: it runs on without.
+        NoRealtime "no realtime priority",
+        /// Messages were lost on the way into the recording.
+        RecordingLost "recording lost",
+        /// The recording cannot be written.
+        RecordingFailed "recording failed",
+        /// A state command was not known or not allowed now.
+        StateCommandRefused "state command refused",
+        /// The joint left its position limits.
+        JointLimit "joint limit",
+        /// The joint is faster than allowed.
+        JointOverspeed "joint overspeed",
+        /// The tip touches two surfaces: the force's split along one is not defined.
+        ContactAmbiguous "contact ambiguous",
+        /// A torque sensor gives the same number while its joint turns.
+        TorqueStuck "torque sensor stuck",
+        /// The motor torque that the twin's model leaves unexplained has left its band.
+        ResidualOutOfBand "residual out of its band",
+        /// The lab finds an effect missing in the twin's model.
+        ModelIncomplete "model incomplete",
+        /// What the twin found was not taken over into the servo's feed-forward.
+        TakeOverRefused "take-over refused",
     }
 }
 
@@ -137,6 +102,9 @@ impl Fault {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Faults(pub u64);
+
+// SAFETY: a number in a transparent type.
+unsafe impl Plain for Faults {}
 
 impl Faults {
     /// Adds `fault`.

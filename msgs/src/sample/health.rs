@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use ferntast_derive::sample;
+
 use crate::{
     InvalidMessage, Message, Text, Time,
     ros::{
@@ -10,45 +12,29 @@ use crate::{
     },
 };
 
-use super::{Fault, Faults, checks};
+use super::{Fault, Faults, Named, checks, codes::codes};
 
 /// What stands before the node in the name of its status.
 const NAME_PREFIX: &str = "ferntast: ";
 
-/// Severity, as in `diagnostic_msgs/msg/DiagnosticStatus`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(transparent)]
-pub struct Level(pub u8);
-
-impl Level {
-    /// All is well.
-    pub const OK: Level = Level(0);
-    /// Something to look at; work goes on.
-    pub const WARN: Level = Level(1);
-    /// Work is stopped or wrong.
-    pub const ERROR: Level = Level(2);
-    /// Nothing was heard of it.
-    pub const STALE: Level = Level(3);
-    /// Every level, for error texts.
-    pub const KNOWN: &str = "0 (ok), 1 (warning), 2 (error), 3 (stale)";
-
-    /// The severity in words; `None` for a code that is no level.
-    pub fn name(self) -> Option<&'static str> {
-        match self {
-            Level::OK => Some("ok"),
-            Level::WARN => Some("warning"),
-            Level::ERROR => Some("error"),
-            Level::STALE => Some("stale"),
-            _ => None,
-        }
+codes! {
+    /// Severity, as in `diagnostic_msgs/msg/DiagnosticStatus`.
+    pub struct Level known "0 (ok), 1 (warning), 2 (error), 3 (stale)" {
+        /// All is well.
+        OK = 0 "ok",
+        /// Something to look at; work goes on.
+        WARN = 1 "warning",
+        /// Work is stopped or wrong.
+        ERROR = 2 "error",
+        /// Nothing was heard of it.
+        STALE = 3 "stale",
     }
 }
 
 /// How a node is doing: rate, misses, age of its input, faults.
 /// One `diagnostic_msgs/msg/DiagnosticStatus` in a `DiagnosticArray` on the
 /// wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[sample]
 pub struct HealthSample {
     /// When it was published.
     pub stamp: Time,
@@ -65,6 +51,7 @@ pub struct HealthSample {
     /// Messages lost since the start.
     pub lost: u64,
     /// Faults that are active, or were since the last message.
+    #[field(bytes = 8)]
     pub faults: Faults,
     /// The node.
     pub node: Text<24>,
@@ -74,14 +61,7 @@ pub struct HealthSample {
     pub process: u32,
     /// Severity.
     pub level: Level,
-    /// Keeps the layout free of implicit padding.
-    pub reserved: [u8; 3],
 }
-
-checks::no_padding!(
-    HealthSample: Time, f64, f64, f64, u64, u64, u64, Faults, Text<24>, Text<96>, u32, Level,
-    [u8; 3]
-);
 
 impl HealthSample {
     /// A node that is well and has done nothing yet.
@@ -104,9 +84,7 @@ impl HealthSample {
     }
 }
 
-// SAFETY: `repr(C)` of integers, floats and byte arrays, transparent types around them, no
-// pointer: every bit pattern is a value.
-unsafe impl Message for HealthSample {
+impl Message for HealthSample {
     type Ros = DiagnosticArray;
 
     fn stamp(&self) -> Time {
@@ -180,17 +158,12 @@ unsafe impl Message for HealthSample {
         checks::stamp(self.stamp)?;
         checks::finite("rate [Hz]", &[self.rate])?;
         checks::finite("lateness p99 [s]", &[self.lateness_p99])?;
-        checks::finite_or_nan("input age [s]", self.input_age)?;
+        checks::number("input age [s]", self.input_age, true, false)?;
         if self.faults != self.faults.iter().collect() {
             let bits = format!("{:#x}", self.faults.0);
             return Err(checks::unknown("fault", bits, Fault::KNOWN));
         }
-        checks::code(
-            "status.level",
-            self.level.name(),
-            self.level.0,
-            Level::KNOWN,
-        )
+        Named::check(self.level, "status.level")
     }
 }
 

@@ -1,11 +1,13 @@
 //! State or command of both joints.
 
+use ferntast_derive::sample;
+
 use crate::{
     InvalidMessage, Message, Time,
     ros::{sensor_msgs::JointState, std_msgs::Header},
 };
 
-use super::checks;
+use super::{Plain, checks};
 
 /// The arm's number of joints.
 pub const JOINTS: usize = 2;
@@ -44,8 +46,7 @@ impl JointFields {
 
 /// Positions, velocities and efforts of joint 1 and joint 2, on the joint
 /// side of the gear. `sensor_msgs/msg/JointState` on the wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[sample]
 pub struct JointSample {
     /// When it was measured or commanded.
     pub stamp: Time,
@@ -56,14 +57,9 @@ pub struct JointSample {
     /// Joint torques \[Nm\]; which torque, the topic says.
     pub effort: [f64; JOINTS],
     /// Which of the three are given; the others hold zero.
+    #[field(bytes = 4)]
     pub fields: JointFields,
-    /// Keeps the layout free of implicit padding.
-    pub reserved: u32,
 }
-
-checks::no_padding!(
-    JointSample: Time, [f64; JOINTS], [f64; JOINTS], [f64; JOINTS], JointFields, u32
-);
 
 impl JointSample {
     /// All three quantities given as zero.
@@ -74,7 +70,7 @@ impl JointSample {
             velocity: [0.0; JOINTS],
             effort: [0.0; JOINTS],
             fields: JointFields::ALL,
-            reserved: 0,
+            reserved: [0; 4],
         }
     }
 
@@ -97,9 +93,10 @@ impl JointSample {
     }
 }
 
-// SAFETY: `repr(C)` of integers, floats and byte arrays, transparent types around them, no
-// pointer: every bit pattern is a value.
-unsafe impl Message for JointSample {
+// SAFETY: a number in a transparent type.
+unsafe impl Plain for JointFields {}
+
+impl Message for JointSample {
     type Ros = JointState;
 
     fn stamp(&self) -> Time {
@@ -146,7 +143,7 @@ unsafe impl Message for JointSample {
             velocity,
             effort,
             fields,
-            reserved: 0,
+            reserved: [0; 4],
         };
         sample.check()?;
         Ok(sample)

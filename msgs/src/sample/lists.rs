@@ -5,8 +5,30 @@ use crate::InvalidMessage;
 /// The most parameters that a message has room for.
 pub const MOST_PARAMETERS: usize = 16;
 
-/// Room for a number of each parameter; those after the last are zero.
-pub(super) type Numbers = [f64; MOST_PARAMETERS];
+/// Refuses a list that is longer than there is room for.
+pub(super) fn fits(field: &'static str, found: usize, room: usize) -> Result<(), InvalidMessage> {
+    match found > room {
+        true => Err(length(field, found, room)),
+        false => Ok(()),
+    }
+}
+
+/// Fills the places from a list that has to have `count` elements.
+pub(super) fn fill<T, R>(
+    field: &'static str,
+    places: &mut [T],
+    count: u32,
+    list: &[R],
+    read: impl Fn(&R) -> T,
+) -> Result<(), InvalidMessage> {
+    if list.len() != count as usize {
+        return Err(length(field, list.len(), count as usize));
+    }
+    for (place, element) in places.iter_mut().zip(list) {
+        *place = read(element);
+    }
+    Ok(())
+}
 
 /// The error for a list that is not as long as it should be.
 pub(super) fn length(field: &'static str, found: usize, expected: usize) -> InvalidMessage {
@@ -15,28 +37,4 @@ pub(super) fn length(field: &'static str, found: usize, expected: usize) -> Inva
         found,
         expected,
     }
-}
-
-/// Refuses more parameters than there is room for.
-pub(super) fn count(count: usize) -> Result<(), InvalidMessage> {
-    match count > MOST_PARAMETERS {
-        true => Err(length("names", count, MOST_PARAMETERS)),
-        false => Ok(()),
-    }
-}
-
-/// A list that has to be as long as that of the names.
-pub(super) fn numbers(
-    field: &'static str,
-    list: &[f64],
-    expected: usize,
-) -> Result<Numbers, InvalidMessage> {
-    if list.len() != expected {
-        return Err(length(field, list.len(), expected));
-    }
-    let mut numbers = [0.0; MOST_PARAMETERS];
-    for (place, value) in numbers.iter_mut().zip(list) {
-        *place = *value;
-    }
-    Ok(numbers)
 }

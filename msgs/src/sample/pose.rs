@@ -1,5 +1,7 @@
 //! A position and orientation.
 
+use ferntast_derive::sample;
+
 use crate::{
     InvalidMessage, Message, Time,
     ros::geometry_msgs::{Pose, PoseStamped},
@@ -9,8 +11,7 @@ use super::{Frame, checks};
 
 /// Pose of the tip or of the hand. `geometry_msgs/msg/PoseStamped` on the
 /// wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[sample]
 pub struct PoseSample {
     /// When it was measured or commanded.
     pub stamp: Time,
@@ -23,11 +24,7 @@ pub struct PoseSample {
     pub source: u64,
     /// Frame that it is expressed in.
     pub frame: Frame,
-    /// Keeps the layout free of implicit padding.
-    pub reserved: u32,
 }
-
-checks::no_padding!(PoseSample: Time, [f64; 3], [f64; 4], u64, Frame, u32);
 
 impl PoseSample {
     /// A pose at `position` \[m\] in `frame`, not rotated, from this host.
@@ -38,18 +35,20 @@ impl PoseSample {
             orientation: [0.0, 0.0, 0.0, 1.0],
             source: 0,
             frame,
-            reserved: 0,
+            reserved: [0; 7],
         }
     }
 }
 
-// SAFETY: `repr(C)` of integers, floats and byte arrays, transparent types around them, no
-// pointer: every bit pattern is a value.
-unsafe impl Message for PoseSample {
+impl Message for PoseSample {
     type Ros = PoseStamped;
 
     fn stamp(&self) -> Time {
         self.stamp
+    }
+
+    fn set_source(&mut self, source: u64) {
+        self.source = source;
     }
 
     fn to_ros(&self) -> PoseStamped {

@@ -1,5 +1,7 @@
 //! What the arm looks like.
 
+use ferntast_derive::sample;
+
 use crate::{InvalidMessage, Message, Text, Time, ros::std_msgs};
 
 use super::checks;
@@ -8,18 +10,14 @@ use super::checks;
 pub const LONGEST_DESCRIPTION: usize = 8192;
 
 /// The arm as URDF. `std_msgs/msg/String` on the wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[sample]
 pub struct RobotDescriptionSample {
     /// The XML.
+    #[field(bytes = 8192)]
     pub urdf: Text<LONGEST_DESCRIPTION>,
 }
 
-checks::no_padding!(RobotDescriptionSample: Text<LONGEST_DESCRIPTION>);
-
-// SAFETY: `repr(C)` of a byte array in a transparent type, no pointer: every bit pattern is a
-// value.
-unsafe impl Message for RobotDescriptionSample {
+impl Message for RobotDescriptionSample {
     type Ros = std_msgs::String;
 
     /// None: a description holds for good.

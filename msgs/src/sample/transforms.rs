@@ -1,5 +1,7 @@
 //! Where the arm's frames are.
 
+use ferntast_derive::sample;
+
 use crate::{
     InvalidMessage, Message, Time,
     ros::{
@@ -20,8 +22,7 @@ pub const ARM_FRAMES: [(&str, &str); 3] = [
 
 /// Where each of [`ARM_FRAMES`] is in its parent. `tf2_msgs/msg/TFMessage` on
 /// the wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[sample]
 pub struct TransformsSample {
     /// When the joints were there.
     pub stamp: Time,
@@ -31,10 +32,7 @@ pub struct TransformsSample {
     pub rotations: [[f64; 4]; ARM_FRAMES.len()],
 }
 
-checks::no_padding!(TransformsSample: Time, [[f64; 3]; ARM_FRAMES.len()], [[f64; 4]; ARM_FRAMES.len()]);
-
-// SAFETY: `repr(C)` of an integer and floats, no pointer: every bit pattern is a value.
-unsafe impl Message for TransformsSample {
+impl Message for TransformsSample {
     type Ros = TFMessage;
 
     fn stamp(&self) -> Time {

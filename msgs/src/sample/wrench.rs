@@ -1,5 +1,7 @@
 //! A force and torque.
 
+use ferntast_derive::sample;
+
 use crate::{
     InvalidMessage, Message, Time,
     ros::geometry_msgs::{Wrench, WrenchStamped},
@@ -9,8 +11,7 @@ use super::{Frame, checks};
 
 /// Force and torque on the tip or the hand. `geometry_msgs/msg/WrenchStamped`
 /// on the wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
+#[sample]
 pub struct WrenchSample {
     /// When it was measured or commanded.
     pub stamp: Time,
@@ -20,11 +21,7 @@ pub struct WrenchSample {
     pub torque: [f64; 3],
     /// Frame that it is expressed in.
     pub frame: Frame,
-    /// Keeps the layout free of implicit padding.
-    pub reserved: u32,
 }
-
-checks::no_padding!(WrenchSample: Time, [f64; 3], [f64; 3], Frame, u32);
 
 impl WrenchSample {
     /// A force \[N\] without torque.
@@ -34,14 +31,12 @@ impl WrenchSample {
             force,
             torque: [0.0; 3],
             frame,
-            reserved: 0,
+            reserved: [0; 7],
         }
     }
 }
 
-// SAFETY: `repr(C)` of integers, floats and byte arrays, transparent types around them, no
-// pointer: every bit pattern is a value.
-unsafe impl Message for WrenchSample {
+impl Message for WrenchSample {
     type Ros = WrenchStamped;
 
     fn stamp(&self) -> Time {

@@ -131,11 +131,11 @@ mod tests {
     use ferntast_msgs::Message;
 
     use super::*;
-    use crate::config::load_arm;
+    use crate::config;
 
     #[test]
     fn the_shipped_arm_is_described_whole() {
-        let sample = describe(&load_arm("rokviss").unwrap().model());
+        let sample = describe(&config::load_model_only("rokviss").unwrap().model);
         assert_eq!(sample.check(), Ok(()));
         let text = sample.urdf.as_str();
         assert!(text.trim_end().ends_with("</robot>"), "cut: {text}");
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_contour_without_end_is_left_out() {
-        let mut model = load_arm("rokviss").unwrap().model();
+        let mut model = config::load_model_only("rokviss").unwrap().model;
         let edge = model.contour.edge[0];
         model.contour.edge = vec![edge; 200];
         let sample = describe(&model);

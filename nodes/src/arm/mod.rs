@@ -1,11 +1,14 @@
 //! The simulated arm as a node; hardware takes its place by speaking the same
 //! topics.
 
+mod config;
 mod description;
+
+pub use config::{arm_file, load_arm, load_config};
 
 use ferntast_msgs::{
     Time,
-    sample::{Fault, JointFields, JointSample, Level, RobotDescriptionSample, TemperatureSample},
+    sample::{Fault, JointSample, Level, RobotDescriptionSample, TemperatureSample},
 };
 use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
 
@@ -104,12 +107,10 @@ impl Node for ArmNode {
 impl ArmNode {
     fn publish(&mut self, now: Time, middle: Time, measured: &Measurement, output: &mut ArmOutput) {
         let sample = JointSample {
-            stamp: now,
             position: measured.motor_position,
             velocity: measured.motor_velocity,
             effort: measured.joint_torque,
-            fields: JointFields::ALL,
-            reserved: 0,
+            ..JointSample::zero(now)
         };
         output.measured_js = Some(sample);
         output.motor_js = Some(JointSample {

@@ -66,7 +66,7 @@ impl Loaded {
     /// passivity that it does not have.
     pub fn laws(&self) -> Laws {
         let scenario = &self.scenario;
-        let least = servo::stiffest(&self.arm.model(), &scenario.servo);
+        let least = servo::stiffest(&self.arm.model, &scenario.servo);
         let own = |law: &Law| match least {
             Some(least) => stiff_enough(law, least),
             None => law.clone(),
@@ -118,12 +118,12 @@ fn with_shared(law: &Law, other: &Law) -> Law {
 
 #[cfg(test)]
 mod tests {
-    use super::super::load_scenario;
+    use super::super::{load_model_only, load_scenario};
     use super::*;
 
     #[test]
     fn another_law_keeps_the_offset_and_the_first_law_stays_as_given() {
-        let mut scenario = load_scenario("rokviss").unwrap().scenario;
+        let mut scenario = load_scenario("rokviss", load_model_only).unwrap().scenario;
         let offset = [0.3, 0.01, 0.0];
         let text = serde_json::to_value(&scenario.law).unwrap();
         let mut text = text.as_object().unwrap().clone();
@@ -139,8 +139,8 @@ mod tests {
 
     #[test]
     fn no_law_takes_the_servo_for_softer_than_it_is() {
-        let loaded = load_scenario("rokviss").unwrap();
-        let least = servo::stiffest(&loaded.arm.model(), &loaded.scenario.servo).unwrap();
+        let loaded = load_scenario("rokviss", load_model_only).unwrap();
+        let least = servo::stiffest(&loaded.arm.model, &loaded.scenario.servo).unwrap();
         // k = 1/(1/8000 + 1/4900) Nm/rad over the short lever, at the nominal point.
         assert!((120e3..135e3).contains(&least), "{least} N/m");
         let stiffness = |law: &Law| serde_json::to_value(law).unwrap()[SERVO_STIFFNESS].as_f64();

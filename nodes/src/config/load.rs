@@ -1,219 +1,56 @@
-//! Finds, reads and checks configuration.
+//! A scenario with all that it names.
 
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path};
 
-use ferntast_model::ParameterError;
-use ferntast_sim::{
-    arm::ArmConfig,
+use ferntast_emulation::{
     channel::{ChannelConfig, LinkConfig},
-    hand::{Hand, RecordedHand, RecordedMotion, RecordingError, ScriptedHand},
+    hand::{Hand, RecordedHand, RecordedMotion, ScriptedHand},
 };
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 
-use super::{HandSource, Scenario, shipped};
-use crate::experiment::campaign::Mission;
-use crate::sweep::SweepConfig;
-
-/// Why configuration cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum ConfigError {
-    /// Neither a file nor a shipped name.
-    #[error(
-        "{kind} {name:?}: no such file, and none of that name is shipped; shipped are: {shipped}"
-    )]
-    Unknown {
-        /// Scenario, arm or link.
-        kind: &'static str,
-        /// What was asked for.
-        name: String,
-        /// What is there.
-        shipped: String,
-    },
-    /// A file cannot be read.
-    #[error("cannot read {path}: {source}")]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The operating system's reason.
-        source: io::Error,
-    },
-    /// A file is not what it should be: unknown key, wrong type, bad syntax.
-    #[error("{path}: {message}")]
-    Syntax {
-        /// The file.
-        path: String,
-        /// Line, key, and what is wrong.
-        message: String,
-    },
-    /// A value is out of its bounds.
-    #[error("{path}: {source}")]
-    Value {
-        /// The file.
-        path: String,
-        /// Key, value, bounds, unit.
-        source: ParameterError,
-    },
-    /// A recorded hand motion cannot be used.
-    #[error("{path}: {source}")]
-    Hand {
-        /// The file.
-        path: PathBuf,
-        /// Line, and what is wrong.
-        source: RecordingError,
-    },
-    /// The hand is to be scripted or recorded, and the script or file is missing.
-    #[error("{path}: hand.source is {source_name:?}, but hand.{missing} is missing")]
-    NoHand {
-        /// The scenario.
-        path: String,
-        /// The source.
-        source_name: &'static str,
-        /// The missing key.
-        missing: &'static str,
-    },
-}
+use super::{
+    ArmFile, ConfigError, HandSource, LoadArm, Scenario,
+    file::{FileKind, load, load_with_path},
+};
 
 /// A scenario with all that it names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Loaded {
     /// Where the scenario came from.
     pub path: String,
     /// The scenario.
     pub scenario: Scenario,
     /// The arm.
-    pub arm: ArmConfig,
+    pub arm: ArmFile,
     /// The channel of the link.
     pub link: LinkConfig,
     /// Text of the recorded hand motion.
     pub hand_recording: Option<String>,
 }
 
-struct Source {
-    path: String,
-    text: String,
-}
-
-fn find(kind: &'static str, folder: &'static str, name: &str) -> Result<Source, ConfigError> {
-    let path = Path::new(name);
-    let below = format!("{folder}/{name}.toml");
-    let on_disk = Path::new("config").join(&below);
-    let looks_like_path = name.contains('/') || name.ends_with(".toml");
-    let read = |path: &Path| {
-        fs::read_to_string(path)
-            .map(|text| Source {
-                path: path.display().to_string(),
-                text,
-            })
-            .map_err(|source| ConfigError::Read {
-                path: path.to_owned(),
-                source,
-            })
-    };
-    if looks_like_path {
-        return read(path);
-    }
-    if on_disk.is_file() {
-        return read(&on_disk);
-    }
-    match shipped::text(&below) {
-        Some(text) => Ok(Source {
-            path: format!("{below} (shipped)"),
-            text: text.to_owned(),
-        }),
-        None => Err(ConfigError::Unknown {
-            kind,
-            name: name.to_owned(),
-            shipped: shipped::names(folder).join(", "),
-        }),
-    }
-}
-
-fn parse<T: DeserializeOwned>(source: &Source) -> Result<T, ConfigError> {
-    toml::from_str(&source.text).map_err(|error| ConfigError::Syntax {
-        path: source.path.clone(),
-        message: error.to_string().trim_end().to_owned(),
-    })
-}
-
-fn checked<T>(
-    source: &Source,
-    value: T,
-    result: Result<(), ParameterError>,
-) -> Result<T, ConfigError> {
-    match result {
-        Ok(()) => Ok(value),
-        Err(error) => Err(ConfigError::Value {
-            path: source.path.clone(),
-            source: error,
-        }),
-    }
-}
-
-fn load_link(name: &str) -> Result<LinkConfig, ConfigError> {
-    let source = find("link", "links", name)?;
-    let link: LinkConfig = parse(&source)?;
-    let valid = link.validate();
-    checked(&source, link, valid)
-}
-
-/// Loads the arm `name`, shipped or a file.
-///
-/// # Errors
-///
-/// What is wrong, in which file, and how to mend it.
-pub fn load_arm(name: &str) -> Result<ArmConfig, ConfigError> {
-    let source = find("arm", "arms", name)?;
-    let arm: ArmConfig = parse(&source)?;
-    let valid = arm.validate();
-    checked(&source, arm, valid)
-}
-
-/// Loads the campaign `name`, shipped or a file.
-///
-/// # Errors
-///
-/// What is wrong, in which file, and how to mend it.
-pub fn load_mission(name: &str) -> Result<Mission, ConfigError> {
-    let source = find("campaign", "experiments", name)?;
-    let mission: Mission = parse(&source)?;
-    let valid = mission.validate();
-    checked(&source, mission, valid)
-}
+const LINK: FileKind = FileKind {
+    name: "link",
+    folder: "links",
+};
+const SCENARIO: FileKind = FileKind {
+    name: "scenario",
+    folder: "scenarios",
+};
 
 /// Loads the scenario `name`, shipped or a file, with the arm and the link that it names.
 ///
 /// # Errors
 ///
-/// What is wrong, in which file, and how to mend it.
-pub fn load_scenario(name: &str) -> Result<Loaded, ConfigError> {
-    let source = find("scenario", "scenarios", name)?;
-    let scenario: Scenario = parse(&source)?;
-    let valid = scenario.validate();
-    let scenario = checked(&source, scenario, valid)?;
-    let arm = load_arm(&scenario.arm)?;
-    let link = load_link(&scenario.link.channel)?;
+/// What is wrong, in which file, and how to correct it.
+pub fn load_scenario(name: &str, load_arm: LoadArm) -> Result<Loaded, ConfigError> {
+    let (path, scenario) = load_with_path(SCENARIO, name, Scenario::validate)?;
     Ok(Loaded {
-        path: source.path,
+        arm: load_arm(&scenario.arm)?,
+        link: load(LINK, &scenario.link.channel, LinkConfig::validate)?,
+        path,
         scenario,
-        arm,
-        link,
         hand_recording: None,
     })
-}
-
-/// Loads the sweep `name`, shipped or a file.
-///
-/// # Errors
-///
-/// What is wrong, in which file, and how to mend it.
-pub fn load_sweep(name: &str) -> Result<SweepConfig, ConfigError> {
-    let source = find("sweep", "scenarios", name)?;
-    let sweep: SweepConfig = parse(&source)?;
-    let valid = sweep.validate();
-    checked(&source, sweep, valid)
 }
 
 /// Reads and checks a file with recorded hand motion; gives its text.
@@ -242,7 +79,7 @@ impl Loaded {
     ///
     /// As for the scenario's own.
     pub fn set_link(&mut self, name: &str) -> Result<(), ConfigError> {
-        self.link = load_link(name)?;
+        self.link = load(LINK, name, LinkConfig::validate)?;
         name.clone_into(&mut self.scenario.link.channel);
         Ok(())
     }

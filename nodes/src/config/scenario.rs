@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use ferntast_control::{
     delay::Law, haptics::MasterConfig, playout::LONGEST_BUFFER, servo::ServoConfig,
 };
+use ferntast_emulation::hand::{RecordedHandConfig, ScriptedHandConfig};
 use ferntast_model::{ParameterError, check};
-use ferntast_sim::hand::{RecordedHandConfig, ScriptedHandConfig};
 use serde::{Deserialize, Serialize};
 
 /// A file of `config/scenarios/`.
@@ -123,6 +123,15 @@ pub struct GatewaySection {
     pub stream_rate: f64,
     /// Most messages a second on a servo stream of the leader \[Hz\].
     pub leader_rate: f64,
+    /// Whether peers may command joint positions on `/follower/servo_jp`, past
+    /// the master, the link and the authority of who holds them.
+    #[serde(skip_serializing_if = "is_off")]
+    pub servo_jp: bool,
+}
+
+/// A switch that is off is not written into recordings, which had none before.
+fn is_off(switch: &bool) -> bool {
+    !switch
 }
 
 impl Default for GatewaySection {
@@ -134,6 +143,7 @@ impl Default for GatewaySection {
             router_endpoint: "tcp/127.0.0.1:7447".to_owned(),
             stream_rate: 250.0,
             leader_rate: 500.0,
+            servo_jp: false,
         }
     }
 }

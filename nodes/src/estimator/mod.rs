@@ -191,7 +191,10 @@ fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput
     output.contact_state = Some(ContactStateSample {
         normal_force: estimate.normal_force,
         tangential_force: estimate.tangential_force,
-        friction_coefficient: estimate.friction.value,
+        friction_coefficient: match estimate.friction.error == f64::INFINITY {
+            true => f64::NAN,
+            false => estimate.friction.value,
+        },
         friction_coefficient_error: estimate.friction.error,
         in_contact: u8::from(estimate.in_contact),
         valid: u8::from(estimate.valid),
@@ -202,6 +205,6 @@ fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput
             Some(Surface::Unlubricated) => Edge::UNLUBRICATED,
             Some(Surface::Spring) => Edge::SPRING,
         },
-        ..ContactStateSample::unknown(stamp)
+        ..ContactStateSample::initial(stamp)
     });
 }

@@ -3,7 +3,7 @@
 use ferntast_control::link::LinkState;
 use ferntast_msgs::{
     Text, Time,
-    sample::{Fault, Level, LinkEnd, LinkStatusSample, RefusedFrames},
+    sample::{Fault, Level, LinkEnd, LinkStatusSample},
 };
 
 use crate::node::NodeHealth;
@@ -48,20 +48,19 @@ impl Status {
             sent: measured.sent,
             received: measured.received,
             lost: measured.lost,
-            refused: RefusedFrames {
-                length: refused.length,
-                version: refused.version,
-                session: refused.session,
-                checksum: refused.checksum,
-                time: refused.time,
-                value: refused.value,
-                replayed: refused.replayed,
-                late: refused.late,
-            },
+            refused_length: refused.length,
+            refused_version: refused.version,
+            refused_session: refused.session,
+            refused_checksum: refused.checksum,
+            refused_time: refused.time,
+            refused_value: refused.value,
+            refused_replayed: refused.replayed,
+            refused_late: refused.late,
             law: Text::new(state.law),
             session: self.session,
             connected: u8::from(state.connected),
-            ..LinkStatusSample::idle(now, self.which)
+            end: self.which,
+            ..LinkStatusSample::initial(now)
         })
     }
 }

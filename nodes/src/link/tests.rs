@@ -23,7 +23,7 @@ fn the_status_says_every_10_ms_what_was_refused() {
     }
     assert_eq!(told.len(), 3);
     let last = told[2];
-    assert_eq!((last.refused.checksum, last.refused.length), (21, 21));
+    assert_eq!((last.refused_checksum, last.refused_length), (21, 21));
     assert_eq!(
         (last.end, last.session, last.connected),
         (LinkEnd::FOLLOWER, 7, 0)

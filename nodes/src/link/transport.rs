@@ -5,9 +5,9 @@ use ferntast_bus::{
     frames::{FrameReceiver, FrameSender, MAX_FRAME},
 };
 use ferntast_control::frame::FRAME_LENGTH;
+use ferntast_emulation::channel::{Channel, ChannelConfig};
 use ferntast_model::ParameterError;
 use ferntast_msgs::{Time, sample::LinkCommandSample};
-use ferntast_sim::channel::{Channel, ChannelConfig};
 
 use crate::node::{Node, Output, Ports};
 

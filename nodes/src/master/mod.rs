@@ -4,6 +4,7 @@ use ferntast_control::{
     haptics::{HandCommand, HandRefusal, Master, MasterConfig},
     operating::OperatingState,
 };
+use ferntast_emulation::hand::Hand;
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Text, Time,
@@ -12,7 +13,6 @@ use ferntast_msgs::{
         WrenchSample,
     },
 };
-use ferntast_sim::hand::Hand;
 
 use crate::{
     node::{Node, NodeHealth, ports},
@@ -113,7 +113,7 @@ impl MasterNode {
             holder: authority.holder().unwrap_or(0),
             refused: authority.refused().unwrap_or(0),
             refused_count: authority.refused_count(),
-            ..AuthoritySample::nobody(now)
+            ..AuthoritySample::initial(now)
         };
         let (holder, refused) = (sample.holder, sample.refused);
         let changed = self

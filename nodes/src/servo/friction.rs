@@ -78,15 +78,11 @@ impl FrictionKeeper {
             true => PERIOD_ON_THE_WAY_NANOS,
             false => PERIOD_NANOS,
         });
-        let mut joint = 0;
-        Some(all.map(|own| {
-            let sample = self.status(now, joint, own);
-            joint += 1;
-            sample
-        }))
+        let mut names = JOINT_NAMES.into_iter();
+        Some(all.map(|own| self.status(now, names.next().unwrap_or_default(), own)))
     }
 
-    fn status(&self, now: Time, joint: u8, own: &FeedForward) -> FrictionStatusSample {
+    fn status(&self, now: Time, joint: &str, own: &FeedForward) -> FrictionStatusSample {
         let mut sample = FrictionStatusSample {
             source: match own.is_taken_over() {
                 true => FrictionSource::TWIN,
@@ -94,7 +90,8 @@ impl FrictionKeeper {
             },
             commands: self.commands,
             refused: self.refused.map_or(Text::EMPTY, Text::display),
-            ..FrictionStatusSample::nothing(now, joint)
+            joint: Text::new(joint),
+            ..FrictionStatusSample::initial(now)
         };
         for (i, parameter) in own.parameters().take(MOST_PARAMETERS).enumerate() {
             sample.names[i] = Text::new(parameter.name);
@@ -132,23 +129,24 @@ fn take_over(
             excitation: twin.excitation[i],
         };
     }
-    let joint = usize::from(twin.joint);
-    let own = servo.feed_forward_mut(joint).ok_or(Refusal::NoJoint)?;
+    let name = twin.joint.as_str();
+    let joint = JOINT_NAMES.iter().position(|known| *known == name);
+    let own = joint.and_then(|joint| servo.feed_forward_mut(joint));
+    let own = own.ok_or(Refusal::NoJoint)?;
     let taken = own.take_over(found.get(..twin.len()).unwrap_or_default())?;
-    Ok(Text::display(Words { joint, taken, own }))
+    Ok(Text::display(Words { name, taken, own }))
 }
 
 /// A take-over in words.
 struct Words<'a> {
-    joint: usize,
+    name: &'a str,
     taken: usize,
     own: &'a FeedForward,
 }
 
 impl fmt::Display for Words<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = JOINT_NAMES.get(self.joint).copied().unwrap_or_default();
-        write!(f, "{name} takes {} of the twin's", self.taken)?;
+        write!(f, "{} takes {} of the twin's", self.name, self.taken)?;
         for own in self.own.parameters() {
             if own.target != own.configured {
                 write!(f, ", {} {:.4}", own.name, own.target)?;

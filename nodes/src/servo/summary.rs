@@ -41,7 +41,7 @@ impl FrictionSummary {
             target: sample.targets[i],
         });
         Self {
-            joint: sample.joint_name().unwrap_or_default().to_owned(),
+            joint: sample.joint.to_string(),
             source: sample.source.name().unwrap_or_default().to_owned(),
             refused: (!sample.refused.is_empty()).then(|| sample.refused.to_string()),
             parameters: parameters.collect(),

@@ -20,9 +20,9 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let arm = config::load_arm("rokviss").unwrap();
+        let arm = config::load_model_only("rokviss").unwrap();
         Self {
-            node: ServoNode::new(&arm.model(), &ServoConfig::default()).unwrap(),
+            node: ServoNode::new(&arm.model, &ServoConfig::default()).unwrap(),
             now: START,
             last: [None; 2],
             faults: Faults::default(),
@@ -70,7 +70,10 @@ impl Bench {
 
     /// A twin of joint 2 that found so many times the configured friction, now.
     fn twin(&self, factor: f64) -> TwinParametersSample {
-        let mut twin = TwinParametersSample::nothing(self.now, 1);
+        let mut twin = TwinParametersSample {
+            joint: Text::new("joint_2"),
+            ..TwinParametersSample::initial(self.now)
+        };
         let configured = [12.372, 0.146, 163.301, -578.954, 547.449];
         for (i, (name, value)) in ["b0", "b0T", "b1", "b2", "b3"]
             .into_iter()
@@ -130,7 +133,7 @@ fn what_must_not_be_taken_over_is_refused_with_a_reason() {
     let mut unsure = good;
     unsure.std_errors = [1e4; 16];
     let mut third = good;
-    third.joint = 7;
+    third.joint = Text::new("joint_7");
     let mut strange = good;
     strange.count = 900;
     strange.values = [f64::NAN; 16];

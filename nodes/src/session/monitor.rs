@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
+use ferntast_identification::statistics::quantile;
 use ferntast_msgs::{
     Message, Time,
     sample::{
@@ -252,11 +253,8 @@ impl Monitor {
 
     /// The link.
     pub fn link(&mut self) -> LinkSummary {
-        self.round_trips.sort_by(f64::total_cmp);
-        let percentile = |share: f64| {
-            let last = self.round_trips.len().checked_sub(1)?;
-            let index = (last as f64 * share).round() as usize;
-            self.round_trips.get(index).map(|seconds| seconds * 1e3)
+        let mut percentile = |share: f64| {
+            quantile(&mut self.round_trips, share, f64::total_cmp).map(|seconds| seconds * 1e3)
         };
         let status = self.link_status.as_ref();
         LinkSummary {

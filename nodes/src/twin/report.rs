@@ -32,7 +32,8 @@ pub(super) fn of(
             true => Text::new(goes_with.unwrap_or_default()),
             false => assessment.goes_with,
         },
-        ..TwinParametersSample::nothing(stamp, u8::try_from(joint).unwrap_or(u8::MAX))
+        joint: Text::new(JOINT_NAMES.get(joint).copied().unwrap_or_default()),
+        ..TwinParametersSample::initial(stamp)
     };
     let parameters = twin.parameters();
     sample.count = parameters.len().min(MOST_PARAMETERS) as u32;
@@ -181,9 +182,8 @@ impl TwinSummary {
             std_error: sample.std_errors[i],
             excitation: sample.excitation[i],
         });
-        let joint = JOINT_NAMES.get(usize::from(sample.joint)).copied();
         Self {
-            joint: joint.unwrap_or_default().to_owned(),
+            joint: sample.joint.to_string(),
             residual_rms: sample.residual_rms,
             band: sample.band,
             out_of_band: sample.out_of_band == 1,

@@ -17,8 +17,6 @@ mod watch;
 pub use environment::Environment;
 pub use tip::TipParameters;
 
-use crate::channel::{Channel, LinkConfig};
-use crate::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_control::delay::{Energy, EnergyMeter, Law};
 use ferntast_control::frame::FRAME_LENGTH;
 use ferntast_control::link::{
@@ -27,6 +25,8 @@ use ferntast_control::link::{
 };
 use ferntast_control::operating::OperatingState;
 use ferntast_control::switching::Laws;
+use ferntast_emulation::channel::{Channel, LinkConfig};
+use ferntast_emulation::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_model::ParameterError;
 use task::Schedule;
 use tip::Tip;

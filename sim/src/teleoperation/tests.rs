@@ -1,6 +1,7 @@
-use super::*;
-use crate::channel::ChannelConfig;
 use ferntast_control::delay::PositionForce;
+use ferntast_emulation::channel::ChannelConfig;
+
+use super::*;
 
 fn link(round_trip: f64) -> LinkConfig {
     let one_way = ChannelConfig::with_delay(0.5 * round_trip);
@@ -63,7 +64,7 @@ fn a_hard_wall_behind_a_delay_is_unstable_with_position_force() {
 #[test]
 fn the_same_trial_gives_the_same_outcome() {
     let mut link = link(0.05);
-    link.up.loss = Some(crate::channel::Loss::Independent { probability: 0.2 });
+    link.up.loss = Some(ferntast_emulation::channel::Loss::Independent { probability: 0.2 });
     let run = |seed| {
         Trial::new(
             position_force(),

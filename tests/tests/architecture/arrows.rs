@@ -1,27 +1,30 @@
 //! Who uses whom, by `cargo metadata`.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-const PREFIX: &str = "ferntast-";
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 /// By folder, the folders of the workspace that it depends on in any way.
 pub fn members(metadata: &str) -> BTreeMap<String, BTreeSet<String>> {
     let metadata: serde_json::Value = serde_json::from_str(metadata).expect("JSON of cargo");
-    let ours = |value: &serde_json::Value| {
-        let name = value["name"].as_str().unwrap_or_default();
-        name.strip_prefix(PREFIX).map(str::to_owned)
-    };
     let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
     list(&metadata["packages"])
         .iter()
         .filter_map(|package| {
             let uses = list(&package["dependencies"])
                 .iter()
-                .filter_map(ours)
+                .filter_map(|used| last(used["path"].as_str()?))
                 .collect();
-            Some((ours(package)?, uses))
+            let manifest = Path::new(package["manifest_path"].as_str()?);
+            Some((last(manifest.parent()?.to_str()?)?, uses))
         })
         .collect()
+}
+
+/// The last part of a path.
+fn last(path: &str) -> Option<String> {
+    Some(Path::new(path).file_name()?.to_str()?.to_owned())
 }
 
 /// What is not as the table says, in words.
@@ -49,9 +52,10 @@ mod tests {
     use super::*;
 
     const METADATA: &str = r#"{"packages": [
-        {"name": "ferntast-model", "dependencies": [{"name": "nalgebra"}, {"name": "ferntast-bus", "kind": "dev"}]},
-        {"name": "ferntast-bus", "dependencies": [{"name": "ferntast-model"}]},
-        {"name": "ferntast-lab", "dependencies": []}
+        {"manifest_path": "/w/model/Cargo.toml",
+         "dependencies": [{"name": "nalgebra"}, {"name": "ferntast-bus", "path": "/w/bus", "kind": "dev"}]},
+        {"manifest_path": "/w/bus/Cargo.toml", "dependencies": [{"name": "ferntast-model", "path": "/w/model"}]},
+        {"manifest_path": "/w/lab/Cargo.toml", "dependencies": []}
     ]}"#;
 
     #[test]

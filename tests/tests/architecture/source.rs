@@ -159,7 +159,7 @@ fn report(ident: &Ident, name: String, found: &mut Vec<Impurity>) {
 }
 
 /// Whether `::` stands at `at`.
-fn is_path_separator(tokens: &[TokenTree], at: usize) -> bool {
+pub fn is_path_separator(tokens: &[TokenTree], at: usize) -> bool {
     matches!(
         (tokens.get(at), tokens.get(at + 1)),
         (Some(TokenTree::Punct(one)), Some(TokenTree::Punct(two)))
@@ -168,7 +168,7 @@ fn is_path_separator(tokens: &[TokenTree], at: usize) -> bool {
 }
 
 /// The parts between commas.
-fn branches(group: &Group) -> Vec<Vec<TokenTree>> {
+pub fn branches(group: &Group) -> Vec<Vec<TokenTree>> {
     let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
     tokens
         .split(|token| matches!(token, TokenTree::Punct(comma) if comma.as_char() == ','))
@@ -177,7 +177,7 @@ fn branches(group: &Group) -> Vec<Vec<TokenTree>> {
 }
 
 /// If an item under `#[cfg(test)]` begins at `at`, where it ends.
-fn test_only_item(tokens: &[TokenTree], at: usize) -> Option<usize> {
+pub fn test_only_item(tokens: &[TokenTree], at: usize) -> Option<usize> {
     if !is_cfg_test(tokens.get(at)?, tokens.get(at + 1)?) {
         return None;
     }

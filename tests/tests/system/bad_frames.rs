@@ -100,14 +100,14 @@ fn are_counted_by_kind_and_the_arm_does_not_care() {
     process.wait(PATIENCE).success();
 
     let status = messages(&recording(&session), topics::LINK_FOLLOWER_STATUS);
-    let refused = status.last().expect("a status").message.refused;
+    let refused = status.last().expect("a status").message;
     // Frames are dropped rather than queued, so that some of them do not arrive.
     for (kind, count, sent) in [
-        ("length", refused.length, TIMES),
-        ("checksum", refused.checksum, 2 * TIMES),
-        ("session", refused.session, TIMES),
-        ("time", refused.time, 2 * TIMES),
-        ("value", refused.value, TIMES),
+        ("length", refused.refused_length, TIMES),
+        ("checksum", refused.refused_checksum, 2 * TIMES),
+        ("session", refused.refused_session, TIMES),
+        ("time", refused.refused_time, 2 * TIMES),
+        ("value", refused.refused_value, TIMES),
     ] {
         assert!((1..=sent).contains(&count), "{kind}: {refused:?}");
     }

@@ -1,0 +1,307 @@
+//! `ferntast challenge`.
+
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use clap::Subcommand;
+use ferntast_benches::{
+    bench::{BenchConfig, BenchError},
+    contact_bench, joint_bench,
+};
+use ferntast_studies::challenge::{self, BlindTest, Count, Plan, TestBench};
+use indicatif::ProgressBar;
+use serde_json::json;
+
+use super::{Failure, output::print_json};
+
+/// Recordings with a hidden effect: to learn on, and to test the lab with.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Learn on one:\n  \
+    ferntast challenge new recordings/riddle\n  \
+    ferntast lab diagnose recordings/riddle/experiment.toml\n  \
+    ferntast challenge reveal recordings/riddle stribeck\n\n\
+    The same of a tip on an edge: ferntast challenge new recordings/riddle --contact")]
+pub struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Make a recording with one effect hidden, and seal the answer.
+    New {
+        /// Folder, which must not exist yet.
+        folder: PathBuf,
+
+        /// A tip that slides along an edge instead of a joint.
+        #[arg(long)]
+        contact: bool,
+
+        /// Decides joint or edge, sessions, noise, and what is hidden.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+
+        /// Size of the hidden effect: 1 is plain to see, 0.25 is hard.
+        #[arg(long, default_value_t = 1.0)]
+        strength: f64,
+
+        /// Hide this effect (can be given twice), or "none", instead of what the seed says.
+        #[arg(long, value_name = "EFFECT")]
+        hide: Vec<String>,
+
+        /// Sessions, each at another date and temperature [default: 6, of a contact 8].
+        #[arg(long)]
+        sessions: Option<usize>,
+    },
+    /// Open the sealed answer.
+    Reveal {
+        /// The challenge's folder.
+        folder: PathBuf,
+        /// Your answer: an effect, "complete" or "unexplained".
+        answer: String,
+    },
+    /// Put many recordings to the diagnosis and print how it did, with the misses.
+    Blind {
+        /// Contacts instead of joints.
+        #[arg(long)]
+        contact: bool,
+
+        /// Recordings of each effect at each strength.
+        #[arg(long, default_value_t = 3)]
+        repeats: usize,
+
+        /// Strengths of the hidden effects.
+        #[arg(long, value_delimiter = ',', default_values_t = [1.0, 0.5, 0.25])]
+        strengths: Vec<f64>,
+
+        /// Only the recordings that hide this effect (can be given several times),
+        /// with the seeds that they have among all.
+        #[arg(long, value_name = "EFFECT")]
+        hide: Vec<String>,
+
+        /// Recordings that hide nothing [default: 400; 0 with --hide].
+        #[arg(long)]
+        nothing: Option<usize>,
+
+        /// Recordings that hide two effects at once [default: 40; 0 with --hide].
+        #[arg(long)]
+        two: Option<usize>,
+
+        /// Seed of the first recording.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
+}
+
+/// Runs it.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    match arguments.action {
+        Action::New {
+            folder,
+            contact,
+            seed,
+            strength,
+            hide,
+            sessions,
+        } => {
+            let asked = Asked {
+                seed,
+                strength,
+                hide,
+                sessions,
+            };
+            match contact {
+                true => create::<contact_bench::HiddenEffect>(&folder, &asked)?,
+                false => create::<joint_bench::HiddenEffect>(&folder, &asked)?,
+            }
+            let experiment = folder.join("experiment.toml");
+            if json {
+                print_json(&json!({"experiment": experiment}))?;
+            } else {
+                println!("ferntast lab diagnose {}", experiment.display());
+            }
+            Ok(ExitCode::SUCCESS)
+        }
+        Action::Reveal { folder, answer } => reveal(&folder, &answer, json),
+        Action::Blind {
+            contact,
+            repeats,
+            strengths,
+            hide,
+            nothing,
+            two,
+            seed,
+        } => {
+            let of_all = |count: usize| if hide.is_empty() { count } else { 0 };
+            let plan = Plan {
+                seed,
+                repeats,
+                strengths,
+                nothing: nothing.unwrap_or(of_all(400)),
+                two: two.unwrap_or(of_all(40)),
+            };
+            match contact {
+                true => blind::<contact_bench::HiddenEffect>(&plan, &hide, json),
+                false => blind::<joint_bench::HiddenEffect>(&plan, &hide, json),
+            }
+        }
+    }
+}
+
+/// What a challenge is asked to be like.
+struct Asked {
+    seed: u64,
+    strength: f64,
+    hide: Vec<String>,
+    sessions: Option<usize>,
+}
+
+fn create<H: TestBench>(folder: &Path, asked: &Asked) -> Result<(), Failure> {
+    let config = BenchConfig {
+        seed: asked.seed,
+        hidden: hidden::<H>(asked.seed, &asked.hide).map_err(Failure::refused)?,
+        strength: asked.strength,
+        sessions: asked.sessions.unwrap_or(H::SESSIONS),
+        ..BenchConfig::default()
+    };
+    challenge::create(folder, &config).map_err(Failure::refused)
+}
+
+fn hidden<H: TestBench>(seed: u64, hide: &[String]) -> Result<Vec<H>, BenchError> {
+    match hide {
+        [] => Ok(challenge::hidden_by(seed).into_iter().collect()),
+        [none] if none == "none" => Ok(Vec::new()),
+        ids => ids.iter().map(|id| id.parse()).collect(),
+    }
+}
+
+fn reveal(folder: &Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {
+    let answer = challenge::reveal(folder).map_err(Failure::refused)?;
+    let outside = !answer.hidden.is_empty() && answer.accepted.is_empty();
+    let right = match guess {
+        "complete" | "none" => answer.hidden.is_empty(),
+        "unexplained" => outside,
+        effect => answer.accepted.iter().any(|own| own == effect),
+    };
+    if json {
+        print_json(&json!({"right": right, "answer": answer}))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let what = match answer.hidden.as_slice() {
+        [] => "nothing was hidden".to_owned(),
+        hidden => format!("hidden: {}", hidden.join(", ")),
+    };
+    let verdict = if right { "right" } else { "no" };
+    println!(
+        "{verdict}: {what}, strength {}, seed {}",
+        answer.strength, answer.seed
+    );
+    for (name, value, unit) in &answer.truth {
+        println!("  {name:<28} {value:>12.5} {unit}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn blind<H: TestBench>(plan: &Plan, hide: &[String], json: bool) -> Result<ExitCode, Failure> {
+    let only: Result<Vec<H>, BenchError> = hide.iter().map(|id| id.parse()).collect();
+    let only = only.map_err(Failure::refused)?;
+    let bar = ProgressBar::new(0);
+    let progress = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let test = challenge::blind_test(plan, &only, &progress);
+    bar.finish_and_clear();
+    let test = test.map_err(Failure::refused)?;
+    if json {
+        print_json(&test)?;
+    } else {
+        print(&test);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn print(test: &BlindTest) {
+    let strengths: Vec<&String> = test.right_first.keys().rev().collect();
+    let row = |name: &str, counts: &std::collections::BTreeMap<String, Count>| {
+        print!("{name:<34}");
+        for strength in &strengths {
+            let count = counts.get(*strength).copied().unwrap_or_default();
+            let tried = format!("{}/{}", count.found, count.tried);
+            print!("{tried:>9} {:>5.1} %", count.share() * 100.0);
+        }
+        println!();
+    };
+    print!("{:<34}", "strength");
+    for strength in &strengths {
+        print!("{strength:>17}");
+    }
+    println!();
+    row("right effect first", &test.right_first);
+    row("  or in the family named", &test.in_family);
+    row("  or suspected, not proven", &test.at_least_suspected);
+    row("outside the catalogue: no name", &test.unknown_not_named);
+    row("error within 5 % of the truth's", &test.as_good_as_true);
+    let (family, suspicion) = (test.resolved, test.suspicion_proven);
+    println!(
+        "after the experiment proposed: {}/{} families resolved ({:.1} %), {}/{} suspicions proven",
+        family.found,
+        family.tried,
+        family.share() * 100.0,
+        suspicion.found,
+        suspicion.tried
+    );
+    let alarms = test.false_alarms;
+    println!(
+        "nothing hidden, yet named: {}/{} ({:.1} %)",
+        alarms.found,
+        alarms.tried,
+        alarms.share() * 100.0
+    );
+    let (both, one) = (test.both_of_two, test.one_of_two);
+    println!(
+        "two hidden at once, by adding what is named: both {}/{}, at least one {}/{}",
+        both.found, both.tried, one.found, one.tried
+    );
+    println!();
+    for (effect, counts) in &test.by_effect {
+        row(effect, counts);
+    }
+    println!();
+    println!("misses");
+    for miss in &test.misses {
+        let mut more = String::new();
+        if miss.in_family && miss.followed_up.as_ref().is_none_or(|own| own.resolved) {
+            more += " (in its family)";
+        }
+        if miss.suspected {
+            more += " (suspected)";
+        }
+        if let Some(own) = &miss.followed_up {
+            let after = own.named.as_deref().unwrap_or("-");
+            let verdict = if own.resolved { "resolved" } else { "open" };
+            more += &format!("; after {}: {after}, {verdict}", own.experiment);
+        }
+        println!(
+            "  {:<28} strength {:<5} seed {:<9} {:?}: {}{more}",
+            miss.hidden.as_deref().unwrap_or("nothing"),
+            miss.strength,
+            miss.seed,
+            miss.verdict,
+            miss.named.as_deref().unwrap_or("-"),
+        );
+    }
+    println!();
+    println!("named rightly, error above the true model's by more than 5 %");
+    for own in &test.above_true {
+        println!(
+            "  {:<28} strength {:<5} seed {:<9} {:.1} %",
+            own.hidden,
+            own.strength,
+            own.seed,
+            (own.over_true - 1.0) * 100.0
+        );
+    }
+}

@@ -1,0 +1,135 @@
+//! The `ferntast` command.
+
+mod bag;
+mod challenge;
+mod doctor;
+mod experiment;
+mod foxglove_option;
+mod interfaces;
+mod lab;
+mod link;
+mod lockstep;
+mod node;
+mod output;
+mod page_options;
+mod paper;
+mod play;
+mod replay;
+mod scenario_options;
+mod session;
+mod state;
+mod sweep;
+mod twin;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use output::Failure;
+
+/// Force-reflecting telemanipulation: run sessions, record, play back.
+#[derive(Debug, Parser)]
+#[command(
+    name = "ferntast",
+    version,
+    about,
+    long_about = "Force-reflecting telemanipulation.\n\n\
+        An operator moves a haptic master; across a link with delay, jitter and loss a two-joint arm follows, \
+        touches a contour, and the contact force comes back into the hand.\n\n\
+        Begin with:  ferntast session --duration 20 --record recordings/first\n\
+        Then:        ferntast bag info recordings/first\n\
+        And:         ferntast doctor",
+    propagate_version = true
+)]
+struct Arguments {
+    /// Print one JSON value on stdout; everything else goes to stderr.
+    #[arg(long, global = true)]
+    json: bool,
+
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a session: arm, servo, estimator, master, link, ROS 2 gateway, recorder.
+    Session(session::Arguments),
+    /// Run one node alone, in this process.
+    Node(node::Arguments),
+    /// Run a scenario in one process and virtual time, faster than real time.
+    Lockstep(lockstep::Arguments),
+    /// Feed a lockstep recording again through servo and estimator and compare their outputs.
+    Replay(replay::Arguments),
+    /// Put a recording back on the topics.
+    Play(play::Arguments),
+    /// Hold the delay laws against each other over delay, jitter, loss and environment.
+    Sweep(sweep::Arguments),
+    /// Hold a model against a recording, find the missing effect, add it.
+    Lab(lab::Arguments),
+    /// Make a recording with a hidden effect, to learn on; test the lab with many.
+    Challenge(challenge::Arguments),
+    /// Run an identification experiment on the arm, or a whole campaign; record it, say what it shows.
+    Experiment(experiment::Arguments),
+    /// Run the paper's experiments and hold its table and figures against what the recordings say.
+    Paper(paper::Arguments),
+    /// Look into recordings, mend them.
+    Bag(bag::Arguments),
+    /// Tell the operating state, or change it: enable, disable, pause, resume (re-arm).
+    State(state::Arguments),
+    /// Tell how the link does, or change its delay law.
+    Link(link::Arguments),
+    /// Use what the twin of a joint found: in the servo's friction feed-forward, or in the lab.
+    Twin(twin::Arguments),
+    /// Say what this machine offers and lacks, and how to mend it.
+    Doctor(doctor::Arguments),
+    /// List the topics' interfaces: type, RIHS01 hash, schema.
+    Interfaces(interfaces::Arguments),
+}
+
+impl Command {
+    /// Whether it holds processes or a recording, so that nobody who stops
+    /// reading its output may end it.
+    fn keeps_running(&self) -> bool {
+        use Command::{Experiment, Lockstep, Node, Paper, Play, Session};
+        matches!(
+            self,
+            Session(_) | Node(_) | Play(_) | Lockstep(_) | Experiment(_) | Paper(_)
+        )
+    }
+}
+
+/// Runs the command line; gives the process's exit code: 0 when all is well,
+/// 2 when the input was refused, 1 when something failed on the way.
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let json = arguments.json;
+    if !arguments.command.keeps_running() {
+        // `ferntast … | head` ends as other programs do, without a word.
+        // SAFETY: no handler is involved; no other thread runs yet.
+        unsafe {
+            libc::signal(libc::SIGPIPE, libc::SIG_DFL);
+        }
+    }
+    let result = match arguments.command {
+        Command::Session(arguments) => session::run(arguments, json),
+        Command::Node(arguments) => node::run(arguments),
+        Command::Lockstep(arguments) => lockstep::run(arguments, json),
+        Command::Replay(arguments) => replay::run(arguments, json),
+        Command::Play(arguments) => play::run(arguments, json),
+        Command::Challenge(arguments) => challenge::run(arguments, json),
+        Command::Sweep(arguments) => sweep::run(arguments, json),
+        Command::Lab(arguments) => lab::run(arguments, json),
+        Command::Experiment(arguments) => experiment::run(arguments, json),
+        Command::Paper(arguments) => paper::run(&arguments, json),
+        Command::Bag(arguments) => bag::run(arguments, json),
+        Command::State(arguments) => state::run(arguments, json),
+        Command::Link(arguments) => link::run(arguments, json),
+        Command::Twin(arguments) => twin::run(arguments, json),
+        Command::Doctor(arguments) => doctor::run(arguments, json),
+        Command::Interfaces(arguments) => interfaces::run(arguments, json),
+    };
+    match result {
+        Ok(code) => code,
+        Err(failure) => failure.report(),
+    }
+}

@@ -1,0 +1,86 @@
+//! `ferntast node`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use ferntast_bus::SharedMemoryBus;
+use ferntast_nodes::{
+    node_name::NodeName,
+    process::{self, ProcessError},
+    session::{PlayOptions, SessionContext},
+    stop,
+};
+
+use super::{Failure, scenario_options::ScenarioOptions};
+
+/// Run one node alone, in this process.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "The node meets others of the same --session over shared memory. Three terminals make an arm that can be felt:\n  \
+    ferntast node arm\n  \
+    ferntast node servo\n  \
+    ferntast node estimator"
+)]
+pub struct Arguments {
+    /// Which node.
+    node: NodeName,
+
+    /// Name of the session whose other nodes it shall meet.
+    #[arg(long, default_value = "default", value_name = "NAME")]
+    session: String,
+
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+
+    /// Folder that the recorder writes or the player plays.
+    #[arg(long, value_name = "DIR")]
+    bag: Option<PathBuf>,
+
+    /// Experiment whose model the twin holds against a joint.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
+
+    /// Everything at once, as the supervisor wrote it.
+    #[arg(long, hide = true)]
+    session_file: Option<PathBuf>,
+
+    /// How often the supervisor started it before.
+    #[arg(long, default_value_t = 0, hide = true)]
+    generation: u32,
+}
+
+/// Runs it until Ctrl-C.
+pub fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
+    let supervised = arguments.session_file.is_some();
+    let context = match &arguments.session_file {
+        Some(path) => SessionContext::read(path).map_err(Failure::refused)?,
+        None => {
+            let loaded = arguments.scenario.load()?;
+            let mut context =
+                SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+            context.bag = arguments.bag;
+            context.twin = arguments.twin;
+            context.play = PlayOptions::default();
+            context
+        }
+    };
+    let stop = stop::on_signals().map_err(Failure::failed)?;
+    if !supervised {
+        eprintln!(
+            "node {} of session {:?}; Ctrl-C ends it",
+            arguments.node, context.session
+        );
+    }
+    let result = process::run(arguments.node, &context, arguments.generation, &stop);
+    if !supervised {
+        // The last process of the session frees its shared memory; while
+        // others live this is refused.
+        let _ = SharedMemoryBus::clean_up(&context.session);
+    }
+    result.map(|()| ExitCode::SUCCESS).map_err(|error| {
+        let text = format!("node {}: {error}", arguments.node);
+        match error {
+            ProcessError::Broken(_) => Failure::failed(text),
+            _ => Failure::refused(text),
+        }
+    })
+}

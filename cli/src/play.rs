@@ -1,0 +1,87 @@
+//! `ferntast play`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use ferntast_nodes::{
+    session::{self, PlayOptions, SessionContext},
+    stop,
+};
+
+use super::{
+    Failure,
+    foxglove_option::FoxgloveOption,
+    output::print_json,
+    scenario_options::{ScenarioOptions, check_twin},
+};
+
+/// Put a recording back on the topics of ROS 2, with its timing.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A rosbag2 directory or an .mcap file.
+    recording: PathBuf,
+
+    /// Speed relative to the recording.
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        value_name = "FACTOR",
+        allow_negative_numbers = true
+    )]
+    rate: f64,
+
+    /// Begin again at the end, until Ctrl-C.
+    #[arg(long = "loop")]
+    repeat: bool,
+
+    /// Play into a live estimator: its forces are computed anew.
+    #[arg(long)]
+    estimate: bool,
+
+    /// Hold the model of this experiment of the lab against a joint that is played; topics /twin/*.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
+
+    #[command(flatten)]
+    foxglove: FoxgloveOption,
+
+    /// Name of the session.
+    #[arg(long, default_value = "play", value_name = "NAME")]
+    session: String,
+
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+}
+
+/// Runs it.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if !(arguments.rate.is_finite() && (0.01..=100.0).contains(&arguments.rate)) {
+        return Err(Failure::refused(format!(
+            "--rate {}: give a factor of 0.01 to 100",
+            arguments.rate
+        )));
+    }
+    let info = ferntast_bus::mcap::info(&arguments.recording).map_err(Failure::refused)?;
+    let loaded = arguments.scenario.load()?;
+    let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    context.bag = Some(arguments.recording);
+    context.play = PlayOptions {
+        rate: arguments.rate,
+        repeat: arguments.repeat,
+        except: Vec::new(),
+    };
+    context.foxglove = arguments.foxglove.address()?;
+    check_twin(arguments.twin.as_deref())?;
+    context.twin = arguments.twin;
+    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let played = session::play(context, arguments.estimate, info.duration_s, &stop)
+        .map_err(Failure::of_session)?;
+    if json {
+        print_json(&played)?;
+    } else {
+        println!("played {:.1} s", played.played_s);
+        if let Some(twin) = &played.twin {
+            println!("{twin}");
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,57 @@
+//! `ferntast replay`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use ferntast_nodes::{replay, twin};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{Failure, output::print_json};
+
+/// Feed a lockstep recording again through servo and estimator, and a twin if asked.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A rosbag2 directory that `ferntast lockstep --record` made.
+    recording: PathBuf,
+
+    /// Hold the model of this experiment of the lab against a joint; compared where the
+    /// recording has a twin.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
+}
+
+/// Runs it; exit code 1 when the outputs differ.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let bar = ProgressBar::new(100);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %") {
+        bar.set_style(style);
+    }
+    let model = match &arguments.twin {
+        None => None,
+        Some(path) => Some(twin::open(path).map_err(Failure::refused)?),
+    };
+    let result = replay::run(&arguments.recording, model, &mut |share| {
+        bar.set_position((share * 100.0) as u64);
+    })
+    .map_err(|error| Failure::refused(format!("{}: {error}", arguments.recording.display())))?;
+    bar.finish_and_clear();
+    if json {
+        print_json(&result)?;
+    } else if result.equal {
+        println!("{} messages compared, all equal", result.compared);
+    } else {
+        println!(
+            "{} of {} messages differ; first: {}",
+            result.different,
+            result.compared,
+            result.first_difference.as_deref().unwrap_or("-")
+        );
+    }
+    if let (false, Some(twin)) = (json, &result.twin) {
+        println!("{twin}");
+    }
+    Ok(if result.equal {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}

@@ -1,0 +1,136 @@
+//! The options by which a scenario is chosen and changed.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use ferntast_nodes::{
+    arm as simulated,
+    config::{self, HandSource, Loaded, Middleware},
+    twin,
+};
+
+use super::Failure;
+
+/// Which scenario, and what is to be different from it.
+#[derive(Debug, Args)]
+pub struct ScenarioOptions {
+    /// Scenario: a shipped one (rokviss, kontur_2, relay, ku_band, operator) or a file.
+    #[arg(long, default_value = "rokviss", value_name = "NAME|FILE")]
+    pub scenario: String,
+
+    /// Channel between operator and arm: a shipped one (direct, rokviss_20ms, rokviss_30ms, kontur_2,
+    /// relay_600ms, ku_band_800ms) or a file.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub link: Option<String>,
+
+    /// Delay law to start with: position_force, position_position, four_channel, wave, tdpa, model_mediated.
+    #[arg(long, value_name = "NAME")]
+    pub law: Option<String>,
+
+    /// Constant round-trip time of the channel instead of the one in the link's file [ms].
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    pub rtt: Option<f64>,
+
+    /// Whose hand: scripted, crtk (a CRTK client on ROS 2), or a CSV file with recorded motion
+    /// (t_s,x_m,y_m).
+    #[arg(long, value_name = "scripted|crtk|FILE")]
+    pub hand: Option<String>,
+
+    /// Seed of everything that is random.
+    #[arg(long)]
+    pub seed: Option<u64>,
+
+    /// How ROS 2 is reached.
+    #[arg(long, value_enum)]
+    pub middleware: Option<Middleware>,
+
+    /// ROS domain (else ROS_DOMAIN_ID, else that of the scenario).
+    #[arg(long, value_name = "ID")]
+    pub domain: Option<u32>,
+
+    /// Endpoint at which the arm's end of the link listens (over udp what is lost stays lost, over tcp it
+    /// is sent again and holds up the rest).
+    #[arg(long, value_name = "tcp|udp/HOST:PORT")]
+    pub link_endpoint: Option<String>,
+
+    /// Endpoint of the Zenoh router for ROS 2 (with --middleware zenoh).
+    #[arg(long, value_name = "tcp/HOST:PORT")]
+    pub router_endpoint: Option<String>,
+}
+
+impl ScenarioOptions {
+    /// Loads the scenario with all that it names.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it, where, and how to mend it.
+    pub fn load(&self) -> Result<Loaded, Failure> {
+        let mut loaded =
+            config::load_scenario(&self.scenario, simulated::load_arm).map_err(Failure::refused)?;
+        let scenario = &mut loaded.scenario;
+        if let Some(seed) = self.seed {
+            scenario.seed = seed;
+        }
+        if let Some(middleware) = self.middleware {
+            scenario.gateway.middleware = middleware;
+        }
+        if let Some(domain) = self.domain {
+            scenario.gateway.domain_id = domain;
+        } else if let Some(domain) = domain_of_environment()? {
+            scenario.gateway.domain_id = domain;
+        }
+        if let Some(law) = &self.law {
+            scenario.set_law(law).map_err(Failure::refused)?;
+        }
+        if let Some(endpoint) = &self.link_endpoint {
+            scenario.link.endpoint.clone_from(endpoint);
+        }
+        if let Some(endpoint) = &self.router_endpoint {
+            scenario.gateway.router_endpoint.clone_from(endpoint);
+        }
+        match self.hand.as_deref() {
+            None => {}
+            Some("scripted") => scenario.hand.source = HandSource::Scripted,
+            Some("crtk") => scenario.hand.source = HandSource::Crtk,
+            Some(file) => {
+                scenario.hand.source = HandSource::Recorded;
+                scenario.hand.recording = Some(PathBuf::from(file));
+                loaded.hand_recording = None;
+            }
+        }
+        if let Some(link) = &self.link {
+            loaded.set_link(link).map_err(Failure::refused)?;
+        }
+        if let Some(rtt) = self.rtt {
+            loaded
+                .set_round_trip(rtt * 1e-3)
+                .map_err(Failure::refused)?;
+        }
+        loaded.complete().map_err(Failure::refused)?;
+        Ok(loaded)
+    }
+}
+
+/// Refuses an experiment that a twin cannot follow, before any node is started.
+///
+/// # Errors
+///
+/// What is wrong with it, where, and how to mend it.
+pub fn check_twin(experiment: Option<&Path>) -> Result<(), Failure> {
+    match experiment {
+        None => Ok(()),
+        Some(path) => twin::open(path).map(drop).map_err(Failure::refused),
+    }
+}
+
+fn domain_of_environment() -> Result<Option<u32>, Failure> {
+    match std::env::var("ROS_DOMAIN_ID") {
+        Err(_) => Ok(None),
+        Ok(text) if text.trim().is_empty() => Ok(None),
+        Ok(text) => text.trim().parse().map(Some).map_err(|_| {
+            Failure::refused(format!(
+                "ROS_DOMAIN_ID is {text:?}, which is no number; set it to 0 … 232 or unset it"
+            ))
+        }),
+    }
+}

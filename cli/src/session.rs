@@ -1,0 +1,97 @@
+//! `ferntast session`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use ferntast_nodes::{
+    session::{self, SessionContext, SessionOptions},
+    stop,
+};
+
+use super::{
+    Failure,
+    foxglove_option::FoxgloveOption,
+    output::print_json,
+    page_options::PageOptions,
+    scenario_options::{ScenarioOptions, check_twin},
+};
+
+/// Run a session.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    ferntast session --duration 20 --record recordings/first\n  \
+    ferntast session --hand crtk               # your own CRTK master on ROS 2 drives it\n  \
+    ferntast session --hand hand.csv --link relay_600ms\n  \
+    ferntast session --scenario relay --law tdpa\n  \
+    ferntast session --twin joint.toml         # and see where the lab's model fails while it moves\n  \
+    ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n  \
+    ferntast session --foxglove                # watch in Foxglove or Lichtblick, ws://127.0.0.1:8765\n\n\
+    While it runs: the page that it names, `ros2 topic list`, `ferntast state follower resume`
+(re-arm after a hold), `ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
+pub struct Arguments {
+    #[command(flatten)]
+    scenario: ScenarioOptions,
+
+    /// End after that many seconds in which the arm was armed (else at Ctrl-C).
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    duration: Option<f64>,
+
+    /// Record into this folder (a rosbag2 directory; must not exist yet).
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+
+    /// Hold the model of this experiment of the lab against a joint while it moves; topics /twin/*.
+    #[arg(long, value_name = "EXPERIMENT.toml")]
+    twin: Option<PathBuf>,
+
+    /// Name of the session; two at once on one host need two names.
+    #[arg(long, default_value = "default", value_name = "NAME")]
+    session: String,
+
+    /// Serve no page.
+    #[arg(long)]
+    no_console: bool,
+
+    #[command(flatten)]
+    page: PageOptions,
+
+    #[command(flatten)]
+    foxglove: FoxgloveOption,
+
+    /// Do not arm at the start: wait for `ferntast state follower enable` or a CRTK client.
+    #[arg(long)]
+    no_enable: bool,
+}
+
+/// Runs it.
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if let Some(duration) = arguments.duration
+        && !(duration.is_finite() && duration > 0.0)
+    {
+        return Err(Failure::refused(format!(
+            "--duration {duration}: give a positive number of seconds"
+        )));
+    }
+    let loaded = arguments.scenario.load()?;
+    let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    context.bag = arguments.record;
+    let page = arguments.page.console()?;
+    context.console = (!arguments.no_console).then_some(page);
+    context.foxglove = arguments.foxglove.address()?;
+    check_twin(arguments.twin.as_deref())?;
+    context.twin = arguments.twin;
+    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let options = SessionOptions {
+        duration: arguments.duration,
+        enable: !arguments.no_enable,
+    };
+    let (summary, outcome) = session::run(context, &options, &stop).map_err(Failure::of_session)?;
+    if json {
+        print_json(&summary)?;
+    } else {
+        println!("{summary}");
+    }
+    match outcome {
+        Ok(()) => Ok(ExitCode::SUCCESS),
+        Err(error) => Err(Failure::failed(error)),
+    }
+}

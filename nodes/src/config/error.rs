@@ -1,0 +1,68 @@
+//! Why configuration cannot be used.
+
+use std::{io, path::PathBuf};
+
+use ferntast_emulation::hand::RecordingError;
+use ferntast_model::ParameterError;
+
+/// Why configuration cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    /// Neither a file nor a shipped name.
+    #[error(
+        "{kind} {name:?}: no such file, and none of that name is shipped; shipped are: {shipped}"
+    )]
+    Unknown {
+        /// Scenario, arm or link.
+        kind: &'static str,
+        /// What was asked for.
+        name: String,
+        /// What is there.
+        shipped: String,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {path}: {source}")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The operating system's reason.
+        source: io::Error,
+    },
+    /// A file is not what it should be: unknown key, wrong type, bad syntax.
+    #[error("{path}: {message}")]
+    Syntax {
+        /// The file.
+        path: String,
+        /// Line, key, and what is wrong.
+        message: String,
+    },
+    /// A value is out of its bounds.
+    #[error("{path}: {source}")]
+    Value {
+        /// The file.
+        path: String,
+        /// Key, value, bounds, unit.
+        source: ParameterError,
+    },
+    /// An arm's configuration is not one that the arm's driver reads.
+    #[error("the arm's configuration is not one of its driver: {0}")]
+    Arm(serde_json::Error),
+    /// A recorded hand motion cannot be used.
+    #[error("{path}: {source}")]
+    Hand {
+        /// The file.
+        path: PathBuf,
+        /// Line, and what is wrong.
+        source: RecordingError,
+    },
+    /// The hand is to be scripted or recorded, and the script or file is missing.
+    #[error("{path}: hand.source is {source_name:?}, but hand.{missing} is missing")]
+    NoHand {
+        /// The scenario.
+        path: String,
+        /// The source.
+        source_name: &'static str,
+        /// The missing key.
+        missing: &'static str,
+    },
+}

@@ -1,5 +1,0 @@
-//! The `ferntast` command.
-
-fn main() -> std::process::ExitCode {
-    ferntast_nodes::command::main()
-}

@@ -1,0 +1,129 @@
+//! The benches' recordings as the identification and the disk want them.
+
+mod contact;
+mod joint;
+
+use std::str::FromStr;
+
+use ferntast_benches::bench::{BenchConfig, BenchError, Hideable, TrueParameter};
+use ferntast_bus::{Bus, CreateError, PublishError};
+use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
+use ferntast_msgs::Time;
+
+/// Date of the first session: when ROKVISS went into operation.
+const FIRST_SESSION: i64 = 1_107_216_000;
+
+/// Why a recording is not written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// A topic cannot be made in it.
+    #[error(transparent)]
+    Topic(#[from] CreateError),
+    /// A message cannot be written.
+    #[error(transparent)]
+    Publish(#[from] PublishError),
+}
+
+/// What a bench can hide, and how it is recorded.
+pub trait TestBench: Hideable + FromStr<Err = BenchError> {
+    /// How a session moves.
+    type Motion: Clone + Default + FromStr<Err = BenchError> + Send + Sync;
+    /// The bench with what it hides.
+    type Bench;
+    /// Its sessions and the answer.
+    type Recording;
+
+    /// Sessions of a recording, unless others are asked for.
+    const SESSIONS: usize;
+
+    /// Draws a bench.
+    ///
+    /// # Errors
+    ///
+    /// A value is out of bounds, or effects do not go together.
+    fn bench(config: &BenchConfig<Self, Self::Motion>) -> Result<Self::Bench, BenchError>;
+
+    /// Runs every session.
+    ///
+    /// # Errors
+    ///
+    /// As the bench has it.
+    fn record(bench: &Self::Bench) -> Result<Self::Recording, BenchError>;
+
+    /// Runs more sessions on the same bench, on later dates, and gives them as
+    /// they follow on the recording's.
+    ///
+    /// # Errors
+    ///
+    /// As the bench has it.
+    fn follow_up(
+        bench: &Self::Bench,
+        recording: &Self::Recording,
+        motion: Self::Motion,
+        sessions: usize,
+    ) -> Result<Vec<Session>, BenchError>;
+
+    /// The same recording with nothing hidden: what the believed model, fitted to
+    /// it, reaches is what the true model reaches on `recording`.
+    fn without_hidden(recording: &Self::Recording) -> Self::Recording;
+
+    /// The recording's sessions.
+    fn dataset(recording: &Self::Recording) -> Dataset;
+
+    /// What the experimenter believes: the truth without what is hidden.
+    fn model(recording: &Self::Recording) -> ModelSpec;
+
+    /// Every true parameter.
+    fn truth(recording: &Self::Recording) -> &[TrueParameter<Self>];
+
+    /// Error that the true model leaves with nominal parameters \[Nm, of a contact N\].
+    fn reference_rms(recording: &Self::Recording) -> f64;
+
+    /// Writes the messages.
+    ///
+    /// # Errors
+    ///
+    /// The bus refuses.
+    fn publish(recording: &Self::Recording, bus: &Bus) -> Result<(), WriteError>;
+
+    /// The experiment file, for a recording beside it.
+    fn experiment(recording: &Self::Recording) -> String;
+}
+
+/// When a log entry `time` \[s\] into a session that began at `start` \[s\] was made.
+fn stamp(start: f64, time: f64) -> Time {
+    Time::from_nanos(FIRST_SESSION * 1_000_000_000)
+        .plus_seconds(start)
+        .plus_seconds(time)
+}
+
+/// A model with these effects.
+fn model_of(inertia: f64, gear_ratio: Option<f64>, effects: &[&'static str]) -> ModelSpec {
+    let effects = effects.iter();
+    ModelSpec {
+        inertia: Inertia::Given(inertia),
+        gear_ratio,
+        effects: effects
+            .map(|id| Term::Catalogue((*id).to_owned()))
+            .collect(),
+    }
+}
+
+/// `"a", "b"`.
+fn quoted(ids: &[&'static str]) -> String {
+    let quoted: Vec<String> = ids.iter().map(|id| format!("\"{id}\"")).collect();
+    quoted.join(", ")
+}
+
+/// The effect that `seed` hides; now and then it is nothing.
+pub fn hidden_by<H: TestBench>(seed: u64) -> Option<H> {
+    // SplitMix64's finaliser: neighbouring seeds hide unrelated effects.
+    let mut mixed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    mixed ^= mixed >> 31;
+    let choices = H::ALL.len() as u64 + 1;
+    usize::try_from(mixed % choices)
+        .ok()
+        .and_then(|index| H::ALL.get(index).copied())
+}

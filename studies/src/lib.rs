@@ -1,0 +1,7 @@
+//! What is run for its result, in virtual time: identification experiments and
+//! campaigns, the paper's items, sweeps over delay laws, the lab's challenges.
+
+pub mod challenge;
+pub mod experiment;
+pub mod paper;
+pub mod sweep;

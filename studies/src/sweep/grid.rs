@@ -1,0 +1,82 @@
+//! The conditions of a sweep, one a trial.
+
+use ferntast_control::delay::Law;
+use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig, Loss};
+use ferntast_sim::teleoperation::{Environment, Trial};
+
+use super::SweepConfig;
+
+/// The conditions of one trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    /// The law.
+    pub law: Law,
+    /// Round trip, half of it each way \[ms\].
+    pub rtt_ms: f64,
+    /// Standard deviation of the delay, each way \[ms\].
+    pub jitter_ms: f64,
+    /// Share of frames lost, each way \[-\].
+    pub loss: f64,
+    /// What the tip meets.
+    pub environment: Environment,
+    /// Of all chance.
+    pub seed: u64,
+}
+
+impl SweepConfig {
+    /// Every condition, law by law.
+    pub fn conditions(&self) -> Vec<Condition> {
+        let mut all = Vec::new();
+        for law in &self.laws {
+            for &environment in &self.environments {
+                for &rtt_ms in &self.rtt_ms {
+                    for &jitter_ms in &self.jitter_ms {
+                        for &loss in &self.loss {
+                            let chance = jitter_ms > 0.0 || loss > 0.0;
+                            let seeds = if chance { self.seeds.len() } else { 1 };
+                            all.extend(self.seeds.iter().take(seeds).map(|&seed| Condition {
+                                law: law.clone(),
+                                rtt_ms,
+                                jitter_ms,
+                                loss,
+                                environment,
+                                seed,
+                            }));
+                        }
+                    }
+                }
+            }
+        }
+        all
+    }
+}
+
+impl Condition {
+    /// The channel.
+    pub fn link(&self) -> LinkConfig {
+        let one_way = ChannelConfig {
+            delay: 0.5e-3 * self.rtt_ms,
+            jitter: (self.jitter_ms > 0.0).then_some(Jitter::Normal {
+                deviation: 1e-3 * self.jitter_ms,
+            }),
+            loss: (self.loss > 0.0).then_some(Loss::Independent {
+                probability: self.loss,
+            }),
+            ..ChannelConfig::default()
+        };
+        LinkConfig {
+            description: String::new(),
+            up: one_way.clone(),
+            down: one_way,
+        }
+    }
+
+    /// The trial, with the hand and the arm of `config`.
+    pub fn trial(&self, config: &SweepConfig) -> Trial {
+        Trial {
+            hand: config.hand,
+            tip: config.tip,
+            ..Trial::new(self.law.clone(), self.link(), self.environment, self.seed)
+        }
+    }
+}

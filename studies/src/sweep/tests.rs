@@ -1,0 +1,136 @@
+use ferntast_control::delay::Law;
+use ferntast_sim::teleoperation::Environment;
+
+use super::*;
+
+fn small() -> SweepConfig {
+    let mut config = SweepConfig::load("delay_sweep").unwrap();
+    config.laws.retain(|law| law.name() == "position_force");
+    config.environments = vec![Environment::SoftSpring, Environment::HardWall];
+    config.rtt_ms = vec![0.0, 300.0];
+    config
+}
+
+#[test]
+fn the_shipped_sweep_holds_every_law_and_what_it_has_to() {
+    let config = SweepConfig::load("delay_sweep").unwrap();
+    let laws: Vec<&str> = config.laws.iter().map(Law::name).collect();
+    assert_eq!(laws, Law::NAMES);
+    for rtt in [0.0, 20.0, 100.0, 300.0, 600.0, 700.0, 800.0, 1000.0, 2000.0] {
+        assert!(config.rtt_ms.contains(&rtt), "{rtt}");
+    }
+    assert_eq!(config.environments, Environment::ALL);
+    // Compared at the same scales.
+    let scales = config.laws.iter().map(|law| law.mapping().force_scale);
+    assert!(scales.into_iter().all(|scale| scale == 1.0));
+}
+
+#[test]
+fn conditions_without_chance_need_one_seed() {
+    let config = small();
+    let conditions = config.conditions();
+    // 2 environments × 2 delays × (1 without chance + 3 with, of two seeds).
+    assert_eq!(conditions.len(), 2 * 2 * (1 + 3 * 2));
+    for own in &conditions {
+        let link = own.link();
+        assert_eq!(link.up, link.down);
+        assert!((2e3 * link.up.delay - own.rtt_ms).abs() < 1e-9);
+        assert_eq!(link.up.mean_loss(), own.loss);
+    }
+}
+
+#[test]
+fn rows_are_the_same_again_and_tell_where_position_force_fails() {
+    let config = small();
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let count = || {
+        done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    };
+    let rows = run(&config, count).unwrap();
+    assert_eq!(rows.len(), done.into_inner());
+    assert_eq!(rows, run(&config, || {}).unwrap());
+    let found = largest_stable(&rows);
+    let of = |environment| found.iter().find(|own| own.environment == environment);
+    let (spring, wall) = (of("soft_spring").unwrap(), of("hard_wall").unwrap());
+    // 100 N/m by a hand of 300 N/m: small gain, stable whatever the delay. A wall
+    // of 20 kN/m behind the servo's 6.75 kN/m is far beyond it.
+    assert_eq!(spring.ideal_ms, Some(300.0));
+    assert_eq!(wall.ideal_ms.filter(|rtt| *rtt >= 300.0), None);
+    let told = table(&rows);
+    assert!(
+        told.contains("hard_wall") && told.contains("position_force"),
+        "{told}"
+    );
+}
+
+fn row(rtt_ms: f64, loss: f64, stable: bool) -> Row {
+    let config = small();
+    let condition = Condition {
+        rtt_ms,
+        loss,
+        ..config.conditions().remove(0)
+    };
+    let outcome = condition.trial(&config).run().unwrap();
+    Row {
+        stable,
+        ..Row::new(&condition, &outcome)
+    }
+}
+
+#[test]
+fn stable_beyond_an_unstable_delay_does_not_count() {
+    let rows = [
+        row(0.0, 0.0, true),
+        row(0.0, 0.5, true),
+        row(20.0, 0.0, true),
+        row(20.0, 0.5, false),
+        row(100.0, 0.0, false),
+        row(300.0, 0.0, true),
+    ];
+    let found = largest_stable(&rows);
+    assert_eq!(found.len(), 1);
+    assert_eq!(
+        (found[0].ideal_ms, found[0].worst_ms),
+        (Some(20.0), Some(0.0))
+    );
+    assert_eq!(largest_stable(&rows[4..])[0].ideal_ms, None);
+}
+
+#[test]
+fn json_has_the_keys_and_the_page_is_whole_in_itself() {
+    let rows = [row(20.0, 0.0, true)];
+    let value = serde_json::to_value(&rows).unwrap();
+    for key in [
+        "law",
+        "rtt_ms",
+        "environment",
+        "stable",
+        "position_rmse_m",
+        "force_rmse_N",
+        "drift_m",
+        "peak_force_N",
+        "energy_margin_J",
+        "jitter_ms",
+        "loss",
+        "seed",
+        "transparency",
+        "task_time_s",
+    ] {
+        assert!(value[0].get(key).is_some(), "{key}");
+    }
+    let mut config = small();
+    config.description = "</script><b>".to_owned();
+    let page = render(&config, &rows).unwrap();
+    assert!(!page.contains("@DATA@") && !page.contains("@STYLE@"));
+    assert!(!page.contains("</script><b>"));
+    assert!(!page.contains("http"), "an address");
+}
+
+#[test]
+fn values_out_of_bounds_are_refused() {
+    let mut config = small();
+    config.loss = vec![1.5];
+    assert!(run(&config, || {}).is_err());
+    config.loss = Vec::new();
+    assert!(config.validate().is_err());
+}
