@@ -35,6 +35,7 @@ fn rms(values: &[f64]) -> f64 {
 }
 
 #[test]
+#[ignore = "needs outside recordings: emps"]
 fn emps_is_two_runs_at_a_kilohertz() {
     let loaded = read(&root().join("config/experiments/emps.toml"));
     let (fitted, held_out) = (&loaded.dataset.sessions[0], &loaded.dataset.held_out[0]);
@@ -51,6 +52,7 @@ fn emps_is_two_runs_at_a_kilohertz() {
 }
 
 #[test]
+#[ignore = "needs outside recordings: xl330"]
 fn xl330_is_sixteen_runs_made_even() {
     let loaded = read(&root().join("config/experiments/xl330.toml"));
     let sessions = &loaded.dataset.sessions;
@@ -79,6 +81,7 @@ fn xl330_is_sixteen_runs_made_even() {
 }
 
 #[test]
+#[ignore = "needs outside recordings: hidden"]
 fn hidden_recordings_are_six_sessions_with_days_between() {
     let folder = data().join("hidden");
     let mut files: Vec<PathBuf> = folder
@@ -109,6 +112,7 @@ fn hidden_recordings_are_six_sessions_with_days_between() {
 
 /// Figures by the Python package `rosbags` from `none-100.mcap`.
 #[test]
+#[ignore = "needs outside recordings: hidden"]
 fn what_is_read_is_what_rosbags_reads() {
     let loaded = read(&data().join("hidden/none-100.toml"));
     let sessions = &loaded.dataset.sessions;

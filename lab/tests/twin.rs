@@ -120,6 +120,7 @@ fn cases() -> Vec<Case> {
 }
 
 #[test]
+#[ignore = "needs outside recordings: hidden"]
 fn the_alarm_rises_where_the_model_is_wrong_and_only_there() {
     let (mut wrong, mut right) = ((0, 0), (0, 0));
     let mut named = 0;

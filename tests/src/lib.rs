@@ -3,20 +3,32 @@
 //!
 //! A test opens a [`Session`], starts [`Process`]es in it, and drops both.
 //! What is missing (program, data, Python environment) panics with a text that
-//! says how to mend it: a test that cannot run has failed.
+//! says how to mend it: a test that cannot run has failed. Tests of bounds in
+//! milliseconds hold the [`Machine`], which measures when it stalled.
 
 mod browser;
+mod command;
 mod deadline;
 mod domain;
 mod hosts;
+mod laws;
+mod live;
+mod machine;
 mod places;
 mod process;
 mod session;
 
 pub use browser::Browser;
+pub use command::{JOINT_2, PATIENCE, experiment_on_joint_2, messages, number, refused, run};
 pub use deadline::{wait_for, wait_until};
 pub use domain::Domain;
 pub use hosts::{Host, TwoHosts};
+pub use laws::{force_steps, laws, switches};
+pub use live::{
+    await_enabled, hand_of_strokes, hand_through, human_hand, keep_enabled, node, operated, rearm,
+    rearmed, recording, set_parameter, signal, start, state, state_of_follower,
+};
+pub use machine::{Machine, Window, now};
 pub use places::{data, ferntast, peer, python, root};
 pub use process::{Ended, Process};
 pub use session::{Session, free_tcp_port};

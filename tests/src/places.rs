@@ -87,6 +87,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "needs outside recordings: hand"]
     fn the_recordings_are_there() {
         assert!(data().join("hand/hand_3.csv").is_file());
     }

@@ -1,0 +1,287 @@
+//! The console in a real browser: a person drives a session with the mouse.
+
+use std::{
+    io::{Read, Write},
+    net::TcpStream,
+    time::Duration,
+};
+
+use ferntast_msgs::{
+    sample::{OperatingState, RecorderAction},
+    topics,
+};
+use ferntast_tests::{
+    Browser, PATIENCE, Process, Session, free_tcp_port, messages, node, run, signal, start,
+    state_of_follower, wait_for,
+};
+
+/// A session with its console, and where that is.
+fn session_with_page(session: &Session, more: &[&str]) -> (Process, String) {
+    let address = format!("127.0.0.1:{}", free_tcp_port());
+    let mut arguments = vec!["--listen", &address];
+    arguments.extend(more);
+    let mut process = start(session, &arguments);
+    process.await_stderr("console: http://", PATIENCE);
+    process.await_stderr("follower ENABLED", PATIENCE);
+    (process, address)
+}
+
+/// The largest contact force in the chart.
+const NORMAL_FORCE: &str =
+    "return Number(document.querySelector('#strip-force canvas').dataset.largest)";
+
+/// The status of an HTTP answer, with these headers in the request.
+fn status(address: &str, request: &str, headers: &[(&str, &str)]) -> u16 {
+    let mut stream = TcpStream::connect(address).expect("the page is served");
+    let mut text = format!("{request} HTTP/1.1\r\nConnection: close\r\n");
+    for (name, value) in headers {
+        text.push_str(&format!("{name}: {value}\r\n"));
+    }
+    text.push_str("\r\n");
+    stream.write_all(text.as_bytes()).expect("a request");
+    let mut answer = String::new();
+    let mut head = [0; 64];
+    let count = stream.read(&mut head).expect("an answer");
+    answer.push_str(&String::from_utf8_lossy(&head[..count]));
+    let code = answer.split(' ').nth(1).and_then(|code| code.parse().ok());
+    code.unwrap_or_else(|| panic!("no status in {answer:?}"))
+}
+
+#[test]
+fn a_session_is_driven_by_dragging_and_the_stop_stops() {
+    let session = Session::new();
+    let (process, address) = session_with_page(&session, &[]);
+    let browser = Browser::start(1280, 800);
+    browser.open(&format!("http://{address}"));
+    browser.until(
+        "the arm is drawn",
+        PATIENCE,
+        "return Number(document.querySelector('#scene').dataset.drawn) > 20",
+    );
+    browser.click("#operate");
+    browser.until(
+        "this page operates",
+        PATIENCE,
+        "return document.querySelector('#operate').textContent.startsWith('Give up')",
+    );
+
+    // To the bare edge, 30 mm to the right, and 8 mm into it.
+    let scale = browser.number("const c = document.querySelector('#scene'); return Math.min(c.clientWidth, c.clientHeight) / 0.136");
+    let path: Vec<(f64, f64)> = (1..=20)
+        .map(|step| (f64::from(step) * 0.0019 * scale, 0.0))
+        .collect();
+    browser.drag("#scene", &path, Duration::from_millis(60));
+    browser.until(
+        "this page's hand holds the authority",
+        PATIENCE,
+        "return document.querySelector('#holder').textContent === 'this page'",
+    );
+    browser.until(
+        "the contact is felt",
+        PATIENCE,
+        "return Number(document.querySelector('#strip-force canvas').dataset.newest) > 5",
+    );
+    let felt = browser.number(NORMAL_FORCE);
+    assert!((5.0..200.0).contains(&felt), "{felt} N");
+    browser.until(
+        "the bar shows it",
+        PATIENCE,
+        "return parseFloat(document.querySelector('#force-bar').style.width) > 2",
+    );
+
+    // A delay is set and seen.
+    browser.run(
+        "const s = document.querySelector('#link-delay'); s.value = 200; s.dispatchEvent(new Event('input'))",
+        Vec::new(),
+    );
+    browser.until(
+        "the round trip is measured",
+        PATIENCE,
+        "const d = Number(document.querySelector('#strip-delay canvas').dataset.newest); return d > 190 && d < 215",
+    );
+
+    // So is another law.
+    browser.run(
+        "const s = document.querySelector('#law'); s.value = 'tdpa'; s.dispatchEvent(new Event('change'))",
+        Vec::new(),
+    );
+    let told = wait_for(PATIENCE, || {
+        let told = run(&session, &["link", "law", "--session", session.name()]);
+        (told.stdout.trim() == "tdpa").then_some(())
+    });
+    assert!(told.is_some(), "the link keeps its law");
+
+    browser.click("#stop");
+    browser.until(
+        "the arm is off",
+        PATIENCE,
+        "return document.querySelector('#status').textContent.includes('DISABLED')",
+    );
+    assert_eq!(state_of_follower(&session), "DISABLED");
+    browser.release();
+    browser.click("#arm");
+    browser.until(
+        "the arm is on again",
+        PATIENCE,
+        "return document.querySelector('#status').textContent.includes('arm ENABLED')",
+    );
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    drop(browser);
+
+    process.interrupt();
+    process.wait(PATIENCE).success();
+    let states = messages(
+        &session.folder().join("run"),
+        topics::FOLLOWER_OPERATING_STATE,
+    );
+    assert!(
+        states
+            .iter()
+            .any(|own| own.message.state == OperatingState::DISABLED)
+    );
+    let hands = messages(&session.folder().join("run"), topics::LEADER_SETPOINT_CP);
+    let farthest = hands
+        .iter()
+        .map(|own| own.message.position[0])
+        .fold(0.0, f64::max);
+    assert!((0.028..0.061).contains(&farthest), "{farthest} m");
+}
+
+#[test]
+fn a_page_that_freezes_does_not_hold_the_arm() {
+    let session = Session::new();
+    let (process, address) = session_with_page(&session, &[]);
+    let browser = Browser::start(900, 700);
+    browser.open(&format!("http://{address}"));
+    browser.click("#operate");
+    browser.until(
+        "this page operates",
+        PATIENCE,
+        "return document.querySelector('#operate').textContent.startsWith('Give up')",
+    );
+    browser.drag(
+        "#scene",
+        &[(5.0, 5.0), (15.0, 10.0)],
+        Duration::from_millis(100),
+    );
+    browser.until(
+        "the hand is held",
+        PATIENCE,
+        "return document.querySelector('#holder').textContent === 'this page'",
+    );
+    // The tab does not come back for four seconds.
+    browser.run(
+        "setTimeout(() => { const end = Date.now() + 4000; while (Date.now() < end); }, 0)",
+        Vec::new(),
+    );
+    let paused = wait_for(Duration::from_secs(3), || {
+        (state_of_follower(&session) == "PAUSED").then_some(())
+    });
+    assert!(paused.is_some(), "{}", state_of_follower(&session));
+    browser.until(
+        "the page says so",
+        PATIENCE,
+        "return document.querySelector('#why').textContent.includes('stood still')",
+    );
+    drop(browser);
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn recordings_are_begun_marked_and_ended_by_the_page() {
+    let session = Session::new();
+    let address = format!("127.0.0.1:{}", free_tcp_port());
+    let mut process = Process::spawn(session.ferntast_here(&["session", "--listen", &address]));
+    process.await_stderr("follower ENABLED", PATIENCE);
+    let browser = Browser::start(900, 900);
+    browser.open(&format!("http://{address}"));
+    browser.click("#operate");
+    browser.click("#record");
+    browser.until("it records", PATIENCE, "return /[1-9][0-9]* messages in recordings/.test(document.querySelector('#recording').textContent)");
+    browser.type_into("#mark-label", "second contact");
+    browser.click("#mark");
+    browser.click("#record");
+    browser.until(
+        "it ended",
+        PATIENCE,
+        "return document.querySelector('#recording').textContent.startsWith('last:')",
+    );
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    drop(browser);
+    process.interrupt();
+    process.wait(PATIENCE).success();
+    let folder = std::fs::read_dir(session.folder().join("recordings")).expect("recordings");
+    let bag = folder.flatten().next().expect("a recording").path();
+    let told = messages(&bag, topics::RECORDER_COMMAND);
+    let mark = told
+        .iter()
+        .find(|own| own.message.action == RecorderAction::MARK);
+    assert_eq!(
+        mark.map(|own| own.message.label.to_string()),
+        Some("second contact".to_owned())
+    );
+}
+
+#[test]
+fn others_are_kept_out() {
+    let session = Session::new();
+    let (process, address) = session_with_page(&session, &["--token", "0123456789abcdef"]);
+    let host = ("Host", address.as_str());
+    let files = "GET /api/lab/files";
+    assert_eq!(status(&address, "GET /", &[host]), 200);
+    assert_eq!(status(&address, files, &[host]), 401);
+    assert_eq!(
+        status(
+            &address,
+            files,
+            &[host, ("Authorization", "Bearer 0123456789abcdef")]
+        ),
+        200
+    );
+    assert_eq!(
+        status(
+            &address,
+            "GET /api/lab/files?token=0123456789abcdef",
+            &[host]
+        ),
+        200
+    );
+    assert_eq!(status(&address, "GET /", &[("Host", "evil.example")]), 403);
+    let upgrade = [
+        ("Upgrade", "websocket"),
+        ("Connection", "Upgrade"),
+        ("Sec-WebSocket-Version", "13"),
+        ("Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ=="),
+    ];
+    let connect = |origin: &str, token: &str| {
+        let mut headers = vec![host, ("Origin", origin)];
+        headers.extend(upgrade);
+        status(
+            &address,
+            &format!("GET /api/session?token={token}"),
+            &headers,
+        )
+    };
+    assert_eq!(connect("http://evil.example", "0123456789abcdef"), 403);
+    assert_eq!(connect(&format!("http://{address}"), "wrong"), 401);
+    // A console that is killed comes back and the session goes on.
+    signal(node(&session, "console"), libc::SIGKILL);
+    let back = wait_for(PATIENCE, || TcpStream::connect(&address).ok().map(drop));
+    assert!(back.is_some());
+    assert_eq!(state_of_follower(&session), "ENABLED");
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn beyond_loopback_a_token_is_needed() {
+    let session = Session::new();
+    for arguments in [
+        &["session", "--listen", "0.0.0.0:0"][..],
+        &["lab", "serve", "--listen", "0.0.0.0:0"],
+        &["lab", "serve", "--listen", "0.0.0.0:0", "--token", "short"],
+    ] {
+        ferntast_tests::refused(&session, arguments, &["--token"]);
+    }
+}

@@ -1,0 +1,111 @@
+//! Nodes that die are started again; nothing recorded is lost; nothing stays behind.
+
+use std::{thread, time::Duration};
+
+use ferntast_bus::mcap;
+use ferntast_tests::{
+    PATIENCE, Session, await_enabled, node, recording, run, signal, start, wait_until,
+};
+
+#[test]
+fn every_node_that_dies_is_started_again() {
+    let session = Session::new();
+    let mut process = start(&session, &[]);
+    await_enabled(&session, &mut process);
+    let nodes = [
+        "arm",
+        "servo",
+        "estimator",
+        "master",
+        "link_leader",
+        "link_follower",
+        "gateway",
+    ];
+    for name in nodes {
+        let before = node(&session, name);
+        signal(before, libc::SIGKILL);
+        process.await_stderr(&format!("node {name} died"), PATIENCE);
+        assert!(wait_until(PATIENCE, || node(&session, name) != before));
+        thread::sleep(Duration::from_millis(500));
+    }
+    thread::sleep(Duration::from_secs(2));
+    process.interrupt();
+    let summary = process.wait(PATIENCE).success().json();
+    for name in nodes {
+        let told = &summary["nodes"][name];
+        assert_eq!(told["restarts"], 1, "{name}: {summary:#}");
+        assert_eq!(told["alive"], true, "{name}: {summary:#}");
+    }
+    // An arm whose servo was started again does not move by itself.
+    let visited = summary["states"]["follower"]["visited"]
+        .as_array()
+        .expect("states");
+    assert_eq!(visited.last().expect("a state"), "DISABLED", "{summary:#}");
+    assert_eq!(summary["recorder"]["lost"], 0, "{summary:#}");
+    assert_eq!(
+        summary["recorder"]["parts"].as_array().map(Vec::len),
+        Some(1)
+    );
+}
+
+#[test]
+fn a_recorder_that_dies_loses_at_most_what_it_had_not_written() {
+    let session = Session::new();
+    let mut process = start(&session, &[]);
+    await_enabled(&session, &mut process);
+    thread::sleep(Duration::from_secs(3));
+    signal(node(&session, "recorder"), libc::SIGKILL);
+    process.await_stderr("node recorder died", PATIENCE);
+    thread::sleep(Duration::from_secs(2));
+    process.interrupt();
+    let summary = process.wait(PATIENCE).success().json();
+    let parts = summary["recorder"]["parts"].as_array().expect("parts");
+    assert_eq!(parts.len(), 2, "{summary:#}");
+    let mut messages = 0;
+    for part in parts {
+        let part = session.folder().join(part.as_str().expect("a path"));
+        let info = mcap::info(&part).unwrap_or_else(|error| panic!("{error}"));
+        assert!(info.duration_s > 1.0, "{}: {info:?}", part.display());
+        messages += info.messages;
+    }
+    assert_eq!(summary["recorder"]["messages"], messages);
+}
+
+#[test]
+fn a_supervisor_that_dies_takes_its_nodes_along_and_can_be_started_again() {
+    let session = Session::new();
+    let mut process = start(&session, &[]);
+    await_enabled(&session, &mut process);
+    process.crash();
+    drop(process);
+    assert!(wait_until(PATIENCE, || session.processes().is_empty()));
+    // Its recorder had the time to close the recording.
+    run(&session, &["bag", "info", "run", "--json"]).success();
+    std::fs::rename(recording(&session), session.folder().join("before")).expect("the recording");
+    start(&session, &["--duration", "1"])
+        .wait(PATIENCE)
+        .success();
+}
+
+#[test]
+fn a_recording_that_was_cut_off_is_mended() {
+    let session = Session::new();
+    start(&session, &["--duration", "3"])
+        .wait(PATIENCE)
+        .success();
+    let file = recording(&session).join("run_0.mcap");
+    let whole = std::fs::read(&file).expect("the recording's file");
+    let before = mcap::info(&recording(&session))
+        .expect("a recording")
+        .messages;
+    std::fs::write(&file, &whole[..whole.len() / 2]).expect("scratch folder");
+
+    ferntast_tests::refused(
+        &session,
+        &["play", "run"],
+        &["run_0.mcap", "ferntast bag repair"],
+    );
+    run(&session, &["bag", "repair", "run", "--json"]).success();
+    let after = mcap::info(&recording(&session)).expect("mended").messages;
+    assert!(after > before / 4 && after < before, "{after} of {before}");
+}

@@ -1,0 +1,149 @@
+//! The lab in a real browser: a hidden effect is found, added, and the error falls.
+
+use std::time::Duration;
+
+use ferntast_tests::{Browser, PATIENCE, Process, Session, run};
+
+/// Diagnosing takes a while on a machine that is busy.
+const LONG: Duration = Duration::from_secs(180);
+
+/// The lab's page on `folder`, and where it is.
+fn serve(session: &Session, folder: &str) -> (Process, String) {
+    let mut process = Process::spawn(session.ferntast(&["lab", "serve", folder, "--json"]));
+    let url = ferntast_tests::wait_for(PATIENCE, || {
+        let told: serde_json::Value = serde_json::from_str(&process.stdout()).ok()?;
+        told["url"].as_str().map(str::to_owned)
+    });
+    assert!(process.is_running());
+    (process, url.expect("an address"))
+}
+
+const STAIRS: &str = "return document.querySelector('#chart-stairs')?.dataset.errors ?? '[]'";
+
+fn stairs(browser: &Browser) -> Vec<f64> {
+    let text = browser.run(STAIRS, Vec::new());
+    serde_json::from_str(text.as_str().unwrap_or("[]")).unwrap_or_default()
+}
+
+#[test]
+fn a_hidden_effect_is_found_added_and_the_staircase_falls() {
+    let session = Session::new();
+    run(
+        &session,
+        &[
+            "challenge",
+            "new",
+            "lab/riddle",
+            "--seed",
+            "89",
+            "--hide",
+            "stribeck",
+        ],
+    )
+    .success();
+    let (process, url) = serve(&session, "lab");
+    let browser = Browser::start(1280, 900);
+    browser.open(&url);
+    browser.click("[data-path='riddle/experiment.toml']");
+    browser.until(
+        "the model is compared",
+        LONG,
+        "return document.querySelector('#chart-time canvas, #chart-time svg') !== null",
+    );
+    let began = stairs(&browser);
+    assert_eq!(began.len(), 1);
+    browser.click("#diagnose");
+    browser.until(
+        "the verdict is told",
+        LONG,
+        "return document.querySelector('#verdict')?.dataset.verdict === 'missing'",
+    );
+    browser.click("#lab-diagnosis button[data-effect]");
+    browser.until("the effect is added", LONG, "return JSON.parse(document.querySelector('#chart-stairs')?.dataset.errors ?? '[]').length === 2");
+    let after = stairs(&browser);
+    assert!(
+        (after[0] - began[0]).abs() < 1e-6 * began[0],
+        "{began:?} {after:?}"
+    );
+    assert!((0.2..0.9).contains(&(after[1] / after[0])), "{after:?}");
+
+    // The command line sees the same chain with the same numbers.
+    let child = session.folder().join("lab/riddle/experiment+stribeck.toml");
+    let told = run(
+        &session,
+        &["lab", "history", child.to_str().unwrap(), "--json"],
+    )
+    .success()
+    .json();
+    let held_out = told[1]["held_out"].as_f64().unwrap_or(f64::NAN);
+    assert!((held_out - after[1]).abs() < 1e-9, "{held_out} {after:?}");
+
+    // Undo goes back; an effect of one's own is fitted; nonsense is refused.
+    browser.click("#undo");
+    browser.until("undone", LONG, "return JSON.parse(document.querySelector('#chart-stairs')?.dataset.errors ?? '[]').length === 1");
+    browser.run(
+        "document.querySelector('#own-name').closest('details').open = true",
+        Vec::new(),
+    );
+    browser.type_into("#own-name", "wave");
+    browser.type_into("#own-expression", "a*sin(3*q) + b*sin(");
+    browser.click("#own-add");
+    browser.until(
+        "it is refused",
+        LONG,
+        "return document.querySelector('#lab-trouble .error') !== null",
+    );
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    drop(browser);
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn a_foreign_recording_is_mapped_by_its_own_columns() {
+    let session = Session::new();
+    let folder = session.folder().join("lab");
+    std::fs::create_dir(&folder).unwrap();
+    // A mass on rails: 90 kg, 20 N and 200 Ns/m of friction.
+    let rows = (0..8000).map(|row| {
+        let t = 0.002 * f64::from(row);
+        let (sine, cosine) = (2.0 * t).sin_cos();
+        let (q, qd, qdd) = (0.1 * sine, 0.2 * cosine, -0.4 * sine);
+        let force = 90.0 * qdd + 20.0 * qd.signum() + 200.0 * qd;
+        format!("{t},{q},{q},{force}\n")
+    });
+    let text = format!("t_s,q_m,qref_m,force_N\n{}", rows.collect::<String>());
+    std::fs::write(folder.join("foreign.csv"), text).unwrap();
+    let (process, url) = serve(&session, "lab");
+    let browser = Browser::start(390, 844);
+    browser.open(&url);
+    browser.click("[data-path='foreign.csv']");
+    browser.find("#begin");
+    let offered =
+        browser.number("return document.querySelectorAll('#signal-position option').length");
+    assert!(offered > 2.0);
+    browser.run(
+        "document.querySelector('#joint-kind').value = 'prismatic';
+         const choose = (id, words) => { const s = document.querySelector(id);
+           s.value = [...s.options].map(o => o.value).find(v => words.some(w => v.includes(w))) ?? s.value; };
+         choose('#signal-position', ['q_m', 'qm', 'position']);
+         choose('#signal-motor_torque', ['force', 'tau', 'torque']);
+         document.querySelector('#signal-joint_torque').value = '';
+         document.querySelector('#signal-temperature').value = '';",
+        Vec::new(),
+    );
+    browser.click("#begin");
+    browser.until(
+        "the experiment is compared",
+        LONG,
+        "return document.querySelector('.figures b')?.textContent.endsWith('N')",
+    );
+    assert!(folder.join("foreign.toml").is_file());
+    // On a phone nothing is wider than the screen.
+    let width = browser.number("return document.documentElement.scrollWidth");
+    assert!((380.0..=390.0).contains(&width), "{width} px");
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    drop(browser);
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}

@@ -1,0 +1,17 @@
+//! Sessions in real time with all their processes, against real peers.
+//!
+//! No bound here hangs on milliseconds: a hold that a busy machine causes is
+//! left again. Bounds in time are in `timing`.
+
+mod bad_frames;
+mod console;
+mod crashes;
+mod dynamics;
+mod lab_page;
+mod masters;
+mod own_tools;
+mod refusals;
+mod ros;
+mod session;
+mod twin;
+mod zenoh;

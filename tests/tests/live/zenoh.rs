@@ -1,0 +1,100 @@
+//! A peer over rmw_zenoh's protocol that matches on type hashes does what rclpy does.
+
+use ferntast_tests::{
+    PATIENCE, Process, Session, await_enabled, hand_of_strokes, number, operated, recording, run,
+    start,
+};
+
+const MIDDLEWARE: [&str; 2] = ["--middleware", "zenoh"];
+
+fn peer(session: &Session, arguments: &[&str]) -> Process {
+    let router = session.router_endpoint();
+    let arguments = [&["--router", router.as_str()], arguments].concat();
+    Process::spawn(session.peer("zenoh_peer.py", &arguments))
+}
+
+#[test]
+fn it_lists_every_topic_with_its_true_hash() {
+    let session = Session::new();
+    let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
+    await_enabled(&session, &mut process);
+    let listed = peer(&session, &["list"]).wait(PATIENCE).success().json();
+    let interfaces = run(&session, &["interfaces", "--json"]).success().json();
+    for topic in interfaces["topics"].as_array().expect("topics") {
+        let name = topic["name"].as_str().expect("name");
+        let hash = interfaces["interfaces"]
+            .as_array()
+            .expect("interfaces")
+            .iter()
+            .find(|interface| interface["name"] == topic["type"])
+            .map(|interface| &interface["hash"]);
+        let seen = &listed["topics"][name];
+        let ends: Vec<_> = [&seen["publishers"], &seen["subscriptions"]]
+            .iter()
+            .flat_map(|ends| ends.as_array().into_iter().flatten())
+            .collect();
+        assert!(!ends.is_empty(), "{name} is not there");
+        for end in ends {
+            assert_eq!(end["type"], topic["type"], "{name}");
+            assert_eq!(Some(&end["type_hash"]), hash, "{name}");
+        }
+    }
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn it_drives_the_arm_and_feels_the_contour() {
+    let session = Session::new();
+    let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
+    await_enabled(&session, &mut process);
+    let file = &hand_of_strokes(&session);
+    let arguments = ["operator", "--hand", file, "--duration", "15"];
+    let operator = peer(&session, &arguments);
+    let sent = operated(&session, operator).success().json();
+    process.interrupt();
+    let summary = process.wait(PATIENCE).success().json();
+    assert!(number(&sent["force"], "rate_hz") > 300.0, "{sent:#}");
+    assert_eq!(number(&sent["force"], "not_finite"), 0.0);
+    assert!(number(&sent["force"], "nonzero") > 50.0, "{sent:#}");
+    assert!(
+        number(&summary, "contact.peak_normal_force_N") > 5.0,
+        "{summary:#}"
+    );
+    assert!(recording(&session).is_dir());
+}
+
+#[test]
+fn its_state_commands_are_obeyed() {
+    let session = Session::new();
+    let mut process = start(&session, &MIDDLEWARE);
+    await_enabled(&session, &mut process);
+    let arguments = ["command", "/follower/state_command", "pause"];
+    let told = peer(&session, &arguments).wait(PATIENCE).success().json();
+    assert_eq!(told["heard"], true);
+    process.await_stderr("follower PAUSED", PATIENCE);
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn it_sets_the_law_as_a_parameter() {
+    let session = Session::new();
+    let mut process = start(&session, &[&MIDDLEWARE[..], &["--law", "wave"]].concat());
+    await_enabled(&session, &mut process);
+    let set = |value| {
+        let told = peer(&session, &["set_parameter", "/link", "law", value]);
+        told.wait(PATIENCE).success().json()
+    };
+    let told = set("tdpa");
+    assert_eq!(told["before"], "wave", "{told:#}");
+    assert_eq!(told["successful"], true, "{told:#}");
+    assert_eq!(told["after"], "tdpa", "{told:#}");
+    let told = set("nonsense");
+    assert_eq!(told["successful"], false, "{told:#}");
+    let reason = told["reason"].as_str().expect("a reason");
+    assert!(reason.contains("tdpa"), "{told:#}");
+    assert_eq!(told["after"], "tdpa", "{told:#}");
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}

@@ -1,0 +1,4 @@
+//! What takes longest: left out by `./tests/run --quick`.
+
+mod blind;
+mod paper;

@@ -1,0 +1,91 @@
+//! The lab on recordings that nobody has seen.
+
+use std::time::Duration;
+
+use ferntast_tests::{Process, Session, number};
+use serde_json::Value;
+
+#[test]
+fn blind_on_recordings_that_nobody_has_seen() {
+    let session = Session::new();
+    let arguments = [
+        "challenge",
+        "blind",
+        "--repeats",
+        "2",
+        "--strengths",
+        "1,0.5,0.25",
+        "--nothing",
+        "60",
+        "--two",
+        "6",
+        "--seed",
+        "424242",
+        "--json",
+    ];
+    let limit = Duration::from_secs(900);
+    let told = Process::spawn(session.ferntast(&arguments))
+        .wait(limit)
+        .success()
+        .json();
+    let share = |value: &Value| number(value, "found") / number(value, "tried");
+    assert_eq!(number(&told["right_first"]["1"], "tried"), 48.0);
+    for (row, strength, least) in [
+        ("right_first", "1", 0.95),
+        ("right_first", "0.5", 0.80),
+        ("in_family", "1", 0.99),
+        // Too few sessions prove little of temperature and date.
+        ("in_family", "0.5", 0.95),
+        ("in_family", "0.25", 0.90),
+        ("at_least_suspected", "0.5", 0.95),
+        ("at_least_suspected", "0.25", 0.90),
+        ("unknown_not_named", "1", 0.95),
+        ("unknown_not_named", "0.5", 0.95),
+        ("as_good_as_true", "1", 0.90),
+        ("as_good_as_true", "0.5", 0.95),
+    ] {
+        let found = share(&told[row][strength]);
+        assert!(
+            found >= least,
+            "{row} at {strength}: {found}, {:#}",
+            told["misses"]
+        );
+    }
+    assert!(share(&told["resolved"]) >= 0.90, "{:#}", told["misses"]);
+    assert!(share(&told["one_of_two"]) >= 0.8, "{told:#}");
+    assert!(share(&told["false_alarms"]) <= 0.02, "{:#}", told["misses"]);
+}
+
+#[test]
+fn blind_on_contacts_that_nobody_has_seen() {
+    let session = Session::new();
+    let arguments = [
+        "challenge",
+        "blind",
+        "--contact",
+        "--repeats",
+        "2",
+        "--strengths",
+        "1,0.5,0.25",
+        "--nothing",
+        "40",
+        "--two",
+        "6",
+        "--seed",
+        "424242",
+        "--json",
+    ];
+    let told = Process::spawn(session.ferntast(&arguments))
+        .wait(Duration::from_secs(900))
+        .success()
+        .json();
+    let share = |value: &Value| number(value, "found") / number(value, "tried");
+    let misses = &told["misses"];
+    assert_eq!(number(&told["right_first"]["1"], "tried"), 12.0);
+    assert!(share(&told["right_first"]["1"]) >= 0.95, "{misses:#}");
+    assert!(share(&told["in_family"]["1"]) >= 0.99, "{misses:#}");
+    assert!(share(&told["right_first"]["0.5"]) >= 0.80, "{misses:#}");
+    assert!(share(&told["unknown_not_named"]["1"]) >= 0.90, "{misses:#}");
+    assert!(share(&told["one_of_two"]) >= 0.8, "{told:#}");
+    assert!(share(&told["false_alarms"]) <= 0.03, "{misses:#}");
+}

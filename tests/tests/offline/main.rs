@@ -1,0 +1,16 @@
+//! The program in virtual time and on recordings: no peers, no real time.
+
+mod delay;
+mod estimator;
+mod experiments;
+mod lab;
+mod lab_contact;
+mod laws;
+mod lockstep;
+mod long;
+mod outside_recordings;
+mod own_tools;
+mod playback;
+mod refusals;
+mod sweep;
+mod twin;
