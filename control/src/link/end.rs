@@ -6,6 +6,7 @@ use crate::frame::{self, FRAME_LENGTH, Frame};
 use crate::meter::{Arrival, LinkMeasurement, Meter, behind};
 use crate::operating::OperatingState;
 use crate::playout::{Offered, PlayOut};
+use crate::seconds;
 use crate::switching::{MarkedPacket, Outgoing};
 
 /// A step that comes later than this after the one before counts as this long \[s\].
@@ -91,7 +92,7 @@ impl End {
                 packet: frame.packet,
                 fresh: self.fresh,
                 silence: self.meter.silence(now_ns),
-                age: self.meter.age(now_ns),
+                age: seconds(now_ns.saturating_sub(frame.sent_ns)),
             },
         })
     }

@@ -231,14 +231,6 @@ impl Meter {
         })
     }
 
-    /// Time since the newest frame was sent: age of what is acted on \[s\];
-    /// infinite before the first.
-    pub fn age(&self, now_ns: i64) -> f64 {
-        self.newest.map_or(f64::INFINITY, |newest| {
-            seconds(now_ns.saturating_sub(newest.sent_ns))
-        })
-    }
-
     /// What is known at `now_ns`.
     pub fn measure(&mut self, now_ns: i64) -> LinkMeasurement {
         let optional = |nanos: Option<i64>| nanos.map_or(f64::NAN, seconds);
@@ -248,7 +240,9 @@ impl Meter {
             jitter: self.jitter * 1e-9,
             loss: self.window.loss(now_ns),
             silence: self.silence(now_ns),
-            age: self.age(now_ns),
+            age: self.newest.map_or(f64::INFINITY, |newest| {
+                seconds(now_ns.saturating_sub(newest.sent_ns))
+            }),
             sent: self.sent,
             received: self.received,
             lost: self.window.lost(),
