@@ -8,7 +8,7 @@
 use std::io;
 
 use byteorder::{BigEndian, LittleEndian};
-use ferntast_msgs::RosMessage;
+use ferntast_msgs::{Message, RosMessage};
 
 pub use crate::error::{DecodeError, EncodeError};
 
@@ -115,9 +115,21 @@ pub fn decode<R: RosMessage>(bytes: &[u8]) -> Result<R, DecodeError> {
     Ok(message)
 }
 
+/// The message in `bytes`, as [`decode`] reads it, as a sample that can be
+/// acted on.
+///
+/// # Errors
+///
+/// [`DecodeError`]: also [`DecodeError::Invalid`].
+pub(crate) fn decode_sample<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
+    let message = M::from_ros(&decode::<M::Ros>(bytes)?)?;
+    message.check()?;
+    Ok(message)
+}
+
 #[cfg(test)]
 mod tests {
-    use ferntast_msgs::{Message, Time, ros::sensor_msgs::JointState, sample::JointSample};
+    use ferntast_msgs::{Time, ros::sensor_msgs::JointState, sample::JointSample};
     use proptest::prelude::*;
 
     use super::*;

@@ -3,7 +3,7 @@
 use std::{io::IsTerminal, path::PathBuf, process::ExitCode, thread, time::Duration};
 
 use ferntast_doctor::{self as doctor, DoctorOptions, Peer, RosMiddleware, TcpEndpoint};
-use ferntast_nodes::{config::Middleware, gateway};
+use ferntast_nodes::{bridge::gateway, config::Middleware};
 
 use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
 

@@ -6,8 +6,8 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
+use ferntast_drivers::simulated;
 use ferntast_model::contour::Surface;
-use ferntast_nodes::arm as simulated;
 use ferntast_studies::experiment::{
     self, Conditions, ExperimentError, Plan,
     campaign::{self, Mission},

@@ -10,7 +10,7 @@ use ferntast_msgs::{
     sample::{LawCommandSample, LinkStatusSample},
     topics,
 };
-use ferntast_nodes::{clock::Clock, config::UnknownLaw};
+use ferntast_nodes::{config::UnknownLaw, process::Clock};
 use serde_json::json;
 
 use super::{Failure, output::print_json};

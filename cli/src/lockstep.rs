@@ -6,10 +6,12 @@ use ferntast_control::delay::Law;
 use ferntast_msgs::sample::FrictionCommand;
 use ferntast_nodes::{
     config::UnknownLaw,
+    graph::Graph,
     lockstep::LockstepSession,
+    process::SessionContext,
     servo::FrictionSummary,
     session::{ContactSummary, LeaderSummary, LinkSummary, StateSummary},
-    twin::{self, TwinSummary},
+    twin::TwinSummary,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -73,7 +75,11 @@ struct Result {
 }
 
 /// Runs it.
-pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode, Failure> {
+pub fn run(
+    graph: &Graph,
+    mut arguments: Arguments,
+    json: bool,
+) -> std::result::Result<ExitCode, Failure> {
     if let Some(file) = arguments.file.take() {
         arguments.scenario.scenario = file;
     }
@@ -84,15 +90,10 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
             "--duration {duration}: give a positive number of seconds"
         )));
     }
-    let model = match &arguments.twin {
-        None => None,
-        Some(path) => Some(twin::open(path).map_err(Failure::refused)?),
-    };
-    let mut session =
-        LockstepSession::new(&loaded, arguments.record.as_deref()).map_err(Failure::refused)?;
-    if let Some(model) = model {
-        session.add_twin(model).map_err(Failure::refused)?;
-    }
+    let mut context = SessionContext::in_virtual_time(loaded);
+    context.twin = arguments.twin;
+    context.bag = arguments.record;
+    let mut session = LockstepSession::new(graph, &context).map_err(Failure::refused)?;
     for text in &arguments.switches {
         let (seconds, law) = parse_switch(text)?;
         session
@@ -141,8 +142,8 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
     bar.finish_and_clear();
     let monitor = session.monitor();
     let result = Result {
-        scenario: loaded.scenario.name.clone(),
-        seed: loaded.scenario.seed,
+        scenario: context.loaded.scenario.name.clone(),
+        seed: context.loaded.scenario.seed,
         duration_s: duration,
         wall_s: wall,
         real_time_factor: duration / wall,
@@ -152,10 +153,7 @@ pub fn run(mut arguments: Arguments, json: bool) -> std::result::Result<ExitCode
         twin: monitor.twin(),
         friction: monitor.friction(),
         states: monitor.states(),
-        recording: arguments
-            .record
-            .as_ref()
-            .map(|path| path.display().to_string()),
+        recording: context.bag.as_ref().map(|path| path.display().to_string()),
     };
     session.finish().map_err(Failure::failed)?;
     if json {

@@ -23,7 +23,10 @@ mod twin;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, builder::PossibleValue};
+
+use ferntast_drivers::simulated;
+use ferntast_nodes::{graph::Graph, session_graph};
 
 use output::Failure;
 
@@ -98,10 +101,26 @@ impl Command {
     }
 }
 
+/// Reads the command line; `node` knows the nodes of `graph`.
+fn parse(graph: &Graph) -> Result<Arguments, clap::Error> {
+    let names: Vec<PossibleValue> = graph
+        .rows()
+        .map(|row| PossibleValue::new(row.name).help(row.about))
+        .collect();
+    let command = Arguments::command().mut_subcommand("node", |node| {
+        node.mut_arg("node", |argument| argument.value_parser(names))
+    });
+    Arguments::from_arg_matches(&command.try_get_matches()?)
+}
+
 /// Runs the command line; gives the process's exit code: 0 when all is well,
 /// 2 when the input was refused, 1 when something failed on the way.
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let graph = session_graph(simulated::row());
+    let arguments = match parse(&graph) {
+        Ok(arguments) => arguments,
+        Err(error) => error.exit(),
+    };
     let json = arguments.json;
     if !arguments.command.keeps_running() {
         // `ferntast … | head` ends as other programs do, without a word.
@@ -111,11 +130,11 @@ fn main() -> ExitCode {
         }
     }
     let result = match arguments.command {
-        Command::Session(arguments) => session::run(arguments, json),
-        Command::Node(arguments) => node::run(arguments),
-        Command::Lockstep(arguments) => lockstep::run(arguments, json),
-        Command::Replay(arguments) => replay::run(arguments, json),
-        Command::Play(arguments) => play::run(arguments, json),
+        Command::Session(arguments) => session::run(&graph, arguments, json),
+        Command::Node(arguments) => node::run(&graph, arguments),
+        Command::Lockstep(arguments) => lockstep::run(&graph, arguments, json),
+        Command::Replay(arguments) => replay::run(&graph, arguments, json),
+        Command::Play(arguments) => play::run(&graph, arguments, json),
         Command::Challenge(arguments) => challenge::run(arguments, json),
         Command::Sweep(arguments) => sweep::run(arguments, json),
         Command::Lab(arguments) => lab::run(arguments, json),

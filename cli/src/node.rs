@@ -4,10 +4,8 @@ use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_bus::SharedMemoryBus;
 use ferntast_nodes::{
-    node_name::NodeName,
-    process::{self, ProcessError},
-    session::{PlayOptions, SessionContext},
-    stop,
+    graph::{self, Graph},
+    process::{NodeError, SessionContext, stop_on_signals},
 };
 
 use super::{Failure, scenario_options::ScenarioOptions};
@@ -22,7 +20,8 @@ use super::{Failure, scenario_options::ScenarioOptions};
 )]
 pub struct Arguments {
     /// Which node.
-    node: NodeName,
+    #[arg(value_name = "NODE")]
+    node: String,
 
     /// Name of the session whose other nodes it shall meet.
     #[arg(long, default_value = "default", value_name = "NAME")]
@@ -49,7 +48,8 @@ pub struct Arguments {
 }
 
 /// Runs it until Ctrl-C.
-pub fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
+pub fn run(graph: &Graph, arguments: Arguments) -> Result<ExitCode, Failure> {
+    let row = graph.row(&arguments.node).map_err(Failure::refused)?;
     let supervised = arguments.session_file.is_some();
     let context = match &arguments.session_file {
         Some(path) => SessionContext::read(path).map_err(Failure::refused)?,
@@ -59,27 +59,26 @@ pub fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
                 SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
             context.bag = arguments.bag;
             context.twin = arguments.twin;
-            context.play = PlayOptions::default();
             context
         }
     };
-    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let stop = stop_on_signals().map_err(Failure::failed)?;
     if !supervised {
         eprintln!(
             "node {} of session {:?}; Ctrl-C ends it",
-            arguments.node, context.session
+            row.name, context.session
         );
     }
-    let result = process::run(arguments.node, &context, arguments.generation, &stop);
+    let result = graph::process::run(row, &context, arguments.generation, &stop);
     if !supervised {
         // The last process of the session frees its shared memory; while
         // others live this is refused.
         let _ = SharedMemoryBus::clean_up(&context.session);
     }
     result.map(|()| ExitCode::SUCCESS).map_err(|error| {
-        let text = format!("node {}: {error}", arguments.node);
+        let text = format!("node {}: {error}", row.name);
         match error {
-            ProcessError::Broken(_) => Failure::failed(text),
+            NodeError::Broken(_) => Failure::failed(text),
             _ => Failure::refused(text),
         }
     })

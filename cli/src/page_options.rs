@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use clap::Args;
 use ferntast_console::Listen;
-use ferntast_nodes::session::ConsoleOptions;
+use ferntast_nodes::process::ConsoleOptions;
 
 use super::Failure;
 

@@ -3,8 +3,9 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_nodes::{
-    session::{self, PlayOptions, SessionContext},
-    stop,
+    graph::Graph,
+    process::{PlayOptions, SessionContext, stop_on_signals},
+    session,
 };
 
 use super::{
@@ -53,7 +54,7 @@ pub struct Arguments {
 }
 
 /// Runs it.
-pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     if !(arguments.rate.is_finite() && (0.01..=100.0).contains(&arguments.rate)) {
         return Err(Failure::refused(format!(
             "--rate {}: give a factor of 0.01 to 100",
@@ -67,14 +68,15 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     context.play = PlayOptions {
         rate: arguments.rate,
         repeat: arguments.repeat,
+        estimate: arguments.estimate,
         except: Vec::new(),
     };
     context.foxglove = arguments.foxglove.address()?;
     check_twin(arguments.twin.as_deref())?;
     context.twin = arguments.twin;
-    let stop = stop::on_signals().map_err(Failure::failed)?;
-    let played = session::play(context, arguments.estimate, info.duration_s, &stop)
-        .map_err(Failure::of_session)?;
+    let stop = stop_on_signals().map_err(Failure::failed)?;
+    let played =
+        session::play(graph, context, info.duration_s, &stop).map_err(Failure::of_session)?;
     if json {
         print_json(&played)?;
     } else {

@@ -2,7 +2,10 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_nodes::{replay, twin};
+use ferntast_nodes::{
+    graph::Graph,
+    replay::{self, ReplayError},
+};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{Failure, output::print_json};
@@ -20,19 +23,19 @@ pub struct Arguments {
 }
 
 /// Runs it; exit code 1 when the outputs differ.
-pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let bar = ProgressBar::new(100);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %") {
         bar.set_style(style);
     }
-    let model = match &arguments.twin {
-        None => None,
-        Some(path) => Some(twin::open(path).map_err(Failure::refused)?),
-    };
-    let result = replay::run(&arguments.recording, model, &mut |share| {
+    let twin = arguments.twin.as_deref();
+    let result = replay::run(graph, &arguments.recording, twin, &mut |share| {
         bar.set_position((share * 100.0) as u64);
     })
-    .map_err(|error| Failure::refused(format!("{}: {error}", arguments.recording.display())))?;
+    .map_err(|error| match error {
+        ReplayError::Run(error) => Failure::refused(error),
+        error => Failure::refused(format!("{}: {error}", arguments.recording.display())),
+    })?;
     bar.finish_and_clear();
     if json {
         print_json(&result)?;

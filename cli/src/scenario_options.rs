@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use ferntast_drivers::simulated;
 use ferntast_nodes::{
-    arm as simulated,
     config::{self, HandSource, Loaded, Middleware},
     twin,
 };

@@ -3,8 +3,9 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_nodes::{
-    session::{self, SessionContext, SessionOptions},
-    stop,
+    graph::Graph,
+    process::{SessionContext, stop_on_signals},
+    session::{self, SessionOptions},
 };
 
 use super::{
@@ -63,7 +64,7 @@ pub struct Arguments {
 }
 
 /// Runs it.
-pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     if let Some(duration) = arguments.duration
         && !(duration.is_finite() && duration > 0.0)
     {
@@ -79,12 +80,13 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     context.foxglove = arguments.foxglove.address()?;
     check_twin(arguments.twin.as_deref())?;
     context.twin = arguments.twin;
-    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let stop = stop_on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {
         duration: arguments.duration,
         enable: !arguments.no_enable,
     };
-    let (summary, outcome) = session::run(context, &options, &stop).map_err(Failure::of_session)?;
+    let (summary, outcome) =
+        session::run(graph, context, &options, &stop).map_err(Failure::of_session)?;
     if json {
         print_json(&summary)?;
     } else {

@@ -8,7 +8,7 @@ use ferntast_msgs::sample::{
     OperatingState, OperatingStateSample, StateCommand, StateCommandSample,
 };
 use ferntast_msgs::topics::{self, Topic};
-use ferntast_nodes::clock::Clock;
+use ferntast_nodes::process::Clock;
 use serde_json::json;
 
 use super::{Failure, output::print_json};

@@ -79,6 +79,23 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_quantile_is_the_number_of_the_nearest_rank() {
+        let mut numbers = [4, 1, 3, 2];
+        for (share, expected) in [
+            (0.0, 1),
+            (0.16, 1),
+            (0.17, 2),
+            (0.5, 3),
+            (0.83, 3),
+            (1.0, 4),
+        ] {
+            assert_eq!(quantile(&mut numbers, share, i32::cmp), Some(expected));
+        }
+        assert_eq!(quantile(&mut [7.0], 0.99, f64::total_cmp), Some(7.0));
+        assert_eq!(quantile(&mut [], 0.5, f64::total_cmp), None);
+    }
+
+    #[test]
     fn tail_of_f_agrees_with_tables() {
         // F(1, 5): 6.608 at 5 %; F(2, 10): 4.103 at 5 %, 7.559 at 1 %.
         assert!((f_tail(6.608, 1.0, 5.0) - 0.05).abs() < 1e-4);

@@ -1,27 +1,116 @@
 //! The nodes, their configuration, and what runs them: supervisor, lockstep, replay.
 
-pub mod arm;
-pub mod carry;
-mod choice_parameter;
-pub mod clock;
+pub mod bridge;
 pub mod config;
 mod console;
 pub mod estimator;
-mod foxglove;
-pub mod gateway;
+pub mod graph;
+pub mod limits;
 pub mod link;
 pub mod lockstep;
 pub mod master;
 pub mod node;
-pub mod node_name;
-mod pace;
-mod player;
 pub mod process;
-mod recorder;
-mod relay;
 pub mod replay;
-mod say;
 pub mod servo;
 pub mod session;
-pub mod stop;
 pub mod twin;
+
+use bridge::{foxglove, gateway, player, recorder};
+use graph::{Graph, NodeRow, always, never};
+
+/// The nodes of a session in the order in which they are stopped: first what
+/// moves the arm, last the recorder. `arm` is the row of the arm's driver.
+///
+/// Supervisor, the process of a node, lockstep, replay and experiments know
+/// of the nodes what stands here. In one tick of virtual time nodes are stepped
+/// in this order, too: a recording's `/diagnostics` show it.
+pub fn session_graph(arm: NodeRow) -> Graph {
+    Graph::new(vec![
+        NodeRow {
+            // 250 Hz for the hand of the page, where 100 Hz would do. Asks for
+            // real-time priority itself, after its server's threads.
+            period_nanos: 4_000_000,
+            in_session: |session| session.console.is_some(),
+            ..NodeRow::service("console", "Serves the page", console::run)
+        },
+        NodeRow {
+            in_session: |session| session.foxglove.is_some(),
+            in_playback: |session| session.foxglove.is_some(),
+            ..NodeRow::service("foxglove", "Shows every topic to Foxglove", foxglove::run)
+        },
+        NodeRow::step::<master::MasterPorts>("master", "The haptic master bridge", master::make),
+        NodeRow::step::<link::LeaderLinkPorts>(
+            "link_leader",
+            "The operator's end of the link",
+            link::make_leader,
+        ),
+        NodeRow::step::<link::FollowerLinkPorts>(
+            "link_follower",
+            "The arm's end of the link",
+            link::make_follower,
+        ),
+        NodeRow {
+            in_replay: always,
+            ..NodeRow::step::<servo::ServoPorts>(
+                "servo",
+                "The 1 kHz joint servo with CRTK operating states",
+                servo::make,
+            )
+        },
+        NodeRow {
+            in_playback: |session| session.play.estimate,
+            in_replay: always,
+            ..NodeRow::step::<estimator::EstimatorPorts>(
+                "estimator",
+                "The contact-force estimator (equations 5 and 6)",
+                estimator::make,
+            )
+        },
+        arm,
+        NodeRow {
+            in_playback: always,
+            ..NodeRow::service(
+                "gateway",
+                "Carries the topics to and from ROS 2",
+                gateway::run,
+            )
+        },
+        NodeRow {
+            period_nanos: 10_000_000,
+            realtime: false,
+            in_session: |session| session.loaded.scenario.limits.is_some(),
+            ..NodeRow::step::<limits::LimitsPorts>(
+                "limits",
+                "Warns before the arm comes to its limits",
+                limits::make,
+            )
+        },
+        NodeRow {
+            realtime: false,
+            in_session: |session| session.twin.is_some(),
+            in_playback: |session| session.twin.is_some(),
+            in_replay: |session| session.twin.is_some(),
+            ..NodeRow::step::<twin::TwinPorts>(
+                twin::NAME,
+                "The model of a joint held against it while it moves",
+                twin::make,
+            )
+        },
+        NodeRow {
+            period_nanos: 10_000_000,
+            // The page can have it record at any time.
+            in_session: |session| session.bag.is_some() || session.console.is_some(),
+            ..NodeRow::service(recorder::NAME, "Writes a rosbag2 directory", recorder::run)
+        },
+        NodeRow {
+            // A playback starts it once all others are ready.
+            in_session: never,
+            ..NodeRow::service(
+                player::NAME,
+                "Puts a recording back on the topics",
+                player::run,
+            )
+        },
+    ])
+}

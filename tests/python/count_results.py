@@ -31,6 +31,22 @@ RUST_IGNORED = re.compile(r"^test (\S+) \.\.\. ignored(?:, (.*))?$")
 RUST_RESULT = re.compile(r"^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored;")
 
 
+RUST_TIME = re.compile(r"^test result: .* finished in ([0-9.]+)s$")
+
+
+def slowest(log: str, least: float = 10.0) -> str:
+    """The test programs that took longer than `least` [s], in a line."""
+    program = ""
+    times: dict[str, float] = {}
+    for line in log.splitlines():
+        if found := RUST_PROGRAM.match(line):
+            program = found[1]
+        elif found := RUST_TIME.match(line):
+            times[program] = times.get(program, 0.0) + float(found[1])
+    long = sorted((-time, name) for name, time in times.items() if time > least)
+    return ", ".join(f"{name} {-time:.0f} s" for time, name in long)
+
+
 class Count(NamedTuple):
     """Tests that passed and failed, and the names of those that were not run."""
 
@@ -112,11 +128,13 @@ def main() -> int:
     parser.add_argument("--python-status", type=int, default=0)
     parser.add_argument("--not-run", action="append", default=[], help="left out on purpose")
     arguments = parser.parse_args()
-    rust = count_rust(arguments.rust_log.read_text(errors="replace"))
+    log = arguments.rust_log.read_text(errors="replace")
+    rust = count_rust(log)
     python = Count(not_run=tuple(arguments.not_run))
     for path in arguments.python_xml:
         python = python.plus(count_python(path))
     result = total(rust, arguments.rust_status, python, arguments.python_status)
+    print(f"took longest: {slowest(log) or 'nothing more than 10 s'}")
     print("\n".join(explanation(result.not_run)))
     skipped = f", {len(result.not_run)} skipped" if result.not_run else ""
     print(f"{result.passed} passed, {result.failed} failed{skipped}")

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from count_results import NEEDS, Count, count_python, count_rust, explanation, total
+from count_results import NEEDS, Count, count_python, count_rust, explanation, slowest, total
 
 HERE = Path(__file__).parent
 
@@ -22,6 +22,15 @@ test result: FAILED. 3 passed; 2 failed; 2 ignored; 0 measured; 4 filtered out; 
 test result: ok. 1 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.00s
 """
 
+TIMES = """
+     Running tests/live/main.rs (target/release/deps/live-0123456789abcdef)
+test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 61.20s
+     Running tests/chain.rs (target/release/deps/chain-0123456789abcdef)
+test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 9.00s
+     Running tests/offline/main.rs (target/release/deps/offline-0123456789abcdef)
+test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 100.00s
+"""
+
 PYTHON = f"""<testsuites><testsuite>
 <testcase name="a"/><testcase name="b"><failure/></testcase>
 <testcase name="c"><error/></testcase><testcase name="d"><skipped message="x"/></testcase>
@@ -33,6 +42,11 @@ PYTHON = f"""<testsuites><testsuite>
 def test_every_rust_result_is_added_and_ignored_counts_as_failed():
     assert count_rust(RUST) == Count(16, 3, (f"real_data::emps::is_there ({NEEDS}emps)",))
     assert count_rust("") == Count()
+
+
+def test_what_took_longest_comes_first():
+    assert slowest(TIMES) == "offline 100 s, live 61 s"
+    assert slowest("") == ""
 
 
 def test_every_python_case_is_counted_and_skipped_counts_as_failed(tmp_path):

@@ -14,7 +14,6 @@ use super::{
 };
 use crate::{
     cdr,
-    error::DecodeError,
     types::{Depth, Received, SubscriberCounts},
 };
 
@@ -108,13 +107,7 @@ impl<M: Message> McapSubscriber<M> {
     }
 
     fn admit(&mut self, raw: &RawMessage) -> Option<Received<M>> {
-        let decoded = cdr::decode::<M::Ros>(raw.bytes())
-            .and_then(|ros| M::from_ros(&ros).map_err(DecodeError::Invalid))
-            .and_then(|message| match message.check() {
-                Ok(()) => Ok(message),
-                Err(error) => Err(DecodeError::Invalid(error)),
-            });
-        match decoded {
+        match cdr::decode_sample(raw.bytes()) {
             Ok(message) => {
                 self.counts.delivered += 1;
                 Some(Received {

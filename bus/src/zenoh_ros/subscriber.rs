@@ -137,10 +137,7 @@ fn decode<M: Message>(sample: &Sample) -> Result<M, DecodeError> {
             limit: cdr::MAX_LENGTH,
         });
     }
-    let ros = cdr::decode::<M::Ros>(&sample.payload().to_bytes())?;
-    let message = M::from_ros(&ros)?;
-    message.check()?;
-    Ok(message)
+    cdr::decode_sample(&sample.payload().to_bytes())
 }
 
 /// The system clock, for the stamp of arrival.

@@ -79,16 +79,7 @@ fn oversized_payloads_are_cut() {
         clock: Arc::new(|| Time::from_nanos(1)),
     })
     .unwrap();
-    let mut config = zenoh::Config::default();
-    config.insert_json5("mode", r#""client""#).unwrap();
-    let endpoints = format!("[{:?}]", world.endpoint);
-    config
-        .insert_json5("connect/endpoints", &endpoints)
-        .unwrap();
-    config
-        .insert_json5("scouting/multicast/enabled", "false")
-        .unwrap();
-    let stranger = zenoh::open(config).wait().unwrap();
+    let stranger = world.stranger();
     let key = format!("ferntast/{}/link/forward", world.name);
     let mut lengths = Vec::new();
     for length in [MAX_FRAME + 1, 1_000_000, 0, MAX_FRAME, 5] {

@@ -233,16 +233,7 @@ fn over_zenoh(world: &World) {
     let mut publisher = world.participant().publisher(topic).unwrap();
     world.meet(&mut publisher, &mut reader);
 
-    let mut config = zenoh::Config::default();
-    config.insert_json5("mode", r#""client""#).unwrap();
-    let endpoints = format!("[{:?}]", world.endpoint);
-    config
-        .insert_json5("connect/endpoints", &endpoints)
-        .unwrap();
-    config
-        .insert_json5("scouting/multicast/enabled", "false")
-        .unwrap();
-    let session = zenoh::open(config).wait().unwrap();
+    let session = world.stranger();
     let key = key::<JointSample>(world, topic);
 
     let mut payloads: Vec<Vec<u8>> = bad_bodies()

@@ -21,6 +21,7 @@ use ferntast_msgs::{
     topics::{Delivery, Topic},
 };
 use tempfile::TempDir;
+use zenoh::Wait;
 
 /// How long a message may take on a way that is not virtual.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -104,6 +105,19 @@ impl World {
     pub fn topic<M: Message>(&self, name: &str, delivery: Delivery) -> Topic<M> {
         let name = format!("/{}/{name}", self.name);
         Topic::new(Box::leak(name.into_boxed_str()), delivery)
+    }
+
+    /// A Zenoh client of its own at the world's endpoint, as any program may be.
+    pub fn stranger(&self) -> zenoh::Session {
+        let mut config = zenoh::Config::default();
+        for (key, value) in [
+            ("mode", r#""client""#),
+            ("connect/endpoints", &format!("[{:?}]", self.endpoint)),
+            ("scouting/multicast/enabled", "false"),
+        ] {
+            config.insert_json5(key, value).unwrap();
+        }
+        zenoh::open(config).wait().unwrap()
     }
 
     /// A further participant, as a process of its own would be.

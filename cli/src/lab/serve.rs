@@ -3,7 +3,7 @@
 use std::{path::PathBuf, process::ExitCode, sync::atomic::Ordering, time::Duration};
 
 use ferntast_console::{Listen, Server, server::Content};
-use ferntast_nodes::stop;
+use ferntast_nodes::process::stop_on_signals;
 use serde_json::json;
 
 use super::super::{Failure, output::print_json, page_options::PageOptions};
@@ -24,7 +24,7 @@ pub struct Arguments {
 
 /// Serves until Ctrl-C.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let stop = stop::on_signals().map_err(Failure::failed)?;
+    let stop = stop_on_signals().map_err(Failure::failed)?;
     let page = arguments.page.console()?;
     let listen = Listen {
         address: page.listen,

@@ -7,7 +7,7 @@ use ferntast_msgs::{
     sample::{FrictionCommand, FrictionCommandSample, FrictionStatusSample},
     topics,
 };
-use ferntast_nodes::{clock::Clock, servo::FrictionSummary};
+use ferntast_nodes::{process::Clock, servo::FrictionSummary};
 
 use super::super::{Failure, output::print_json};
 

@@ -4,7 +4,7 @@ use std::io;
 
 use ferntast_msgs::Time;
 
-use ferntast_nodes::clock::Clock;
+use ferntast_nodes::process::Clock;
 
 use super::super::surroundings::WakeUps;
 

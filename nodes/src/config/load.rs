@@ -2,6 +2,7 @@
 
 use std::{fs, path::Path};
 
+use ferntast_control::servo::ServoConfig;
 use ferntast_emulation::{
     channel::{ChannelConfig, LinkConfig},
     hand::{Hand, RecordedHand, RecordedMotion, ScriptedHand},
@@ -73,6 +74,17 @@ pub fn read_hand_recording(path: &Path) -> Result<String, ConfigError> {
 }
 
 impl Loaded {
+    /// An arm and its servo with nobody who operates them, for experiments.
+    pub fn without_operator(arm: ArmFile, servo: ServoConfig, seed: u64) -> Loaded {
+        Loaded {
+            path: String::new(),
+            scenario: Scenario::without_operator(servo, seed),
+            arm,
+            link: LinkConfig::default(),
+            hand_recording: None,
+        }
+    }
+
     /// Takes another channel.
     ///
     /// # Errors

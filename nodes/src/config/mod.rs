@@ -15,6 +15,4 @@ pub use error::ConfigError;
 pub use file::{ARM, FileKind, load};
 pub use laws::UnknownLaw;
 pub use load::{Loaded, load_scenario, read_hand_recording};
-pub use scenario::{
-    GatewaySection, HandSection, HandSource, LinkSection, Middleware, RecorderSection, Scenario,
-};
+pub use scenario::*;

@@ -47,6 +47,9 @@ pub struct Scenario {
     /// Recordings.
     #[serde(default)]
     pub recorder: RecorderSection,
+    /// Warnings near the arm's limits; without this section there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<LimitsSection>,
 }
 
 /// The hand on the master.
@@ -169,7 +172,67 @@ impl Default for RecorderSection {
     }
 }
 
+/// How near to the arm's limits is near.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LimitsSection {
+    /// From the end of a joint's range \[rad\].
+    pub position_margin: f64,
+    /// Share of the torque sensor's range \[-\].
+    pub torque_share: f64,
+    /// Temperature of a joint \[degC\].
+    pub temperature: f64,
+}
+
+impl Default for LimitsSection {
+    fn default() -> Self {
+        LimitsSection {
+            position_margin: 0.1,
+            torque_share: 0.8,
+            temperature: 60.0,
+        }
+    }
+}
+
+impl LimitsSection {
+    fn validate(&self) -> Result<(), ParameterError> {
+        check("position_margin", self.position_margin, 0.0, 3.0, "rad")?;
+        check("torque_share", self.torque_share, 0.0, 1.0, "-")?;
+        check("temperature", self.temperature, -50.0, 150.0, "degC")
+    }
+}
+
 impl Scenario {
+    /// A servo with nobody who operates it: all else as it is by default.
+    pub fn without_operator(servo: ServoConfig, seed: u64) -> Scenario {
+        Scenario {
+            name: "without_operator".to_owned(),
+            description: String::new(),
+            arm: String::new(),
+            seed,
+            duration: 1.0,
+            start: 1,
+            hand: HandSection {
+                source: HandSource::Crtk,
+                scripted: None,
+                recording: None,
+                recorded: RecordedHandConfig::default(),
+            },
+            link: LinkSection {
+                channel: "direct".to_owned(),
+                endpoint: link_endpoint(),
+                buffer: 0.0,
+            },
+            law: Law::default(),
+            laws: Vec::new(),
+            servo,
+            master: MasterConfig::default(),
+            gateway: GatewaySection::default(),
+            recorder: RecorderSection::default(),
+            limits: None,
+        }
+    }
+
     /// Checks every value against its bounds.
     ///
     /// # Errors
@@ -205,6 +268,9 @@ impl Scenario {
         check("stream_rate", gateway.stream_rate, 1.0, 1000.0, "Hz").map_err(within)?;
         check("leader_rate", gateway.leader_rate, 1.0, 1000.0, "Hz").map_err(within)?;
         check("domain_id", f64::from(gateway.domain_id), 0.0, 232.0, "-").map_err(within)?;
+        self.limits
+            .map_or(Ok(()), |limits| limits.validate())
+            .map_err(|error| error.within("limits"))?;
         check("queue", self.recorder.queue as f64, 1.0, 64.0, "messages")
             .map_err(|error| error.within("recorder"))
     }

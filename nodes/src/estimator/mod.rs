@@ -12,7 +12,11 @@ use ferntast_msgs::{
     },
 };
 
-use crate::node::{Node, ports};
+use crate::{
+    graph::Build,
+    node::{Node, Ticking, ports},
+    process::NodeError,
+};
 
 /// No measurement for this long \[s\] is a fault.
 const MEASUREMENT_WATCHDOG: f64 = 0.010;
@@ -32,6 +36,18 @@ ports! {
         contact_state: ContactStateSample = FOLLOWER_CONTACT_STATE,
         transforms: TransformsSample = TF,
     }
+}
+
+/// The node of the graph.
+///
+/// # Errors
+///
+/// A parameter out of its bounds, a topic that cannot be opened.
+pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let arm = &build.session.loaded.arm;
+    let node = EstimatorNode::new(&arm.model, &arm.estimator)?;
+    let ports = EstimatorPorts::connect(build.bus)?;
+    build.join(node, ports)
 }
 
 /// The contact-force estimator.

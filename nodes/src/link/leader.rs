@@ -13,7 +13,8 @@ use ferntast_msgs::{
 };
 
 use super::{
-    FrameInput, FrameOutput, operating_state, position,
+    FrameInput, FrameOutput,
+    readings::{operating_state, position},
     status::{Status, report},
     transport::LinkNode,
 };

@@ -1,43 +1,57 @@
 //! The two ends of the link as nodes.
 //!
 //! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz. What an
-//! end does is in [`ferntast_control::link`]; here are its topics. Frames come in through the channel emulator ([`transport`]), whose way out
-//! is the moment of arrival.
+//! end does is in [`ferntast_control::link`]; here are its
+//! topics. Frames come in through the channel emulator ([`transport`]), whose way
+//! out is the moment of arrival.
 
 mod follower;
 mod leader;
+mod readings;
 mod status;
 #[cfg(test)]
 mod tests;
 pub mod transport;
 
+use ferntast_bus::frames::LinkDirection;
+
+use crate::{graph::Build, node::Ticking, process::NodeError};
+
 pub use follower::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FollowerLinkPorts};
 pub use leader::{LeaderLinkInput, LeaderLinkNode, LeaderLinkOutput, LeaderLinkPorts};
 pub use transport::{FrameInput, FrameOutput, LinkPorts, LinkTransport};
 
-use ferntast_control::{link::StampedPosition, operating::OperatingState};
-use ferntast_msgs::{
-    Time,
-    sample::{OperatingStateSample, PoseSample},
-};
-
-use crate::node::Newest;
-
-/// A pose as the ends take it.
-fn position(now: Time, pose: &Newest<PoseSample>) -> Option<StampedPosition> {
-    pose.message.map(|own| StampedPosition {
-        stamp_ns: own.stamp.nanos(),
-        position: own.position,
-        silence: pose.silence(now),
-    })
+/// The operator's end, a node of the graph.
+///
+/// # Errors
+///
+/// The link or a topic cannot be opened; a parameter of the channel is out of
+/// its bounds.
+pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    let session = session_number(&build.session.session);
+    let node = LeaderLinkNode::new(loaded.laws(), session, loaded.scenario.link.buffer);
+    let (sender, receiver) = (build.open_link)(LinkDirection::Forward)?;
+    let seed = loaded.scenario.seed.wrapping_add(2);
+    let transport = LinkTransport::new(sender, receiver, loaded.link.down.clone(), seed)?;
+    let ports = LinkPorts::new(LeaderLinkPorts::connect(build.bus)?, transport);
+    build.join(node, ports)
 }
 
-/// The state of an end's device; disabled as long as it says nothing.
-fn operating_state(state: &Newest<OperatingStateSample>) -> OperatingState {
-    state
-        .message
-        .and_then(|sample| OperatingState::from_code(sample.state.0))
-        .unwrap_or(OperatingState::Disabled)
+/// The arm's end, a node of the graph.
+///
+/// # Errors
+///
+/// As [`make_leader`].
+pub fn make_follower(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    let session = session_number(&build.session.session);
+    let node = FollowerLinkNode::new(loaded.laws(), session, loaded.scenario.link.buffer);
+    let (sender, receiver) = (build.open_link)(LinkDirection::Back)?;
+    let seed = loaded.scenario.seed.wrapping_add(1);
+    let transport = LinkTransport::new(sender, receiver, loaded.link.up.clone(), seed)?;
+    let ports = LinkPorts::new(FollowerLinkPorts::connect(build.bus)?, transport);
+    build.join(node, ports)
 }
 
 /// Identity of a session in frames: a hash (FNV-1a, folded) of its name.

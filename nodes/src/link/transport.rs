@@ -146,6 +146,9 @@ where
 {
     type Node = P::Node;
 
+    const INPUTS: &'static [&'static str] = P::INPUTS;
+    const OUTPUTS: &'static [&'static str] = P::OUTPUTS;
+
     fn read(&mut self, now: Time, input: &mut <P::Node as Node>::Input) {
         self.topics.read(now, input);
         if let Some(command) = P::Node::command(input) {

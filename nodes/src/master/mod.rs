@@ -15,8 +15,9 @@ use ferntast_msgs::{
 };
 
 use crate::{
-    node::{Node, NodeHealth, ports},
-    say::{StatePublisher, law_command},
+    graph::Build,
+    node::{Node, NodeHealth, StatePublisher, Ticking, ports, to_law},
+    process::NodeError,
 };
 
 /// A reflected force older than this \[s\] is not rendered.
@@ -43,6 +44,19 @@ ports! {
         authority: AuthoritySample = LEADER_AUTHORITY,
         operating_state: OperatingStateSample = LEADER_OPERATING_STATE,
     }
+}
+
+/// The node of the graph.
+///
+/// # Errors
+///
+/// A parameter out of its bounds, a hand that is not there, a topic that
+/// cannot be opened.
+pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    let node = MasterNode::new(&loaded.scenario.master, loaded.hand()?)?;
+    let ports = MasterPorts::connect(build.bus)?;
+    build.join(node, ports)
 }
 
 /// The haptic master bridge: validates the hand, decides who holds the
@@ -144,7 +158,7 @@ impl Node for MasterNode {
 
     fn step(&mut self, now: Time, input: &MasterInput, output: &mut MasterOutput) {
         for sample in input.state_command.iter() {
-            let Some(command) = law_command(sample.command) else {
+            let Some(command) = to_law(sample.command) else {
                 continue;
             };
             if let Err(refusal) = self.master.command(command) {

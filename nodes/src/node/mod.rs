@@ -3,19 +3,24 @@
 mod health;
 mod input;
 mod input_watch;
+mod operating_state;
 mod ports;
 mod runner;
 
+pub use crate::ports;
 pub use health::{HealthMeter, NodeHealth};
 pub use input::{BATCH, Batch, Newest};
 pub use input_watch::InputWatch;
-pub(crate) use ports::ports;
+pub use operating_state::{StatePublisher, to_law};
 pub use ports::{Ports, Receiver, Sender, receiver};
-pub use runner::Runner;
+pub use runner::{Runner, Ticking};
 
 use ferntast_msgs::Time;
 
-/// A node: a law with typed inputs and outputs.
+/// One part of the system, stepped at a fixed period: it reads the newest
+/// messages of its input topics, computes, and publishes on its output topics.
+/// What it computes by (a delay law, a servo, an estimator) is its own, and
+/// lies in a pure crate where it is more than a few lines.
 pub trait Node {
     /// The newest messages of each input topic.
     type Input: Default;

@@ -10,6 +10,11 @@ pub trait Ports {
     /// The node that they belong to.
     type Node: Node;
 
+    /// Topics that it takes.
+    const INPUTS: &'static [&'static str];
+    /// Topics that it publishes, beside `/diagnostics`.
+    const OUTPUTS: &'static [&'static str];
+
     /// Fills `input` with what is visible at `now`.
     fn read(&mut self, now: Time, input: &mut <Self::Node as Node>::Input);
 
@@ -98,6 +103,7 @@ impl<M: Message> Sender<M> for Publisher<M> {
 /// An input is `Newest<Sample>` (the newest message, kept) or `Batch<Sample>`
 /// (every message since the last step). `extra` fields are no topics; ports of
 /// the node's own fill them.
+#[macro_export]
 macro_rules! ports {
     (
         $(#[$doc:meta])*
@@ -169,12 +175,18 @@ macro_rules! ports {
         impl $crate::node::Ports for $ports {
             type Node = $node;
 
+            const INPUTS: &'static [&'static str] =
+                &[$(ferntast_msgs::topics::$in_topic.name,)*];
+            const OUTPUTS: &'static [&'static str] =
+                &[$(ferntast_msgs::topics::$out_topic.name,)*];
+
             fn read(&mut self, now: ferntast_msgs::Time, input: &mut $input) {
                 $($crate::node::Receiver::fill(&mut self.$in_field, now, &mut input.$in_field);)*
                 let _ = (now, input);
             }
 
             fn write(&mut self, now: ferntast_msgs::Time, output: &$output) -> u64 {
+                let _ = (now, output);
                 0 $(+ $crate::node::Sender::send(&mut self.$out_field, now, &output.$out_field))*
             }
 
@@ -185,4 +197,3 @@ macro_rules! ports {
         }
     };
 }
-pub(crate) use ports;

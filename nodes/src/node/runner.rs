@@ -5,8 +5,16 @@ use ferntast_msgs::{Time, sample::HealthSample, topics};
 
 use super::{HealthMeter, InputWatch, Node, Output, Ports};
 
-/// A node that is connected to a bus: one [`Runner::tick`] reads, steps and
-/// publishes. The same runner serves a process of its own and lockstep.
+/// A node that is connected to a bus, whatever its type.
+pub trait Ticking {
+    /// One step at `now`, `late_nanos` \[ns\] after it was due, with `missed`
+    /// periods skipped before it: reads, steps and publishes. Takes from the
+    /// heap no more than the node's own step does.
+    fn tick(&mut self, now: Time, late_nanos: i64, missed: u64);
+}
+
+/// A node, its ports and its health. The same runner serves a process of its
+/// own and virtual time.
 pub struct Runner<P: Ports> {
     node: P::Node,
     ports: P,
@@ -41,10 +49,10 @@ impl<P: Ports> Runner<P> {
             unsent: 0,
         })
     }
+}
 
-    /// One step at `now`, `late_nanos` \[ns\] after it was due, with `missed`
-    /// periods skipped before it.
-    pub fn tick(&mut self, now: Time, late_nanos: i64, missed: u64) {
+impl<P: Ports> Ticking for Runner<P> {
+    fn tick(&mut self, now: Time, late_nanos: i64, missed: u64) {
         self.ports.read(now, &mut self.input);
         self.output.clear();
         self.node.step(now, &self.input, &mut self.output);
@@ -57,10 +65,5 @@ impl<P: Ports> Runner<P> {
         {
             self.unsent += 1;
         }
-    }
-
-    /// The node.
-    pub fn node(&self) -> &P::Node {
-        &self.node
     }
 }

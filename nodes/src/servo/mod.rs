@@ -26,8 +26,9 @@ use ferntast_msgs::{
 use friction::FrictionKeeper;
 
 use crate::{
-    node::{Node, ports},
-    say::{StatePublisher, law_command},
+    graph::Build,
+    node::{Node, StatePublisher, Ticking, ports, to_law},
+    process::NodeError,
 };
 
 ports! {
@@ -50,6 +51,18 @@ ports! {
         friction_1: FrictionStatusSample = FOLLOWER_JOINT_1_FRICTION,
         friction_2: FrictionStatusSample = FOLLOWER_JOINT_2_FRICTION,
     }
+}
+
+/// The node of the graph.
+///
+/// # Errors
+///
+/// A parameter out of its bounds, a topic that cannot be opened.
+pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    let node = ServoNode::new(&loaded.arm.model, &loaded.scenario.servo)?;
+    let ports = ServoPorts::connect(build.bus)?;
+    build.join(node, ports)
 }
 
 /// The joint servo.
@@ -115,7 +128,7 @@ impl Node for ServoNode {
                 .state_command
                 .iter()
                 .last()
-                .and_then(|sample| law_command(sample.command)),
+                .and_then(|sample| to_law(sample.command)),
         };
         self.feed_forward(now, input, output);
         let law = self.servo.step(now.nanos(), &law_input);

@@ -107,10 +107,10 @@ fn describe(now: Time, elapsed: f64, monitor: &Monitor, supervisor: &Supervisor)
         }
     }
     text.push_str(&format!(" · hand {:.1} N", monitor.hand_force));
-    let dead: Vec<String> = supervisor
+    let dead: Vec<&str> = supervisor
         .nodes()
-        .filter(|(node, process, _)| process.is_none() || !monitor.is_alive(*node, now))
-        .map(|(node, _, _)| node.to_string())
+        .filter(|(node, process, _)| process.is_none() || !monitor.is_alive(node, now))
+        .map(|(node, _, _)| node)
         .collect();
     if dead.is_empty() {
         text.push_str(&format!(" · {} nodes alive", supervisor.nodes().count()));

@@ -1,18 +1,20 @@
 //! A session: processes, their supervision, the live line, the summary.
 
-mod context;
+mod error;
+mod host_resources;
 mod live;
 mod monitor;
-mod place;
 mod play;
+mod preflight;
+mod recording;
 mod run;
 mod summary;
 mod supervisor;
 
-pub use context::{ConsoleOptions, ContextError, PlayOptions, SessionContext};
+pub use error::SessionError;
+pub use host_resources::runtime_folder;
 pub use monitor::Monitor;
-pub use place::runtime_folder;
 pub use play::{Played, play};
-pub use run::{SessionError, SessionOptions, run};
+pub use run::{SessionOptions, run};
 pub use summary::{ContactSummary, LeaderSummary, LinkSummary, StateSummary, Summary};
 pub use supervisor::{EXIT_REFUSED, Supervisor, SupervisorError};

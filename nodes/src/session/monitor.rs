@@ -13,7 +13,7 @@ use ferntast_msgs::{
     topics::{self, Topic},
 };
 
-use crate::{node_name::NodeName, servo::FrictionSummary, twin::TwinSummary};
+use crate::{servo::FrictionSummary, twin::TwinSummary};
 
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
@@ -151,10 +151,8 @@ impl Monitor {
     }
 
     /// Whether `node` was heard of lately.
-    pub fn is_alive(&self, node: NodeName, now: Time) -> bool {
-        self.nodes
-            .get(node.as_str())
-            .is_some_and(|view| view.is_alive(now))
+    pub fn is_alive(&self, node: &str, now: Time) -> bool {
+        self.nodes.get(node).is_some_and(|view| view.is_alive(now))
     }
 
     /// Takes in what arrived until `now`.

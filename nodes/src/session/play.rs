@@ -5,20 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ferntast_bus::{Bus, SharedMemoryBus, SharedMemoryConfig};
 use serde::Serialize;
 
-use super::{Monitor, SessionContext, Supervisor, place::Place, run::SessionError};
-use crate::{node_name::NodeName, twin::TwinSummary};
-
-/// Topics that a live estimator publishes in place of the recording.
-const OF_THE_ESTIMATOR: [&str; 5] = [
-    "/follower/measured_cp",
-    "/follower/measured_cf",
-    "/follower/contact_cf",
-    "/follower/contact_state",
-    "/tf",
-];
-
-/// Topics that a live twin publishes in place of the recording.
-const OF_THE_TWIN: [&str; 3] = ["/twin/motor_js", "/twin/residual_js", "/twin/parameters"];
+use super::{Monitor, SessionError, Supervisor, host_resources::HostResources};
+use crate::{
+    bridge::player,
+    graph::{Graph, NodeRow},
+    process::SessionContext,
+    twin::{self, TwinSummary},
+};
 
 /// How long a twin may take to fit its model \[s\].
 const TWIN_PATIENCE: f64 = 60.0;
@@ -36,34 +29,30 @@ pub struct Played {
     pub twin: Option<TwinSummary>,
 }
 
-/// Plays the context's recording until its end or until `stop` is set.
+/// Plays the context's recording, to the nodes of `graph` that listen to it,
+/// until its end or until `stop` is set. What a live node publishes is not played.
 ///
 /// # Errors
 ///
 /// What keeps it from starting.
 pub fn play(
+    graph: &Graph,
     mut context: SessionContext,
-    estimate: bool,
     duration: f64,
     stop: &AtomicBool,
 ) -> Result<Played, SessionError> {
-    // First those that listen, then the player.
-    let mut nodes = vec![NodeName::Gateway];
-    if context.foxglove.is_some() {
-        nodes.push(NodeName::Foxglove);
-    }
-    if estimate {
-        nodes.push(NodeName::Estimator);
-        let own = OF_THE_ESTIMATOR.map(str::to_owned);
-        context.play.except.extend(own);
-    }
     let follows = context.twin.is_some();
-    if follows {
-        nodes.push(NodeName::Twin);
-        context.play.except.extend(OF_THE_TWIN.map(str::to_owned));
-    }
-    let place = Place::take(&context)?;
-    let session_file = place.session_file.clone();
+    // First those that listen, then the player.
+    let rows: Vec<&NodeRow> = graph
+        .rows()
+        .filter(|row| (row.in_playback)(&context))
+        .collect();
+    let nodes: Vec<&str> = rows.iter().map(|row| row.name).collect();
+    let live = rows.iter().flat_map(|row| row.outputs());
+    let live = live.map(|topic| (*topic).to_owned());
+    context.play.except.extend(live);
+    let resources = HostResources::acquire(&context)?;
+    let session_file = resources.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
     let mut listeners = Supervisor::new(executable.clone(), session_file.clone(), &nodes);
     listeners.start()?;
@@ -78,14 +67,14 @@ pub fn play(
         let now = clock.now();
         monitor.update(now);
         // A twin is ready once its model is fitted.
-        let fitted = !follows || monitor.is_alive(NodeName::Twin, now) || now > patience;
+        let fitted = !follows || monitor.is_alive(twin::NAME, now) || now > patience;
         if (now >= ready && fitted) || stop.load(Ordering::Relaxed) {
             break;
         }
         listeners.watch()?;
         clock.sleep_until(now.plus_nanos(20_000_000));
     }
-    let mut player = Supervisor::new(executable, session_file, &[NodeName::Player]);
+    let mut player = Supervisor::new(executable, session_file, &[player::NAME]);
     player.start()?;
     let begun = clock.now();
     let bar = indicatif::ProgressBar::new((duration / context.play.rate).ceil() as u64);
@@ -105,14 +94,14 @@ pub fn play(
     drop((monitor, bus));
     player.stop();
     listeners.stop();
-    place.leave()?;
+    resources.release()?;
     Ok(Played {
         recording: context
             .bag
             .map(|bag| bag.display().to_string())
             .unwrap_or_default(),
         played_s: played,
-        estimated: estimate,
+        estimated: context.play.estimate,
         twin,
     })
 }

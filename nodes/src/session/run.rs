@@ -1,16 +1,11 @@
 //! A session from start to end.
 
 use std::{
-    collections::BTreeMap,
-    fs, io,
-    path::{Path, PathBuf},
     process::ExitStatus,
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use ferntast_bus::{
-    Bus, CleanUpError, CreateError, OpenError, Publisher, SharedMemoryBus, SharedMemoryConfig, mcap,
-};
+use ferntast_bus::{Bus, Publisher, SharedMemoryBus, SharedMemoryConfig};
 use ferntast_msgs::{
     Time,
     sample::{OperatingState, StateCommand, StateCommandSample},
@@ -18,12 +13,14 @@ use ferntast_msgs::{
 };
 
 use super::{
-    ContextError, Monitor, SessionContext, Summary, Supervisor, SupervisorError,
-    live::LiveLine,
-    place::Place,
-    summary::{NodeSummary, RecorderSummary},
+    Monitor, SessionError, Summary, Supervisor, host_resources::HostResources, live::LiveLine,
+    preflight, recording,
 };
-use crate::{clock::Clock, node_name::NodeName, recorder};
+use crate::{
+    bridge::recorder,
+    graph::Graph,
+    process::{Clock, SessionContext},
+};
 
 /// How often the supervisor looks \[ns\].
 const ROUND_NANOS: i64 = 20_000_000;
@@ -39,125 +36,27 @@ pub struct SessionOptions {
     pub enable: bool,
 }
 
-/// Why a session did not run, or not to its end.
-#[derive(Debug, thiserror::Error)]
-pub enum SessionError {
-    /// The session's file cannot be written.
-    #[error(transparent)]
-    Context(#[from] ContextError),
-    /// The folder for the session's file cannot be made.
-    #[error("cannot make {path}: {source}")]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// The operating system's reason.
-        source: io::Error,
-    },
-    /// Another session of that name runs, or its remains cannot be removed.
-    #[error(transparent)]
-    Taken(#[from] CleanUpError),
-    /// The recording's folder exists.
-    #[error("{path} exists already: choose another folder for --record, or remove it")]
-    RecordingExists {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// A port is taken by another program.
-    #[error(
-        "{what} {endpoint} is taken ({source}): stop what listens there, or choose another with {option}"
-    )]
-    PortTaken {
-        /// What it is for.
-        what: &'static str,
-        /// The endpoint.
-        endpoint: String,
-        /// The operating system's reason.
-        source: io::Error,
-        /// The option that chooses another.
-        option: &'static str,
-    },
-    /// The bus cannot be opened.
-    #[error(transparent)]
-    Open(#[from] OpenError),
-    /// A topic cannot be opened.
-    #[error(transparent)]
-    Create(#[from] CreateError),
-    /// The nodes cannot be kept running.
-    #[error(transparent)]
-    Supervisor(#[from] SupervisorError),
-    /// The nodes were not all alive, or the arm not armed, in time.
-    #[error("not ready after {seconds} s: {waiting}")]
-    NotReady {
-        /// How long it was waited \[s\].
-        seconds: f64,
-        /// For what.
-        waiting: String,
-    },
-    /// The program's own path is not known.
-    #[error("cannot find the ferntast program itself: {0}")]
-    Executable(io::Error),
-}
-
-impl SessionError {
-    /// Whether the input or the surroundings were refused, before anything moved.
-    pub fn is_refusal(&self) -> bool {
-        !matches!(
-            self,
-            SessionError::NotReady { .. } | SessionError::Supervisor(_)
-        ) || matches!(
-            self,
-            SessionError::Supervisor(SupervisorError::Refused { .. })
-        )
-    }
-}
-
-/// The nodes of a session, in the order in which they are stopped: first what
-/// moves the arm, last the recorder.
-fn nodes(context: &SessionContext) -> Vec<NodeName> {
-    let mut nodes = Vec::new();
-    if context.console.is_some() {
-        nodes.push(NodeName::Console);
-    }
-    if context.foxglove.is_some() {
-        nodes.push(NodeName::Foxglove);
-    }
-    nodes.extend([
-        NodeName::Master,
-        NodeName::LinkLeader,
-        NodeName::LinkFollower,
-        NodeName::Servo,
-        NodeName::Estimator,
-        NodeName::Arm,
-        NodeName::Gateway,
-    ]);
-    if context.twin.is_some() {
-        nodes.push(NodeName::Twin);
-    }
-    // The page can have it record at any time.
-    if context.bag.is_some() || context.console.is_some() {
-        nodes.push(NodeName::Recorder);
-    }
-    nodes
-}
-
-/// Runs a session until `stop` is set, its duration is over, or it fails.
+/// Runs a session of the nodes of `graph` until `stop` is set, its duration is over, or it fails.
 /// Gives the summary, and what went wrong while it ran.
 ///
 /// # Errors
 ///
 /// What kept it from starting.
 pub fn run(
+    graph: &Graph,
     context: SessionContext,
     options: &SessionOptions,
     stop: &AtomicBool,
 ) -> Result<(Summary, Result<(), SessionError>), SessionError> {
-    check_surroundings(&context)?;
-    let place = Place::take(&context)?;
-    let session_file = place.session_file.clone();
+    preflight::check(&context)?;
+    let resources = HostResources::acquire(&context)?;
+    let session_file = resources.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
+    let rows = graph.rows().filter(|row| (row.in_session)(&context));
+    let nodes: Vec<&str> = rows.map(|row| row.name).collect();
 
     let mut session = Running {
-        supervisor: Supervisor::new(executable, session_file, &nodes(&context)),
+        supervisor: Supervisor::new(executable, session_file, &nodes),
         live: LiveLine::new(options.duration),
         armed_at: None,
         commanded_at: None,
@@ -189,7 +88,7 @@ pub fn run(
         eprintln!("node {node} did not stop in time and was killed");
     }
     monitor.update(clock.now());
-    let recorder = match recording(&session.context, &node_summaries) {
+    let recorder = match recording::summarize(&session.context, &node_summaries) {
         Ok(recorder) => recorder,
         Err(message) => {
             eprintln!("{message}");
@@ -217,7 +116,7 @@ pub fn run(
         nodes: node_summaries,
     };
     drop((monitor, arming, bus));
-    let freed = place.leave();
+    let freed = resources.release();
     if outcome.is_ok() {
         outcome = freed;
     }
@@ -230,7 +129,7 @@ struct Running {
     live: LiveLine,
     armed_at: Option<Time>,
     commanded_at: Option<Time>,
-    died: Vec<NodeName>,
+    died: Vec<&'static str>,
 }
 
 struct Arming {
@@ -322,11 +221,11 @@ impl Running {
     }
 
     fn waiting_for(&self, now: Time, monitor: &Monitor) -> String {
-        let silent: Vec<String> = self
+        let silent: Vec<&str> = self
             .supervisor
             .nodes()
-            .filter(|(node, _, _)| !monitor.is_alive(*node, now))
-            .map(|(node, _, _)| node.to_string())
+            .filter(|(node, _, _)| !monitor.is_alive(node, now))
+            .map(|(node, _, _)| node)
             .collect();
         if !silent.is_empty() {
             return format!("nothing was heard of {}", silent.join(", "));
@@ -341,10 +240,10 @@ impl Running {
         }
     }
 
-    fn note_death(&mut self, node: NodeName, status: ExitStatus) {
+    fn note_death(&mut self, node: &'static str, status: ExitStatus) {
         self.live
             .note(&format!("node {node} died ({status}); it is started again"));
-        if node == NodeName::Recorder
+        if node == recorder::NAME
             && !self.died.contains(&node)
             && let Some(bag) = &self.context.bag
         {
@@ -355,96 +254,4 @@ impl Running {
         }
         self.died.push(node);
     }
-}
-
-/// Whether the ports and the recording's folder are free.
-fn check_surroundings(context: &SessionContext) -> Result<(), SessionError> {
-    if let Some(bag) = &context.bag
-        && bag.exists()
-        && !is_empty_folder(bag)
-    {
-        return Err(SessionError::RecordingExists { path: bag.clone() });
-    }
-    let scenario = &context.loaded.scenario;
-    check_endpoint(
-        "the link's endpoint",
-        &scenario.link.endpoint,
-        "--link-endpoint",
-    )?;
-    if let Some(listen) = context.console.as_ref().and_then(|console| console.listen) {
-        check_endpoint("the page's address", &format!("tcp/{listen}"), "--listen")?;
-    }
-    if let Some(listen) = context.foxglove {
-        check_endpoint("Foxglove's address", &format!("tcp/{listen}"), "--foxglove")?;
-    }
-    if let Some(endpoint) = scenario.gateway.own_router() {
-        check_endpoint("the Zenoh router's endpoint", endpoint, "--router-endpoint")?;
-    }
-    Ok(())
-}
-
-fn check_endpoint(
-    what: &'static str,
-    endpoint: &str,
-    option: &'static str,
-) -> Result<(), SessionError> {
-    let bound = if let Some(address) = endpoint.strip_prefix("tcp/") {
-        std::net::TcpListener::bind(address).map(drop)
-    } else if let Some(address) = endpoint.strip_prefix("udp/") {
-        std::net::UdpSocket::bind(address).map(drop)
-    } else {
-        return Ok(()); // the node that opens it says what is wrong
-    };
-    match bound {
-        Ok(()) => Ok(()),
-        Err(source) => Err(SessionError::PortTaken {
-            what,
-            endpoint: endpoint.to_owned(),
-            source,
-            option,
-        }),
-    }
-}
-
-fn is_empty_folder(path: &Path) -> bool {
-    fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
-}
-
-/// What went into the recording, all parts of it; mends a part that a recorder
-/// that died left open.
-fn recording(
-    context: &SessionContext,
-    nodes: &BTreeMap<String, NodeSummary>,
-) -> Result<Option<RecorderSummary>, String> {
-    let Some(bag) = &context.bag else {
-        return Ok(None);
-    };
-    let recorder = nodes.get(NodeName::Recorder.as_str());
-    let restarts = recorder.map_or(0, |recorder| recorder.restarts);
-    let mut summary = RecorderSummary {
-        messages: 0,
-        lost: recorder.map_or(0, |recorder| recorder.lost),
-        parts: Vec::new(),
-    };
-    for generation in 0..=restarts {
-        let part = recorder::folder(bag, generation);
-        if !part.exists() {
-            continue; // that recorder died before it began
-        }
-        let info = match mcap::info(&part) {
-            Ok(info) => info,
-            Err(broken) => mcap::repair(&part, None)
-                .map_err(|error| error.to_string())
-                .and_then(|_| mcap::info(&part).map_err(|error| error.to_string()))
-                .map_err(|error| {
-                    format!(
-                        "the recording {} cannot be read ({broken}) nor mended ({error})",
-                        part.display()
-                    )
-                })?,
-        };
-        summary.messages += info.messages;
-        summary.parts.push(part.display().to_string());
-    }
-    Ok(Some(summary))
 }

@@ -7,8 +7,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::node_name::NodeName;
-
 /// A node that dies this often within [`RESTART_WINDOW`] is given up.
 const RESTART_LIMIT: usize = 5;
 const RESTART_WINDOW: Duration = Duration::from_secs(30);
@@ -25,7 +23,7 @@ pub enum SupervisorError {
     #[error("cannot start node {node}: {source}")]
     Start {
         /// The node.
-        node: NodeName,
+        node: &'static str,
         /// The operating system's reason.
         source: std::io::Error,
     },
@@ -35,7 +33,7 @@ pub enum SupervisorError {
     )]
     GivenUp {
         /// The node.
-        node: NodeName,
+        node: &'static str,
         /// How often.
         times: usize,
         /// Within which time \[s\].
@@ -47,7 +45,7 @@ pub enum SupervisorError {
     #[error("node {node} could not start (see its message above)")]
     Refused {
         /// The node.
-        node: NodeName,
+        node: &'static str,
     },
 }
 
@@ -55,7 +53,7 @@ pub enum SupervisorError {
 pub const EXIT_REFUSED: i32 = 2;
 
 struct Process {
-    node: NodeName,
+    node: &'static str,
     child: Option<Child>,
     deaths: Vec<Instant>,
     start_at: Option<Instant>,
@@ -71,7 +69,7 @@ pub struct Supervisor {
 
 impl Supervisor {
     /// A supervisor for `nodes`, run by `executable` with the session's file.
-    pub fn new(executable: PathBuf, session_file: PathBuf, nodes: &[NodeName]) -> Supervisor {
+    pub fn new(executable: PathBuf, session_file: PathBuf, nodes: &[&'static str]) -> Supervisor {
         let processes = nodes
             .iter()
             .map(|&node| Process {
@@ -108,7 +106,7 @@ impl Supervisor {
         let mut command = Command::new(&self.executable);
         command
             .arg("node")
-            .arg(process.node.to_string())
+            .arg(process.node)
             .arg("--session-file")
             .arg(&self.session_file)
             .arg("--generation")
@@ -140,7 +138,7 @@ impl Supervisor {
     /// # Errors
     ///
     /// A node that dies again and again, or that refused to start.
-    pub fn watch(&mut self) -> Result<Vec<(NodeName, ExitStatus)>, SupervisorError> {
+    pub fn watch(&mut self) -> Result<Vec<(&'static str, ExitStatus)>, SupervisorError> {
         let now = Instant::now();
         let mut died = Vec::new();
         for index in 0..self.processes.len() {
@@ -196,7 +194,7 @@ impl Supervisor {
     }
 
     /// Every node with its process, if it runs, and how often it was restarted.
-    pub fn nodes(&self) -> impl Iterator<Item = (NodeName, Option<u32>, u32)> + '_ {
+    pub fn nodes(&self) -> impl Iterator<Item = (&'static str, Option<u32>, u32)> + '_ {
         self.processes.iter().map(|process| {
             (
                 process.node,
@@ -208,7 +206,7 @@ impl Supervisor {
 
     /// Stops every node, in the order of the list, and waits for each. Gives
     /// those that had to be killed.
-    pub fn stop(&mut self) -> Vec<NodeName> {
+    pub fn stop(&mut self) -> Vec<&'static str> {
         let mut killed = Vec::new();
         for process in &mut self.processes {
             process.start_at = None;

@@ -30,7 +30,11 @@ use ferntast_msgs::{
     },
 };
 
-use crate::node::{Node, ports};
+use crate::{
+    graph::Build,
+    node::{Node, Ticking, ports},
+    process::NodeError,
+};
 
 use align::{Aligned, Alignment};
 use assess::Assessor;
@@ -59,6 +63,26 @@ ports! {
         residual: JointSample = TWIN_RESIDUAL_JS,
         parameters: TwinParametersSample = TWIN_PARAMETERS,
     }
+}
+
+/// Name of the node.
+pub const NAME: &str = "twin";
+
+/// The node of the graph.
+///
+/// # Errors
+///
+/// No experiment is named, or it cannot be followed; a topic that cannot be
+/// opened.
+pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let path = build.session.twin.as_deref().ok_or(NodeError::NoTwin)?;
+    let model = open(path).map_err(NodeError::own)?;
+    let assessing = match build.virtual_time {
+        true => Assessing::Inline,
+        false => Assessing::OnThread,
+    };
+    let ports = TwinPorts::connect(build.bus)?;
+    build.join(TwinNode::new(model, assessing), ports)
 }
 
 /// The twin of a joint.

@@ -5,8 +5,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_bus::{Bus, Depth, McapBus, MemoryBus, Publisher, Subscriber, mcap::BagOptions};
+use ferntast_bus::{Bus, Depth, McapBus, Publisher, Subscriber, mcap::BagOptions};
 use ferntast_control::servo::ServoConfig;
+use ferntast_drivers::simulated;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Time,
@@ -17,13 +18,12 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_nodes::{
-    arm::{ArmNode, ArmPorts},
-    carry::{Carrier, Carry, Stamp},
-    estimator::{EstimatorNode, EstimatorPorts},
-    lockstep::{Lockstep, add},
-    node_name::NodeName,
-    process::PERIOD_NANOS,
-    servo::{ServoNode, ServoPorts},
+    bridge::forwarder::{Carrier, Carry, Stamp},
+    config::Loaded,
+    graph::STEP_NANOS,
+    lockstep::{RunError, VirtualTime},
+    process::SessionContext,
+    session_graph,
 };
 use ferntast_sim::arm::ArmConfig;
 
@@ -92,7 +92,7 @@ impl Commander {
                 .map_or(0.0, |state| state.normal_force),
         };
         let time = now.seconds_since(self.begin).max(0.0);
-        let dt = PERIOD_NANOS as f64 * 1e-9;
+        let dt = STEP_NANOS as f64 * 1e-9;
         let _ = match self.program.target(time, dt, &seen) {
             Target::Joints(position) => self.joints.publish(
                 now,
@@ -187,51 +187,48 @@ impl Bench {
             path: folder.to_owned(),
             reason,
         };
-        let bus = Bus::Memory(MemoryBus::new());
-        let mut executor: Lockstep<'static, Bus> = Lockstep::new(self.start, PERIOD_NANOS)?;
-        let arm = ArmNode::new(&self.arm, self.seed)?;
-        let ports = ArmPorts::connect(&bus)?;
-        add(&mut executor, &bus, NodeName::Arm, arm, ports)?;
-        let model = self.arm.model();
-        let servo = ServoNode::new(&model, &self.servo)?;
-        let ports = ServoPorts::connect(&bus)?;
-        add(&mut executor, &bus, NodeName::Servo, servo, ports)?;
-        if self.contact {
-            let estimator = EstimatorNode::new(&model, &self.arm.estimator)?;
-            let ports = EstimatorPorts::connect(&bus)?;
-            add(&mut executor, &bus, NodeName::Estimator, estimator, ports)?;
-        }
+        let loaded = Loaded::without_operator(
+            simulated::arm_file(&self.arm)?,
+            self.servo.clone(),
+            self.seed,
+        );
+        let nodes = match self.contact {
+            true => &["arm", "servo", "estimator"][..],
+            false => &["arm", "servo"],
+        };
+        let graph = session_graph(simulated::row());
+        let rows = graph.rows().filter(|row| nodes.contains(&row.name));
+        let mut time = VirtualTime::new(self.start).map_err(RunError::from)?;
+        time.add_nodes(rows, &SessionContext::in_virtual_time(loaded))?;
         let program = std::mem::replace(&mut self.program, Box::new(Nothing));
         let duration = SETTLE + program.duration();
-        let mut commander = self.commander(&bus, program)?;
-        executor.add(PERIOD_NANOS, move |now: Time, _: &mut Bus| {
-            commander.step(now)
-        })?;
+        let mut commander = self.commander(time.bus(), program)?;
+        time.add(move |now| commander.step(now));
 
         let recording = McapBus::create_with(folder, self.options())
             .map_err(|error| recording_error(error.to_string()))?;
         let mut carrier = Carrier::default();
         let contact = self.contact;
         carrier.add_topics(
-            &bus,
+            time.bus(),
             &Bus::Mcap(recording.clone()),
             Stamp::Received,
             |topic| carry(topic.name, contact),
         )?;
-        executor.add(PERIOD_NANOS, move |now: Time, _: &mut Bus| {
+        time.add(move |now| {
             carrier.carry(now);
-        })?;
+        });
 
-        let mut states = bus.subscriber(topics::FOLLOWER_OPERATING_STATE, Depth::Queue(64))?;
-        let mut bus = bus;
+        let operating_state = topics::FOLLOWER_OPERATING_STATE;
+        let mut states = time.bus().subscriber(operating_state, Depth::Queue(64))?;
         let mut stopped = None;
         let mut done = 0.0;
         while done < duration && stopped.is_none() {
             let slice = (duration - done).min(SLICE);
-            executor.run(slice, &mut bus);
+            time.run(slice);
             done += slice;
             progress(slice);
-            let now = executor.now();
+            let now = time.now();
             while let Some(received) = states.next(now) {
                 let was_enabled = done > SLICE;
                 if was_enabled && received.message.state != OperatingState::ENABLED {
@@ -239,7 +236,7 @@ impl Bench {
                 }
             }
         }
-        drop(executor);
+        drop(time);
         recording
             .finish()
             .map_err(|error| recording_error(error.to_string()))?;

@@ -271,7 +271,7 @@ pub fn run_all(
 mod tests {
     use std::collections::BTreeSet;
 
-    use ferntast_nodes::arm as simulated;
+    use ferntast_drivers::simulated;
 
     use super::*;
 

@@ -5,11 +5,9 @@ use std::{io, path::PathBuf};
 use ferntast_bus::CreateError;
 use ferntast_lab::recording::LoadError;
 use ferntast_model::{ParameterError, kinematics::InverseError};
-use ferntast_nodes::{
-    config::ConfigError,
-    lockstep::{LockstepError, RunError},
-};
-use ferntast_sim::arm::SimulatedArmError;
+
+use ferntast_nodes::config::ConfigError;
+use ferntast_nodes::lockstep::RunError;
 
 /// Why an experiment cannot be run.
 #[derive(Debug, thiserror::Error)]
@@ -20,18 +18,12 @@ pub enum ExperimentError {
     /// A number is out of its bounds.
     #[error("experiment: {0}")]
     Parameter(#[from] ParameterError),
-    /// The simulated arm cannot be made.
-    #[error(transparent)]
-    Arm(#[from] SimulatedArmError),
     /// A node cannot be put in place.
     #[error(transparent)]
     Run(#[from] RunError),
     /// A topic cannot be opened.
     #[error(transparent)]
     Topic(#[from] CreateError),
-    /// The executor refused a task.
-    #[error(transparent)]
-    Executor(#[from] LockstepError),
     /// The contour has no such feature.
     #[error(
         "the arm's contour has no {what}; add one to [contour] of its file, or take another experiment"

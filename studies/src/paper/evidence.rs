@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use ferntast_drivers::simulated;
 use ferntast_identification::{damping::Sample, flexible_joint::Row, stiffness::Stiffness};
 use ferntast_model::contour::Surface;
-use ferntast_nodes::{arm as simulated, config::ConfigError};
+use ferntast_nodes::config::ConfigError;
 use ferntast_sim::arm::ArmConfig;
 
 use super::flexible_joint::{self, FlexibleJointEvidence, FlexibleJointJob};

@@ -20,6 +20,9 @@ const PURE: [&str; 7] = [
     "benches",
 ];
 
+/// What reaches the simulated arm because it was chosen.
+const MAY_SIMULATE: [&str; 4] = ["sim", "drivers", "studies", "cli"];
+
 /// Crates whose files are yet to be put in order.
 const STILL_IN_CIRCLES: [&str; 2] = ["control", "identification"];
 
@@ -83,6 +86,25 @@ fn pure_crates_name_no_clock_file_socket_or_thread() {
                 lines.is_empty(),
                 "{name} is pure; take as an argument what these get by themselves:\n{}",
                 lines.join("\n")
+            );
+        }
+    }
+}
+
+#[test]
+fn only_a_driver_brings_the_simulated_arm_into_a_session() {
+    let members = arrows::members(&cargo(&["metadata", "--no-deps", "--format-version", "1"]));
+    assert!(dependencies::tree("drivers").contains("ferntast-sim"));
+    for name in members
+        .keys()
+        .filter(|name| !MAY_SIMULATE.contains(&name.as_str()))
+    {
+        let tree = dependencies::tree(name);
+        for simulation in ["ferntast-sim", "ferntast-benches"] {
+            let is_own = simulation.ends_with(name.as_str());
+            assert!(
+                is_own || !tree.contains(simulation),
+                "{name} reaches {simulation}; `cargo tree -p ferntast-{name} -e normal` shows by which way"
             );
         }
     }

@@ -1,0 +1,72 @@
+//! The player: puts a recording back on the topics with its timing.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ferntast_bus::{Bus, McapBus, mcap};
+use ferntast_msgs::Time;
+
+use super::{
+    forwarder::{Carrier, Carry, Stamp},
+    forwarding_loop::Relay,
+};
+use crate::process::{NodeError, ProcessContext, periodic};
+
+/// Name of the node.
+pub const NAME: &str = "player";
+
+/// Opens `McapBus` readers on the recording with the lanes to play it.
+fn open(
+    process: &ProcessContext,
+    path: &std::path::Path,
+) -> Result<(Carrier, Time, Time), NodeError> {
+    let bad = |reason: String| NodeError::Bag {
+        path: path.to_owned(),
+        reason,
+    };
+    let info = mcap::info(path).map_err(|error| bad(error.to_string()))?;
+    let (Some(start), Some(end)) = (info.start, info.end) else {
+        return Err(bad("it holds no message".to_owned()));
+    };
+    let recording = McapBus::open(path).map_err(|error| bad(error.to_string()))?;
+    let except = &process.session.play.except;
+    let mut carrier = Carrier::default();
+    carrier.add_topics(&Bus::Mcap(recording), &process.bus, Stamp::Round, |topic| {
+        let recorded = info.topics.iter().any(|own| own.name == topic.name);
+        if recorded && !except.iter().any(|name| name == topic.name) {
+            Carry::Every { queue: 512 }
+        } else {
+            Carry::Not
+        }
+    })?;
+    Ok((carrier, start, end))
+}
+
+/// Plays until the end of the recording, or until it is told to stop.
+///
+/// # Errors
+///
+/// The recording or a topic cannot be opened.
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+    let path = process.session.bag.as_deref().ok_or(NodeError::NoBag)?;
+    let rate = process.session.play.rate;
+    let mut relay = Relay::new(process)?;
+    loop {
+        let (carrier, start, end) = open(process, path)?;
+        relay.begin(carrier);
+        let begun = process.clock.now();
+        let done = AtomicBool::new(false);
+        periodic::run_while(
+            process.clock,
+            process.period_nanos,
+            || !process.stop.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed),
+            |wake| {
+                let at = start.plus_seconds(wake.now.seconds_since(begun) * rate);
+                relay.round(at, wake, |_, _| {});
+                done.store(at > end, Ordering::Relaxed);
+            },
+        );
+        if process.stop.load(Ordering::Relaxed) || !process.session.play.repeat {
+            return Ok(());
+        }
+    }
+}

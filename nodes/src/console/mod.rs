@@ -1,0 +1,161 @@
+//! The console: serves the page, and carries what pages want to the topics.
+//!
+//! No 1 kHz loop shares its process: whatever a browser asks of it, the arm's
+//! loops go on.
+
+use std::{path::PathBuf, sync::Arc};
+
+use ferntast_console::{
+    Listen, Server,
+    server::Content,
+    session::{Desk, GripModel, PageHand, SessionPorts},
+};
+use ferntast_control::delay::Law;
+use ferntast_emulation::{
+    channel::{ChannelConfig, Jitter},
+    hand::{HandImpedance, ImpedanceParameters},
+};
+use ferntast_msgs::{
+    sample::{Fault, Faults, Level},
+    topics,
+};
+use serde_json::{Value, json};
+
+use crate::{
+    config::{HandSource, Loaded},
+    node::{InputWatch, NodeHealth},
+    process::{NodeError, ProcessContext, periodic},
+};
+
+/// How far the hand goes from the middle \[m\].
+const REACH: f64 = 0.06;
+/// How far the pointer draws the hand's spring out \[m\]: it pulls with 4 N at
+/// most, which with the usual scale is 80 N at the tip.
+const LEASH: f64 = 0.004;
+/// A firm grip, with more damping than a person's: a mouse gives none.
+const IMPEDANCE: ImpedanceParameters = ImpedanceParameters {
+    mass: 0.5,
+    damping: 80.0,
+    stiffness: 1000.0,
+};
+
+/// A hand with the impedance of a person's.
+struct Grip(HandImpedance);
+
+impl GripModel for Grip {
+    fn rest_at(&mut self, position: [f64; 2]) {
+        self.0 = HandImpedance::new(IMPEDANCE, position);
+    }
+
+    fn step(&mut self, dt: f64, target: [f64; 2], force: [f64; 2]) -> [f64; 2] {
+        self.0.step(dt, target, [0.0; 2], force);
+        self.0.position()
+    }
+}
+
+/// Runs the console until it is told to stop.
+///
+/// # Errors
+///
+/// A topic that cannot be opened; an address that cannot be listened at.
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+    let options = process.session.console.clone().unwrap_or_default();
+    let clock = process.clock;
+    let about = about(&process.session.session, &process.session.loaded);
+    let desk = Arc::new(Desk::new(about, Box::new(move || clock.now())));
+    let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 2]));
+    let hand = PageHand::new(Box::new(grip), REACH, LEASH);
+    let mut ports = SessionPorts::connect(&process.bus, desk.clone(), hand)?;
+    let mut diagnostics = process.bus.publisher(topics::DIAGNOSTICS)?;
+    let listen = Listen {
+        address: options.listen,
+        token: options.token,
+    };
+    let server = Server::start(
+        &listen,
+        Content {
+            desk: Some(desk),
+            folder: PathBuf::from("."),
+        },
+    )
+    .map_err(NodeError::own)?;
+    eprintln!("console: {}", server.url);
+    // After the server's threads, which must not have it: the hand on the
+    // master shall not be lost to a computer that is busy drawing.
+    let mut standing = Faults::default();
+    if periodic::request_realtime().is_err() {
+        standing.set(Fault::NoRealtime);
+    }
+    let mut meter = process.meter(standing);
+    let mut watch = InputWatch::default();
+    process.run(|wake| {
+        let mut health = NodeHealth {
+            lost: ports.round(wake.now),
+            ..NodeHealth::default()
+        };
+        watch.note(|each| ports.inputs(each), &mut health);
+        if health.lost > 0 {
+            health.level = health.level.max(Level::WARN);
+        }
+        let sample = meter.step(wake.now, wake.late_nanos, wake.missed, &health);
+        if let Some(sample) = sample {
+            // What cannot be said now is said a tenth of a second later.
+            let _ = diagnostics.publish(wake.now, &sample);
+        }
+    });
+    drop(server);
+    Ok(())
+}
+
+/// What the page has to know of the session before anything moves. Lengths
+/// \[m\], times \[s\], forces \[N\].
+fn about(session: &str, loaded: &Loaded) -> Value {
+    let scenario = &loaded.scenario;
+    let json = |value: Result<Value, serde_json::Error>| value.unwrap_or_default();
+    let arm = json(serde_json::to_value(&loaded.arm));
+    let law = json(serde_json::to_value(&scenario.law));
+    let lengths: Vec<Value> = (0..2)
+        .map(|link| arm["arm"]["link"][link]["length"].clone())
+        .collect();
+    let (up, down) = (&loaded.link.up, &loaded.link.down);
+    let bytes = ferntast_control::frame::FRAME_LENGTH;
+    let or = |value: &Value, default: Value| match value.is_null() {
+        true => default,
+        false => value.clone(),
+    };
+    json!({
+        "session": session,
+        "scenario": scenario.name,
+        "hand": match scenario.hand.source {
+            HandSource::Scripted => "the script",
+            HandSource::Recorded => "the recorded motion",
+            HandSource::Crtk => "this host",
+        },
+        "lengths": lengths,
+        "nominal_tip": arm["contour"]["nominal_tip"],
+        "edges": arm["contour"]["edge"],
+        "springs": arm["contour"]["spring"],
+        "workspace_offset": or(&law["workspace_offset"], arm["contour"]["nominal_tip"].clone()),
+        "position_scale": or(&law["position_scale"], json!(1.0)),
+        "law": scenario.law.name(),
+        "laws": Law::NAMES,
+        "link": {
+            "round_trip": loaded.link.nominal_round_trip(bytes),
+            "jitter": deviation(up).max(deviation(down)),
+            "loss": up.mean_loss().max(down.mean_loss()),
+        },
+        "force_limit": scenario.master.force_limit,
+        // The hand's force is drawn as long as the contact's that it stands for.
+        "hand_arrow": 1.0 / law["force_scale"].as_f64().filter(|scale| *scale > 0.0).unwrap_or(1.0),
+    })
+}
+
+/// Largest deviation of a frame's delay, or one like it \[s\].
+fn deviation(channel: &ChannelConfig) -> f64 {
+    match channel.jitter {
+        None => 0.0,
+        Some(Jitter::Uniform { half_width }) => half_width,
+        Some(Jitter::Normal { deviation }) => 2.0 * deviation,
+        Some(Jitter::Exponential { mean }) => mean,
+    }
+}

@@ -1,0 +1,118 @@
+//! A row of the graph: all that the program has to know of a node.
+
+use super::Build;
+use crate::{
+    node::{Ports, Ticking},
+    process::{NodeError, ProcessContext, SessionContext},
+};
+
+/// Period of the servo loops, and least period of virtual time \[ns\].
+pub const STEP_NANOS: i64 = 1_000_000;
+
+/// Whether a node takes part, given what the session is made of.
+pub type When = fn(&SessionContext) -> bool;
+
+/// It always takes part.
+pub fn always(_: &SessionContext) -> bool {
+    true
+}
+
+/// It never takes part.
+pub fn never(_: &SessionContext) -> bool {
+    false
+}
+
+/// A node.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeRow {
+    /// On the command line and in `/diagnostics`; 24 bytes at most.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub about: &'static str,
+    /// From one step to the next \[ns\].
+    pub period_nanos: i64,
+    /// Whether its process asks for real-time priority before it makes the node.
+    pub realtime: bool,
+    /// Whether a session runs it; in virtual time too, if it is [`Make::Step`].
+    pub in_session: When,
+    /// Whether the playback of a recording runs it.
+    pub in_playback: When,
+    /// Whether a replay feeds it the recording anew and compares what it publishes.
+    pub in_replay: When,
+    /// What makes it.
+    pub make: Make,
+}
+
+/// What makes a node.
+#[derive(Clone, Copy, Debug)]
+pub enum Make {
+    /// Something that is stepped: in a process of its own or in virtual time.
+    Step {
+        /// Topics that it takes.
+        inputs: &'static [&'static str],
+        /// Topics that it publishes, beside `/diagnostics`.
+        outputs: &'static [&'static str],
+        /// Makes it.
+        make: fn(Build) -> Result<Box<dyn Ticking>, NodeError>,
+    },
+    /// A loop of its own, for as long as the process runs.
+    Service(fn(&ProcessContext) -> Result<(), NodeError>),
+}
+
+impl NodeRow {
+    /// A node of the control path: 1 kHz, real-time, in every session.
+    pub const fn step<P: Ports>(
+        name: &'static str,
+        about: &'static str,
+        make: fn(Build) -> Result<Box<dyn Ticking>, NodeError>,
+    ) -> NodeRow {
+        NodeRow {
+            name,
+            about,
+            period_nanos: STEP_NANOS,
+            realtime: true,
+            in_session: always,
+            in_playback: never,
+            in_replay: never,
+            make: Make::Step {
+                inputs: P::INPUTS,
+                outputs: P::OUTPUTS,
+                make,
+            },
+        }
+    }
+
+    /// A process beside the control path, in every session.
+    pub const fn service(
+        name: &'static str,
+        about: &'static str,
+        run: fn(&ProcessContext) -> Result<(), NodeError>,
+    ) -> NodeRow {
+        NodeRow {
+            name,
+            about,
+            period_nanos: STEP_NANOS,
+            realtime: false,
+            in_session: always,
+            in_playback: never,
+            in_replay: never,
+            make: Make::Service(run),
+        }
+    }
+
+    /// Topics that it takes; none of a service, which goes by the table of topics.
+    pub fn inputs(&self) -> &'static [&'static str] {
+        match self.make {
+            Make::Step { inputs, .. } => inputs,
+            Make::Service(_) => &[],
+        }
+    }
+
+    /// Topics that it publishes beside `/diagnostics`; none of a service.
+    pub fn outputs(&self) -> &'static [&'static str] {
+        match self.make {
+            Make::Step { outputs, .. } => outputs,
+            Make::Service(_) => &[],
+        }
+    }
+}

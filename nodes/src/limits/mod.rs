@@ -1,0 +1,129 @@
+//! Warns while the arm is still within its limits: a joint near the end of its
+//! range, a joint torque near the end of its sensor's, a joint that gets hot.
+//!
+//! Servo and estimator act on limits, and say so once they are reached; an
+//! operator who hears of them before can turn back. What is near stands on
+//! `/diagnostics` with the margin that is left. The node commands nothing.
+
+#[cfg(test)]
+mod tests;
+
+use ferntast_model::{ArmModel, joint::JointParameters};
+use ferntast_msgs::{
+    Text, Time,
+    sample::{JointSample, Level, TemperatureSample},
+};
+
+use crate::{
+    config::LimitsSection,
+    graph::Build,
+    node::{Node, Ticking, ports},
+    process::NodeError,
+};
+
+/// Measurements older than this \[s\] say nothing of where the arm is.
+const MEASUREMENT_LIFE: f64 = 0.1;
+
+ports! {
+    /// Topics of the node.
+    LimitsPorts for LimitsNode;
+    /// What it takes.
+    input LimitsInput {
+        measured_js: Newest<JointSample> = FOLLOWER_MEASURED_JS,
+        temperature_1: Newest<TemperatureSample> = FOLLOWER_JOINT_1_TEMPERATURE,
+        temperature_2: Newest<TemperatureSample> = FOLLOWER_JOINT_2_TEMPERATURE,
+    }
+    /// What it publishes: its health alone.
+    output LimitsOutput {}
+}
+
+/// The node of the graph.
+///
+/// # Errors
+///
+/// A topic that cannot be opened.
+pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
+    let loaded = &build.session.loaded;
+    // Run by hand it may have no section of the scenario.
+    let section = loaded.scenario.limits.unwrap_or_default();
+    let node = LimitsNode::new(&loaded.arm.model, section);
+    let ports = LimitsPorts::connect(build.bus)?;
+    build.join(node, ports)
+}
+
+/// Watches the arm's measurements against its limits.
+pub struct LimitsNode {
+    joints: Vec<JointParameters>,
+    section: LimitsSection,
+}
+
+impl LimitsNode {
+    /// A node that knows the arm's limits from `model`.
+    pub fn new(model: &ArmModel, section: LimitsSection) -> LimitsNode {
+        LimitsNode {
+            joints: model.joint.to_vec(),
+            section,
+        }
+    }
+
+    /// What is near at joint `index`, the worst last.
+    fn near(
+        &self,
+        index: usize,
+        sample: Option<&JointSample>,
+        temperature: Option<f64>,
+    ) -> [Option<Text<96>>; 3] {
+        let number = index + 1;
+        let limits = &self.joints[index];
+        let of = |values: Option<&[f64]>| values.and_then(|own| own.get(index)).copied();
+        let position = of(sample.map(|own| own.position.as_slice()));
+        let torque = of(sample.map(|own| own.effort.as_slice()));
+        let hot = temperature.filter(|own| *own > self.section.temperature);
+        let range = limits.torque_sensor_range;
+        let strained = torque.filter(|own| own.abs() > self.section.torque_share * range);
+        let margin = position.map(|own| {
+            let lower = own - limits.position_lower;
+            let upper = limits.position_upper - own;
+            lower.min(upper)
+        });
+        let margin = margin.filter(|own| *own < self.section.position_margin);
+        [
+            hot.map(|own| Text::display(format_args!("joint_{number} is at {own:.0} °C"))),
+            strained.map(|own| {
+                let own = own.abs();
+                Text::display(format_args!(
+                    "joint_{number} bears {own:.1} Nm, its sensor's range is {range:.1} Nm"
+                ))
+            }),
+            margin.map(|own| {
+                Text::display(format_args!(
+                    "joint_{number} is {own:.2} rad from the end of its range"
+                ))
+            }),
+        ]
+    }
+}
+
+impl Node for LimitsNode {
+    type Input = LimitsInput;
+    type Output = LimitsOutput;
+
+    fn step(&mut self, now: Time, input: &LimitsInput, output: &mut LimitsOutput) {
+        let health = &mut output.health;
+        let silence = input.measured_js.silence(now);
+        if silence.is_finite() {
+            health.input_age = silence;
+        }
+        let sample = input.measured_js.message.as_ref();
+        let sample = sample.filter(|_| silence <= MEASUREMENT_LIFE);
+        let temperatures = [&input.temperature_1, &input.temperature_2];
+        for index in 0..self.joints.len() {
+            let temperature = temperatures.get(index).and_then(|own| own.message);
+            let temperature = temperature.map(|own| own.temperature);
+            for words in self.near(index, sample, temperature).into_iter().flatten() {
+                health.level = health.level.max(Level::WARN);
+                health.message = words;
+            }
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! What every process of a session has: its clock, the loop that it runs, the
+//! signals that end it, and what it knows of the session.
+
+mod clock;
+mod context;
+mod error;
+pub mod periodic;
+mod session_context;
+mod signals;
+
+pub use clock::Clock;
+pub use context::ProcessContext;
+pub use error::NodeError;
+pub use session_context::{ConsoleOptions, ContextError, PlayOptions, SessionContext};
+pub use signals::stop_on_signals;

@@ -1,0 +1,110 @@
+//! Feeds a recording again through the nodes that can be replayed: servo,
+//! estimator and, if asked, a twin.
+
+mod check;
+mod recorded;
+
+use std::path::Path;
+
+use ferntast_bus::{CreateError, Depth};
+use ferntast_msgs::topics;
+use serde::Serialize;
+
+use crate::{
+    graph::{Graph, NodeRow},
+    lockstep::{RunError, VirtualTime},
+    process::SessionContext,
+    twin::TwinSummary,
+};
+
+use recorded::Recorded;
+
+/// Why a recording cannot be fed again.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// It cannot be opened.
+    #[error("{0}")]
+    Open(String),
+    /// It does not say what it was made of.
+    #[error(
+        "the recording does not say what it was made of ({0}); only recordings of `ferntast lockstep` can be fed again"
+    )]
+    Origin(String),
+    /// A topic cannot be opened.
+    #[error(transparent)]
+    Create(#[from] CreateError),
+    /// A node cannot be made.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// How the outputs compare.
+#[derive(Debug, Serialize)]
+pub struct Comparison {
+    /// Whether all were equal, bit for bit.
+    pub equal: bool,
+    /// Output messages compared.
+    pub compared: u64,
+    /// Messages that differ, are missing or are too many.
+    pub different: u64,
+    /// The first difference.
+    pub first_difference: Option<String>,
+    /// The twin's last word; `null` without one.
+    pub twin: Option<TwinSummary>,
+}
+
+/// Feeds the recording at `path` again through the nodes of `graph` that can
+/// be replayed, and through a twin of the experiment `twin`, and compares what
+/// they publish with what is recorded: of the twin only where one was recorded.
+///
+/// # Errors
+///
+/// A recording that cannot be opened, or that lockstep did not make; an
+/// experiment that cannot be followed.
+pub fn run(
+    graph: &Graph,
+    path: &Path,
+    twin: Option<&Path>,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Comparison, ReplayError> {
+    let recorded = Recorded::open(path)?;
+    let mut session = SessionContext::in_virtual_time(recorded.loaded()?);
+    session.twin = twin.map(Path::to_owned);
+    let rows: Vec<&NodeRow> = graph
+        .rows()
+        .filter(|row| (row.in_replay)(&session))
+        .collect();
+
+    let mut time = VirtualTime::new(recorded.start).map_err(RunError::from)?;
+    let mut carrier = recorded.inputs(&rows, time.bus())?;
+    time.add(move |now| {
+        carrier.carry(now);
+    });
+    time.add_nodes(rows.iter().copied(), &session)?;
+    let mut checks = check::checks(recorded.outputs(&rows), &recorded.bus, time.bus())?;
+    let mut said = time
+        .bus()
+        .subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?;
+
+    let mut result = Comparison {
+        equal: true,
+        compared: 0,
+        different: 0,
+        first_difference: None,
+        twin: None,
+    };
+    let duration = recorded.end.seconds_since(recorded.start).max(1e-9);
+    while time.now() <= recorded.end {
+        let now = time.tick();
+        for check in &mut checks {
+            check.check(now, &mut result);
+        }
+        if now.nanos_since(recorded.start) % 1_000_000_000 == 0 {
+            progress(now.seconds_since(recorded.start) / duration);
+        }
+    }
+    // What was published at the end is visible after it.
+    let last = said.newest(time.now());
+    result.twin = last.map(|own| TwinSummary::of(&own.message));
+    Ok(result)
+}
