@@ -9,6 +9,7 @@ pub mod delay;
 pub mod estimator;
 pub mod frame;
 pub mod haptics;
+pub mod link;
 pub mod meter;
 pub mod operating;
 pub mod playout;

@@ -1,24 +1,24 @@
 //! The arm's end of the link.
 
 use ferntast_control::{
-    delay::Motion,
-    frame::ArmingWatch,
-    operating::OperatingState,
-    switching::{FollowerSwitch, Laws},
+    link::{ESTIMATE_LIFE, FollowerLink, FollowerReadings},
+    switching::Laws,
 };
 use ferntast_msgs::{
-    Text, Time,
+    Time,
     sample::{
-        ContactStateSample, Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
+        ContactStateSample, Frame, LinkCommandSample, LinkEnd, LinkStatusSample,
         OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
 
-use super::{FrameInput, FrameOutput, end::End, transport::LinkNode, velocity::VelocityFilter};
+use super::{
+    FrameInput, FrameOutput,
+    readings::{operating_state, position},
+    status::{Status, report},
+    transport::LinkNode,
+};
 use crate::node::{Node, ports};
-
-/// An estimate older than this \[s\] is not sent.
-const ESTIMATE_LIFE: f64 = 0.010;
 
 ports! {
     /// The follower end's topics.
@@ -43,10 +43,8 @@ ports! {
 
 /// The arm's end of the link.
 pub struct FollowerLinkNode {
-    end: End,
-    law: FollowerSwitch,
-    velocity: VelocityFilter,
-    arming: ArmingWatch,
+    link: FollowerLink,
+    status: Status,
 }
 
 impl FollowerLinkNode {
@@ -54,10 +52,8 @@ impl FollowerLinkNode {
     /// Frames wait for up to `buffer` \[s\] to be played out evenly.
     pub fn new(laws: Laws, session: u16, buffer: f64) -> FollowerLinkNode {
         FollowerLinkNode {
-            end: End::new(LinkEnd::FOLLOWER, session, buffer),
-            law: FollowerSwitch::new(laws),
-            velocity: VelocityFilter::default(),
-            arming: ArmingWatch::default(),
+            link: FollowerLink::new(laws, session, buffer),
+            status: Status::new(LinkEnd::FOLLOWER, session),
         }
     }
 }
@@ -101,48 +97,25 @@ impl Node for FollowerLinkNode {
     type Output = FollowerLinkOutput;
 
     fn step(&mut self, now: Time, input: &FollowerLinkInput, output: &mut FollowerLinkOutput) {
-        if let Some(frame) = self.end.receive(now, &input.frames)
-            && self.arming.observe(frame.arming)
-        {
+        for (bytes, arrived) in input.frames.iter() {
+            self.link.arrived(bytes, arrived.nanos());
+        }
+        let readings = FollowerReadings {
+            tip: position(now, &input.measured_cp),
+            contact_force: contact_force(now, input),
+            state: operating_state(&input.operating_state),
+        };
+        let step = self.link.step(now.nanos(), &readings);
+        if step.rearm {
             output.state_command = Some(StateCommandSample::new(now, StateCommand::RESUME));
         }
-        let tip: Option<Motion> = input
-            .measured_cp
-            .message
-            .as_ref()
-            .map(|pose| self.velocity.step(pose))
-            .filter(|_| input.measured_cp.silence(now) <= ESTIMATE_LIFE);
-        let dt = self.end.elapsed(now);
-        let connected = self.end.connected(now);
-        let step = self.law.step(
-            dt,
-            tip,
-            contact_force(now, input),
-            self.end.newest(now),
-            connected,
-        );
-        if let Some(command) = step.command {
-            output.servo_cp = Some(PoseSample::at(now, Frame::FOLLOWER_BASE, command.position));
-        }
-        let state = input
-            .operating_state
-            .message
-            .and_then(|sample| OperatingState::from_code(sample.state.0))
-            .unwrap_or(OperatingState::Disabled);
-        self.end
-            .send(now, state, 0, step.outgoing, &mut output.frame);
-        output.status = self.end.status(
-            now,
-            self.law.name(),
-            self.law.energy(),
-            self.law.dissipated(),
-        );
-        let health = &mut output.health;
-        health.input_age = self.end.silence(now);
-        health.refused = self.end.refused(now);
-        if !connected {
-            health.raise(Fault::LinkDown, Level::WARN);
-            health.message = Text::new("no frames from the operator's end");
-        }
+        output.servo_cp = step
+            .command
+            .map(|tip| PoseSample::at(now, Frame::FOLLOWER_BASE, tip.position));
+        output.frame.frame = step.frame;
+        let state = self.link.state(now.nanos());
+        output.status = self.status.step(now, &state);
+        let silent = "no frames from the operator's end";
+        report(&state, silent, &mut output.health);
     }
 }

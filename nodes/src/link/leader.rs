@@ -1,8 +1,8 @@
 //! The operator's end of the link.
 
 use ferntast_control::{
-    operating::OperatingState,
-    switching::{self, Laws, LeaderSwitch},
+    link::{LeaderLink, LeaderReadings},
+    switching::{self, Laws},
 };
 use ferntast_msgs::{
     Text, Time,
@@ -12,12 +12,13 @@ use ferntast_msgs::{
     },
 };
 
-use super::{FrameInput, FrameOutput, end::End, transport::LinkNode, velocity::VelocityFilter};
+use super::{
+    FrameInput, FrameOutput,
+    readings::{operating_state, position},
+    status::{Status, report},
+    transport::LinkNode,
+};
 use crate::node::{Node, ports};
-
-/// A hand older than this \[s\] is not sent on: it would only be repeated, and
-/// the arm's watchdog has to see at once that the hand is silent.
-const HAND_LIFE: f64 = 0.004;
 
 ports! {
     /// The leader end's topics.
@@ -41,11 +42,8 @@ ports! {
 
 /// The operator's end of the link.
 pub struct LeaderLinkNode {
-    end: End,
-    law: LeaderSwitch,
-    velocity: VelocityFilter,
-    /// Counts the operator's wishes to re-arm.
-    arming: u8,
+    link: LeaderLink,
+    status: Status,
     /// A law that was asked for and is not there.
     unknown_law: Option<Text<24>>,
 }
@@ -55,10 +53,8 @@ impl LeaderLinkNode {
     /// Frames wait for up to `buffer` \[s\] to be played out evenly.
     pub fn new(laws: Laws, session: u16, buffer: f64) -> LeaderLinkNode {
         LeaderLinkNode {
-            end: End::new(LinkEnd::LEADER, session, buffer),
-            law: LeaderSwitch::new(laws),
-            velocity: VelocityFilter::default(),
-            arming: 0,
+            link: LeaderLink::new(laws, session, buffer),
+            status: Status::new(LinkEnd::LEADER, session),
             unknown_law: None,
         }
     }
@@ -85,54 +81,33 @@ impl Node for LeaderLinkNode {
     fn step(&mut self, now: Time, input: &LeaderLinkInput, output: &mut LeaderLinkOutput) {
         for sample in input.state_command.iter() {
             if sample.command == StateCommand::RESUME {
-                self.arming = self.arming.wrapping_add(1);
+                self.link.rearm();
             }
         }
         for sample in input.law_command.iter() {
             let known = switching::code(sample.law.as_str());
-            let taken = known.is_some_and(|code| self.law.switch_to(code));
+            let taken = known.is_some_and(|code| self.link.switch_to(code));
             self.unknown_law = (!taken).then_some(sample.law);
         }
-        self.end.receive(now, &input.frames);
-        let hand = input.setpoint_cp.message.as_ref().map(|pose| {
-            let motion = self.velocity.step(pose);
-            (motion, input.setpoint_cp.silence(now) <= HAND_LIFE)
-        });
-        let dt = self.end.elapsed(now);
-        let connected = self.end.connected(now);
-        let step = self.law.step(
-            dt,
-            hand.filter(|(_, valid)| *valid).map(|(motion, _)| motion),
-            self.end.newest(now),
-            connected,
-        );
+        for (bytes, arrived) in input.frames.iter() {
+            self.link.arrived(bytes, arrived.nanos());
+        }
+        let readings = LeaderReadings {
+            hand: position(now, &input.setpoint_cp),
+            state: operating_state(&input.operating_state),
+        };
+        let step = self.link.step(now.nanos(), &readings);
         output.reflected_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
-        let state = input
-            .operating_state
-            .message
-            .and_then(|sample| OperatingState::from_code(sample.state.0))
-            .unwrap_or(OperatingState::Disabled);
-        self.end
-            .send(now, state, self.arming, step.outgoing, &mut output.frame);
-        output.status = self.end.status(
-            now,
-            self.law.name(),
-            self.law.energy(),
-            self.law.dissipated(),
-        );
-        let health = &mut output.health;
-        health.input_age = self.end.silence(now);
-        health.refused = self.end.refused(now);
+        output.frame.frame = step.frame;
+        let state = self.link.state(now.nanos());
+        output.status = self.status.step(now, &state);
         if let Some(law) = &self.unknown_law {
-            health.raise(Fault::CommandInvalid, Level::WARN);
-            health.message = Text::display(format_args!(
+            output.health.raise(Fault::CommandInvalid, Level::WARN);
+            output.health.message = Text::display(format_args!(
                 "/link/law_command: no law {:?} here",
                 law.as_str()
             ));
         }
-        if !connected {
-            health.raise(Fault::LinkDown, Level::WARN);
-            health.message = Text::new("no frames from the arm's end");
-        }
+        report(&state, "no frames from the arm's end", &mut output.health);
     }
 }

@@ -1,16 +1,17 @@
 //! The two ends of the link as nodes.
 //!
-//! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz.
-//! Frames come in through the channel emulator ([`transport`]), whose way out
-//! is the moment of arrival.
+//! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz. What an
+//! end does is in [`ferntast_control::link`]; here are its
+//! topics. Frames come in through the channel emulator ([`transport`]), whose way
+//! out is the moment of arrival.
 
-mod end;
 mod follower;
 mod leader;
+mod readings;
+mod status;
 #[cfg(test)]
 mod tests;
 pub mod transport;
-mod velocity;
 
 use ferntast_bus::frames::LinkDirection;
 

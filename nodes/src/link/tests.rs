@@ -1,311 +1,33 @@
-//! What comes in over the link is judged before anything is done with it.
+//! What an end counts comes out as a message.
 
-use ferntast_control::meter::RefusedCounts;
-use ferntast_control::{
-    delay::{Law, Packet},
-    frame::{self, FRAME_LENGTH, Frame},
-    operating::OperatingState,
-    switching::Laws,
-};
-use ferntast_msgs::Time;
-use proptest::prelude::*;
+use ferntast_control::{delay::Law, switching::Laws};
+use ferntast_msgs::{Time, sample::LinkEnd};
 
-use super::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, transport::FrameInput};
+use super::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FrameInput};
 use crate::node::{Node, Output};
 
-const SESSION: u16 = 7;
-const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
-const TICK_NANOS: i64 = 1_000_000;
-
-/// The arm's end, fed with bytes.
-struct Rig {
-    node: FollowerLinkNode,
-    now: Time,
-    sequence: u32,
-    refused: RefusedCounts,
-    received: u64,
-}
-
-impl Rig {
-    fn new() -> Rig {
-        Rig::with_buffer(0.0)
-    }
-
-    fn with_buffer(buffer: f64) -> Rig {
-        Rig {
-            node: FollowerLinkNode::new(Laws::new(Law::default()), SESSION, buffer),
-            now: START,
-            sequence: 0,
-            refused: RefusedCounts::default(),
-            received: 0,
-        }
-    }
-
-    /// The next good frame, sent now.
-    fn good(&mut self) -> Frame {
-        self.sequence += 1;
-        Frame {
-            session: SESSION,
-            sequence: self.sequence,
-            sent_ns: self.now.nanos(),
-            echo: None,
-            hold: false,
-            state: OperatingState::Enabled,
-            arming: 0,
-            law: 0,
-            packet: Packet {
-                valid: true,
-                position: [0.01, 0.02, 0.0],
-                ..Packet::default()
-            },
-        }
-    }
-
-    /// One step with `frames`; whether the arm was commanded.
-    fn step(&mut self, frames: &[&[u8]]) -> bool {
-        let input = FollowerLinkInput {
-            frames: FrameInput::of(frames, self.now),
-            ..FollowerLinkInput::default()
-        };
-        let mut output = FollowerLinkOutput::default();
-        output.clear();
-        self.node.step(self.now, &input, &mut output);
-        self.now = self.now.plus_nanos(TICK_NANOS);
-        if let Some(status) = output.status {
-            self.refused = RefusedCounts {
-                length: status.refused_length,
-                version: status.refused_version,
-                session: status.refused_session,
-                checksum: status.refused_checksum,
-                time: status.refused_time,
-                value: status.refused_value,
-                replayed: status.refused_replayed,
-                late: status.refused_late,
-            };
-            self.received = status.received;
-        }
-        let command = output.servo_cp;
-        assert!(command.is_none_or(|own| own.position.iter().all(|x| x.is_finite())));
-        command.is_some()
-    }
-
-    /// Refused so far; the status comes every 10 ms.
-    fn counts(&mut self) -> RefusedCounts {
-        for _ in 0..12 {
-            self.step(&[]);
-        }
-        self.refused
-    }
-}
-
-fn bytes(frame: &Frame) -> [u8; FRAME_LENGTH] {
-    let mut bytes = [0; FRAME_LENGTH];
-    frame::encode(frame, &mut bytes);
-    bytes
-}
-
-/// With a checksum that is right again.
-fn sealed(mut bytes: [u8; FRAME_LENGTH]) -> [u8; FRAME_LENGTH] {
-    let end = FRAME_LENGTH - 4;
-    let checksum = crc32(&bytes[..end]);
-    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
-    bytes
-}
-
-/// CRC-32 of IEEE 802.3, bit by bit.
-fn crc32(bytes: &[u8]) -> u32 {
-    let mut register = u32::MAX;
-    for byte in bytes {
-        register ^= u32::from(*byte);
-        for _ in 0..8 {
-            let carry = register & 1;
-            register = (register >> 1) ^ (0xedb8_8320 * carry);
-        }
-    }
-    !register
-}
-
 #[test]
-fn good_frames_are_acted_on() {
-    let mut rig = Rig::new();
-    let frame = rig.good();
-    assert!(rig.step(&[&bytes(&frame)]));
-    assert!(!rig.step(&[]), "nothing is repeated");
-    assert_eq!(rig.counts(), RefusedCounts::default());
-}
-
-#[test]
-fn each_kind_of_bad_frame_is_counted_and_never_acted_on() {
-    type Spoil = fn(&mut Rig) -> Vec<u8>;
-    type Count = fn(&RefusedCounts) -> u64;
-    let kinds: [(&str, Spoil, Count); 9] = [
-        (
-            "short",
-            |rig| bytes(&rig.good())[..59].to_vec(),
-            |own| own.length,
-        ),
-        (
-            "long",
-            |rig| [&bytes(&rig.good())[..], &[0]].concat(),
-            |own| own.length,
-        ),
-        (
-            "damaged",
-            |rig| {
-                let mut bytes = bytes(&rig.good());
-                bytes[30] ^= 0x10;
-                bytes.to_vec()
-            },
-            |own| own.checksum,
-        ),
-        (
-            "version",
-            |rig| {
-                let mut bytes = bytes(&rig.good());
-                bytes[0] = 2;
-                sealed(bytes).to_vec()
-            },
-            |own| own.version,
-        ),
-        (
-            "session",
-            |rig| {
-                bytes(&Frame {
-                    session: 8,
-                    ..rig.good()
-                })
-                .to_vec()
-            },
-            |own| own.session,
-        ),
-        (
-            "future",
-            |rig| {
-                let good = rig.good();
-                let sent_ns = good.sent_ns + 60_000_000;
-                bytes(&Frame { sent_ns, ..good }).to_vec()
-            },
-            |own| own.time,
-        ),
-        (
-            "past",
-            |rig| {
-                let good = rig.good();
-                let sent_ns = good.sent_ns - 11_000_000_000;
-                bytes(&Frame { sent_ns, ..good }).to_vec()
-            },
-            |own| own.time,
-        ),
-        (
-            "not a number",
-            |rig| {
-                let mut good = rig.good();
-                good.packet.position[1] = f32::NAN;
-                bytes(&good).to_vec()
-            },
-            |own| own.value,
-        ),
-        (
-            "out of range",
-            |rig| {
-                let mut good = rig.good();
-                good.packet.energy[0] = 1e10;
-                bytes(&good).to_vec()
-            },
-            |own| own.value,
-        ),
-    ];
-    for (what, spoil, count) in kinds {
-        let mut rig = Rig::new();
-        let first = rig.good();
-        assert!(rig.step(&[&bytes(&first)]), "{what}");
-        let bad = spoil(&mut rig);
-        assert!(!rig.step(&[&bad]), "{what} was acted on");
-        let counts = rig.counts();
-        assert_eq!(count(&counts), 1, "{what}: {counts:?}");
-        let frame = rig.good();
-        assert!(rig.step(&[&bytes(&frame)]), "{what}: good frames go on");
-        assert_eq!(rig.counts(), counts, "{what}");
-    }
-}
-
-#[test]
-fn what_was_there_before_or_was_overtaken_is_not_acted_on() {
-    let mut rig = Rig::new();
-    let [one, two, three] = [rig.good(), rig.good(), rig.good()].map(|own| bytes(&own));
-    assert!(rig.step(&[&one, &three]));
-    assert!(!rig.step(&[&two]), "overtaken");
-    assert!(!rig.step(&[&three]), "again");
-    assert!(!rig.step(&[&one, &two, &three]), "a recording of all of it");
-    let counts = rig.counts();
-    assert_eq!((counts.late, counts.replayed), (1, 4), "{counts:?}");
-}
-
-#[test]
-fn a_buffer_lets_overtaken_frames_fall_into_place() {
-    let mut rig = Rig::with_buffer(0.005);
-    let mut commanded = 0;
-    // Frames two by two, each pair in the wrong order.
-    for _ in 0..20 {
-        let one = bytes(&rig.good());
-        rig.now = rig.now.plus_nanos(TICK_NANOS);
-        let two = bytes(&rig.good());
-        rig.now = rig.now.plus_nanos(2 * TICK_NANOS);
-        commanded += usize::from(rig.step(&[&two]));
-        commanded += usize::from(rig.step(&[&one]));
-    }
-    for _ in 0..10 {
-        commanded += usize::from(rig.step(&[]));
-    }
-    // All but those whose time fell between two steps with another's.
-    assert!((20..=40).contains(&commanded), "{commanded}");
-}
-
-#[test]
-fn a_law_that_is_not_known_commands_nothing() {
-    let mut rig = Rig::new();
-    let frame = Frame {
-        law: 15,
-        ..rig.good()
+fn the_status_says_every_10_ms_what_was_refused() {
+    let mut node = FollowerLinkNode::new(Laws::new(Law::default()), 7, 0.0);
+    let input = FollowerLinkInput {
+        frames: FrameInput::of(&[&[0; 60], &[0; 59]], Time::from_nanos(1)),
+        ..FollowerLinkInput::default()
     };
-    assert!(!rig.step(&[&bytes(&frame)]));
-    let frame = rig.good();
-    assert!(rig.step(&[&bytes(&frame)]));
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
-
-    #[test]
-    fn whatever_comes_in_is_counted_once(
-        spoils in proptest::collection::vec(
-            (0..6u8, proptest::collection::vec(any::<u8>(), 0..100), 0..FRAME_LENGTH, any::<u8>()),
-            1..60,
-        ),
-    ) {
-        let mut rig = Rig::new();
-        let mut sent = 0;
-        let mut last = bytes(&rig.good());
-        for (kind, garbage, place, value) in spoils {
-            let good = bytes(&rig.good());
-            let mut spoiled = good;
-            spoiled[place] = value;
-            let (frame, harmless): (Vec<u8>, bool) = match kind {
-                0 => (garbage, false),
-                1 => (good[..place].to_vec(), false),
-                2 => (sealed(spoiled).to_vec(), true),
-                3 => (spoiled.to_vec(), spoiled == good),
-                4 => (last.to_vec(), true),
-                _ => (good.to_vec(), true),
-            };
-            last = good;
-            sent += 1;
-            let acted = rig.step(&[&frame]);
-            prop_assert!(harmless || !acted, "{frame:?} was acted on");
-        }
-        let counts = rig.counts();
-        let refused = counts.length + counts.version + counts.session + counts.checksum
-            + counts.time + counts.value + counts.replayed + counts.late;
-        prop_assert_eq!(refused + rig.received, sent);
+    let mut output = FollowerLinkOutput::default();
+    let mut told = Vec::new();
+    for tick in 0..21 {
+        output.clear();
+        let now = Time::from_nanos(1_700_000_000_000_000_000 + tick * 1_000_000);
+        node.step(now, &input, &mut output);
+        told.extend(output.status);
     }
+    assert_eq!(told.len(), 3);
+    let last = told[2];
+    assert_eq!((last.refused_checksum, last.refused_length), (21, 21));
+    assert_eq!(
+        (last.end, last.session, last.connected),
+        (LinkEnd::FOLLOWER, 7, 0)
+    );
+    assert_eq!(last.law.as_str(), Law::default().name());
+    assert_eq!(output.health.refused, 42);
 }

@@ -2,16 +2,14 @@
 //! channels, a tip behind its servo, and something to touch.
 //!
 //! One trial is one task of an operator: reach, press, slide, come back
-//! ([`Trial`]); its [`Outcome`] says how law and link served. The laws are those
-//! of a session, the frames and what drops them too; so what is measured here
-//! is what the nodes run. Time is counted in ticks of 1 ms; the same trial gives
+//! ([`Trial`]); its [`Outcome`] says how law and link served. The two ends are
+//! those that the nodes of a session run ([`ferntast_control::link`]). Time is counted in ticks of 1 ms; the same trial gives
 //! the same outcome.
 //!
 //! Axes: x into the surface, y along it. Positions and forces of the outcome
 //! are at the hand's scale.
 
 mod environment;
-mod line;
 mod task;
 mod tip;
 mod watch;
@@ -19,14 +17,17 @@ mod watch;
 pub use environment::Environment;
 pub use tip::TipParameters;
 
-use ferntast_control::delay::{
-    Energy, FollowerEnd, FollowerInput, Law, LeaderEnd, LeaderInput, Motion, Received,
-};
+use ferntast_control::delay::{Energy, EnergyMeter, Law};
 use ferntast_control::frame::FRAME_LENGTH;
-use ferntast_emulation::channel::LinkConfig;
+use ferntast_control::link::{
+    FollowerLink, FollowerReadings, FollowerStep, LeaderLink, LeaderReadings, LeaderStep,
+    StampedPosition,
+};
+use ferntast_control::operating::OperatingState;
+use ferntast_control::switching::Laws;
+use ferntast_emulation::channel::{Channel, LinkConfig};
 use ferntast_emulation::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_model::ParameterError;
-use line::Line;
 use task::Schedule;
 use tip::Tip;
 use watch::{Tick, Watch};
@@ -34,16 +35,12 @@ use watch::{Tick, Watch};
 /// One tick \[s\].
 pub const TICK: f64 = 1e-3;
 const TICK_NS: i64 = 1_000_000;
-/// Frames are sent in every second tick: 500 Hz.
-const TICKS_A_FRAME: i64 = 2;
 /// Time of the first tick [ns].
 const START_NS: i64 = 1_000_000_000_000_000;
-/// The other end counts as connected while its newest frame is younger [s].
-const CONNECTED: f64 = 0.1;
+/// Identity of the session in frames.
+const SESSION: u16 = 1;
 /// Hand and tip reach no further from the surface than this [m].
 const WORKSPACE: f64 = 0.5;
-/// Time constant of the velocities that the laws are given [s].
-const VELOCITY_FILTER: f64 = 0.005;
 
 /// What is tried.
 #[derive(Clone, Debug, PartialEq)]
@@ -191,31 +188,16 @@ impl Moment {
     }
 }
 
-/// A velocity as the nodes take it from positions.
-#[derive(Clone, Copy, Debug, Default)]
-struct Filtered([f64; 2]);
-
-impl Filtered {
-    fn step(&mut self, velocity: [f64; 2]) -> [f64; 3] {
-        let share = TICK / (TICK + VELOCITY_FILTER);
-        for (own, new) in self.0.iter_mut().zip(velocity) {
-            *own += share * (new - *own);
-        }
-        [self.0[0], self.0[1], 0.0]
-    }
-}
-
 struct Run<'a> {
     law: &'a Law,
     schedule: Schedule,
-    leader: LeaderEnd,
-    follower: FollowerEnd,
-    up: Line,
-    down: Line,
+    leader: LeaderLink,
+    follower: FollowerLink,
+    up: Channel,
+    down: Channel,
     hand: HandImpedance,
-    hand_velocity: Filtered,
     tip: Tip,
-    tip_velocity: Filtered,
+    ports: Ports,
     /// On the hand since the last tick [N].
     felt: [f64; 2],
     /// Where the tip is told to be [m].
@@ -227,17 +209,17 @@ impl<'a> Run<'a> {
         let start = schedule.start();
         let scale = trial.law.mapping().position_scale;
         let tip = [scale * start[0], scale * start[1]];
+        let laws = || Laws::new(trial.law.clone());
         Ok(Run {
             law: &trial.law,
             schedule,
-            leader: trial.law.leader(),
-            follower: trial.law.follower(),
-            up: Line::new(trial.link.up.clone(), trial.buffer, trial.seed)?,
-            down: Line::new(trial.link.down.clone(), trial.buffer, !trial.seed)?,
+            leader: LeaderLink::new(laws(), SESSION, trial.buffer),
+            follower: FollowerLink::new(laws(), SESSION, trial.buffer),
+            up: Channel::new(trial.link.up.clone(), trial.seed)?,
+            down: Channel::new(trial.link.down.clone(), !trial.seed)?,
             hand: HandImpedance::new(trial.hand, start),
-            hand_velocity: Filtered::default(),
             tip: Tip::new(trial.tip, trial.environment, tip),
-            tip_velocity: Filtered::default(),
+            ports: Ports::default(),
             felt: [0.0; 2],
             command: tip,
         })
@@ -253,38 +235,16 @@ impl<'a> Run<'a> {
         let since = time - self.schedule.wall;
         self.tip.step(TICK, since, self.command);
 
-        let connected =
-            |received: Option<Received>| received.is_some_and(|own| own.silence <= CONNECTED);
-        let hand = self.hand.position();
-        let received = self.down.receive(now_ns);
-        let output = self.leader.step(
-            TICK,
-            &LeaderInput {
-                hand: Some(Motion {
-                    position: [hand[0], hand[1], 0.0],
-                    velocity: self.hand_velocity.step(self.hand.velocity()),
-                }),
-                received,
-                connected: connected(received),
-            },
-        );
-        let tip = self.tip.position;
-        let received = self.up.receive(now_ns);
-        let answer = self.follower.step(
-            TICK,
-            &FollowerInput {
-                tip: Some(Motion {
-                    position: [offset[0] + tip[0], offset[1] + tip[1], offset[2]],
-                    velocity: self.tip_velocity.step(self.tip.velocity),
-                }),
-                contact_force: Some([self.tip.force[0], self.tip.force[1], 0.0]),
-                received,
-                connected: connected(received),
-            },
-        );
-        if k % TICKS_A_FRAME == 0 {
-            self.up.send(now_ns, output.packet);
-            self.down.send(now_ns, answer.packet);
+        let (hand, tip) = (self.hand.position(), self.tip.position);
+        self.ports.step(hand, self.felt, tip, self.tip.force);
+
+        let output = self.leader_step(now_ns, hand);
+        let answer = self.follower_step(now_ns, tip);
+        if let Some(frame) = output.frame {
+            self.up.push(now_ns, &frame);
+        }
+        if let Some(frame) = answer.frame {
+            self.down.push(now_ns, &frame);
         }
         self.felt = [output.force[0], output.force[1]];
         if let Some(command) = answer.command {
@@ -293,7 +253,7 @@ impl<'a> Run<'a> {
             });
         }
         let scaled = |own: [f64; 2], scale: f64| [scale * own[0], scale * own[1]];
-        let (leader, follower) = (self.leader.energy(), self.follower.energy());
+        let (leader, follower) = (self.ports.leader.energy(), self.ports.follower.energy());
         Moment {
             tick: Tick {
                 time,
@@ -307,6 +267,70 @@ impl<'a> Run<'a> {
             leader,
             follower,
         }
+    }
+
+    fn leader_step(&mut self, now_ns: i64, hand: [f64; 2]) -> LeaderStep {
+        deliver(&mut self.down, now_ns, |bytes, at_ns| {
+            self.leader.arrived(bytes, at_ns);
+        });
+        let readings = LeaderReadings {
+            hand: Some(measured(now_ns, [hand[0], hand[1], 0.0])),
+            state: OperatingState::Enabled,
+        };
+        self.leader.step(now_ns, &readings)
+    }
+
+    fn follower_step(&mut self, now_ns: i64, tip: [f64; 2]) -> FollowerStep {
+        deliver(&mut self.up, now_ns, |bytes, at_ns| {
+            self.follower.arrived(bytes, at_ns);
+        });
+        let offset = self.law.mapping().workspace_offset;
+        let tip = [offset[0] + tip[0], offset[1] + tip[1], offset[2]];
+        let readings = FollowerReadings {
+            tip: Some(measured(now_ns, tip)),
+            contact_force: Some([self.tip.force[0], self.tip.force[1], 0.0]),
+            state: OperatingState::Enabled,
+        };
+        self.follower.step(now_ns, &readings)
+    }
+}
+
+/// A position as it was measured now.
+fn measured(now_ns: i64, position: [f64; 3]) -> StampedPosition {
+    StampedPosition {
+        stamp_ns: now_ns,
+        position,
+        silence: 0.0,
+    }
+}
+
+/// What is on its way through `channel` arrives.
+fn deliver(channel: &mut Channel, now_ns: i64, mut arrived: impl FnMut(&[u8], i64)) {
+    let mut bytes = [0; FRAME_LENGTH];
+    while let Some((length, at_ns)) = channel.pop(now_ns, &mut bytes) {
+        arrived(&bytes[..length.min(FRAME_LENGTH)], at_ns);
+    }
+}
+
+/// Energy at both ports, measured from outside: the laws do not count for themselves.
+#[derive(Debug, Default)]
+struct Ports {
+    leader: EnergyMeter,
+    follower: EnergyMeter,
+    /// Of the contact on the tip, one tick ago [N].
+    touched: [f64; 2],
+}
+
+impl Ports {
+    /// `felt` acted on the hand since the last tick, and the contact's force
+    /// changed to `touched` on the way: its mean did the work.
+    fn step(&mut self, hand: [f64; 2], felt: [f64; 2], tip: [f64; 2], touched: [f64; 2]) {
+        let space = |own: [f64; 2]| [own[0], own[1], 0.0];
+        let against = space(felt.map(|force| -force));
+        self.leader.step(against, Some(space(hand)));
+        let mean = [0, 1].map(|axis: usize| 0.5 * (touched[axis] + self.touched[axis]));
+        self.follower.step(space(mean), Some(space(tip)));
+        self.touched = touched;
     }
 }
 

@@ -1,0 +1,287 @@
+//! What comes in over the link is judged before anything is done with it.
+
+use super::*;
+use crate::delay::{Law, Packet};
+use crate::frame::{self, FRAME_LENGTH, Frame};
+use crate::meter::RefusedCounts;
+use crate::operating::OperatingState;
+use crate::switching::Laws;
+use proptest::prelude::*;
+
+const SESSION: u16 = 7;
+const START_NS: i64 = 1_700_000_000_000_000_000;
+const TICK_NS: i64 = 1_000_000;
+
+/// The arm's end, fed with bytes.
+struct Rig {
+    link: FollowerLink,
+    now_ns: i64,
+    sequence: u32,
+}
+
+impl Rig {
+    fn new() -> Rig {
+        Rig::with_buffer(0.0)
+    }
+
+    fn with_buffer(buffer: f64) -> Rig {
+        Rig {
+            link: FollowerLink::new(Laws::new(Law::default()), SESSION, buffer),
+            now_ns: START_NS,
+            sequence: 0,
+        }
+    }
+
+    /// The next good frame, sent now.
+    fn good(&mut self) -> Frame {
+        self.sequence += 1;
+        Frame {
+            session: SESSION,
+            sequence: self.sequence,
+            sent_ns: self.now_ns,
+            echo: None,
+            hold: false,
+            state: OperatingState::Enabled,
+            arming: 0,
+            law: 0,
+            packet: Packet {
+                valid: true,
+                position: [0.01, 0.02, 0.0],
+                ..Packet::default()
+            },
+        }
+    }
+
+    /// One step with `frames`; whether the arm was commanded.
+    fn step(&mut self, frames: &[&[u8]]) -> bool {
+        for bytes in frames {
+            self.link.arrived(bytes, self.now_ns);
+        }
+        let readings = FollowerReadings {
+            tip: None,
+            contact_force: None,
+            state: OperatingState::Enabled,
+        };
+        let command = self.link.step(self.now_ns, &readings).command;
+        self.now_ns += TICK_NS;
+        assert!(command.is_none_or(|own| own.position.iter().all(|x| x.is_finite())));
+        command.is_some()
+    }
+
+    fn counts(&mut self) -> RefusedCounts {
+        self.link.state(self.now_ns).measured.refused
+    }
+
+    fn received(&mut self) -> u64 {
+        self.link.state(self.now_ns).measured.received
+    }
+}
+
+fn bytes(frame: &Frame) -> [u8; FRAME_LENGTH] {
+    let mut bytes = [0; FRAME_LENGTH];
+    frame::encode(frame, &mut bytes);
+    bytes
+}
+
+/// With a checksum that is right again.
+fn sealed(mut bytes: [u8; FRAME_LENGTH]) -> [u8; FRAME_LENGTH] {
+    let end = FRAME_LENGTH - 4;
+    let checksum = crc32(&bytes[..end]);
+    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    bytes
+}
+
+/// CRC-32 of IEEE 802.3, bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let mut register = u32::MAX;
+    for byte in bytes {
+        register ^= u32::from(*byte);
+        for _ in 0..8 {
+            let carry = register & 1;
+            register = (register >> 1) ^ (0xedb8_8320 * carry);
+        }
+    }
+    !register
+}
+
+#[test]
+fn good_frames_are_acted_on() {
+    let mut rig = Rig::new();
+    let frame = rig.good();
+    assert!(rig.step(&[&bytes(&frame)]));
+    assert!(!rig.step(&[]), "nothing is repeated");
+    assert_eq!(rig.counts(), RefusedCounts::default());
+}
+
+#[test]
+fn each_kind_of_bad_frame_is_counted_and_never_acted_on() {
+    type Spoil = fn(&mut Rig) -> Vec<u8>;
+    type Count = fn(&RefusedCounts) -> u64;
+    let kinds: [(&str, Spoil, Count); 9] = [
+        (
+            "short",
+            |rig| bytes(&rig.good())[..59].to_vec(),
+            |own| own.length,
+        ),
+        (
+            "long",
+            |rig| [&bytes(&rig.good())[..], &[0]].concat(),
+            |own| own.length,
+        ),
+        (
+            "damaged",
+            |rig| {
+                let mut bytes = bytes(&rig.good());
+                bytes[30] ^= 0x10;
+                bytes.to_vec()
+            },
+            |own| own.checksum,
+        ),
+        (
+            "version",
+            |rig| {
+                let mut bytes = bytes(&rig.good());
+                bytes[0] = 2;
+                sealed(bytes).to_vec()
+            },
+            |own| own.version,
+        ),
+        (
+            "session",
+            |rig| {
+                bytes(&Frame {
+                    session: 8,
+                    ..rig.good()
+                })
+                .to_vec()
+            },
+            |own| own.session,
+        ),
+        (
+            "future",
+            |rig| {
+                let good = rig.good();
+                let sent_ns = good.sent_ns + 60_000_000;
+                bytes(&Frame { sent_ns, ..good }).to_vec()
+            },
+            |own| own.time,
+        ),
+        (
+            "past",
+            |rig| {
+                let good = rig.good();
+                let sent_ns = good.sent_ns - 11_000_000_000;
+                bytes(&Frame { sent_ns, ..good }).to_vec()
+            },
+            |own| own.time,
+        ),
+        (
+            "not a number",
+            |rig| {
+                let mut good = rig.good();
+                good.packet.position[1] = f32::NAN;
+                bytes(&good).to_vec()
+            },
+            |own| own.value,
+        ),
+        (
+            "out of range",
+            |rig| {
+                let mut good = rig.good();
+                good.packet.energy[0] = 1e10;
+                bytes(&good).to_vec()
+            },
+            |own| own.value,
+        ),
+    ];
+    for (what, spoil, count) in kinds {
+        let mut rig = Rig::new();
+        let first = rig.good();
+        assert!(rig.step(&[&bytes(&first)]), "{what}");
+        let bad = spoil(&mut rig);
+        assert!(!rig.step(&[&bad]), "{what} was acted on");
+        let counts = rig.counts();
+        assert_eq!(count(&counts), 1, "{what}: {counts:?}");
+        let frame = rig.good();
+        assert!(rig.step(&[&bytes(&frame)]), "{what}: good frames go on");
+        assert_eq!(rig.counts(), counts, "{what}");
+    }
+}
+
+#[test]
+fn what_was_there_before_or_was_overtaken_is_not_acted_on() {
+    let mut rig = Rig::new();
+    let [one, two, three] = [rig.good(), rig.good(), rig.good()].map(|own| bytes(&own));
+    assert!(rig.step(&[&one, &three]));
+    assert!(!rig.step(&[&two]), "overtaken");
+    assert!(!rig.step(&[&three]), "again");
+    assert!(!rig.step(&[&one, &two, &three]), "a recording of all of it");
+    let counts = rig.counts();
+    assert_eq!((counts.late, counts.replayed), (1, 4), "{counts:?}");
+}
+
+#[test]
+fn a_buffer_lets_overtaken_frames_fall_into_place() {
+    let mut rig = Rig::with_buffer(0.005);
+    let mut commanded = 0;
+    // Frames two by two, each pair in the wrong order.
+    for _ in 0..20 {
+        let one = bytes(&rig.good());
+        rig.now_ns += TICK_NS;
+        let two = bytes(&rig.good());
+        rig.now_ns += 2 * TICK_NS;
+        commanded += usize::from(rig.step(&[&two]));
+        commanded += usize::from(rig.step(&[&one]));
+    }
+    for _ in 0..10 {
+        commanded += usize::from(rig.step(&[]));
+    }
+    // All but those whose time fell between two steps with another's.
+    assert!((20..=40).contains(&commanded), "{commanded}");
+}
+
+#[test]
+fn a_law_that_is_not_known_commands_nothing() {
+    let mut rig = Rig::new();
+    let frame = Frame {
+        law: 15,
+        ..rig.good()
+    };
+    assert!(!rig.step(&[&bytes(&frame)]));
+    let frame = rig.good();
+    assert!(rig.step(&[&bytes(&frame)]));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn whatever_comes_in_is_counted_once(
+        spoils in proptest::collection::vec(
+            (0..6u8, proptest::collection::vec(any::<u8>(), 0..100), 0..FRAME_LENGTH, any::<u8>()),
+            1..60,
+        ),
+    ) {
+        let mut rig = Rig::new();
+        let mut sent = 0;
+        let mut last = bytes(&rig.good());
+        for (kind, garbage, place, value) in spoils {
+            let good = bytes(&rig.good());
+            let mut spoiled = good;
+            spoiled[place] = value;
+            let (frame, harmless): (Vec<u8>, bool) = match kind {
+                0 => (garbage, false),
+                1 => (good[..place].to_vec(), false),
+                2 => (sealed(spoiled).to_vec(), true),
+                3 => (spoiled.to_vec(), spoiled == good),
+                4 => (last.to_vec(), true),
+                _ => (good.to_vec(), true),
+            };
+            last = good;
+            sent += 1;
+            let acted = rig.step(&[&frame]);
+            prop_assert!(harmless || !acted, "{frame:?} was acted on");
+        }
+        prop_assert_eq!(rig.counts().total() + rig.received(), sent);
+    }
+}
