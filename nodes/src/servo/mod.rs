@@ -20,8 +20,7 @@ use ferntast_msgs::{
     sample::{
         CommandStatusSample, Fault, FrictionCommandSample, FrictionStatusSample, JointFields,
         JointNames, JointSample, Level, OperatingStateSample, PoseSample, StateCommandSample,
-        TemperatureSample,
-        TwinParametersSample,
+        TemperatureSample, TwinParametersSample,
     },
 };
 
