@@ -20,7 +20,7 @@
 //! (RFC 3550, section 6.4.1, fields LSR and DLSR):
 //! round trip = now − echo − held.
 
-use crate::delay::Packet;
+use crate::delay::{ENERGY_LIMIT, POSITION_LIMIT, Packet, VECTOR_LIMIT};
 use crate::operating::OperatingState;
 use crate::{nanoseconds, seconds};
 
@@ -41,13 +41,6 @@ pub const LAST_LAW_CODE: u8 = 15;
 pub const FUTURE_TOLERANCE: f64 = 0.050;
 /// Frames sent longer ago than this are refused \[s\].
 pub const LONGEST_LIFE: f64 = 10.0;
-
-/// Largest position in a frame \[m\].
-pub const POSITION_LIMIT: f32 = 10.0;
-/// Largest velocity \[m/s\] or force \[N\] in a frame.
-pub const VECTOR_LIMIT: f32 = 10_000.0;
-/// Largest energy in a frame \[J\].
-pub const ENERGY_LIMIT: f32 = 1e9;
 
 const VALID: u8 = 1;
 const HOLD: u8 = 2;

@@ -17,7 +17,7 @@ mod parameter;
 pub mod recursive_least_squares;
 
 pub use nalgebra::{Matrix2, Vector2};
-pub use parameter::{Parameter, ParameterError, check};
+pub use parameter::{ParameterError, check};
 
 use serde::{Deserialize, Serialize};
 

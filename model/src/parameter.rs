@@ -1,30 +1,4 @@
-//! Parameters as data: name, unit, bounds; and the error when one is wrong.
-
-/// What there is to know of one parameter, for files, fitters and pages.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameter {
-    /// Key in configuration files, the symbol of the source where it has one.
-    pub name: &'static str,
-    /// SI unit, `-` for none.
-    pub unit: &'static str,
-    /// Smallest value allowed (inclusive).
-    pub lower: f64,
-    /// Largest value allowed (inclusive).
-    pub upper: f64,
-    /// What it means.
-    pub doc: &'static str,
-}
-
-impl Parameter {
-    /// Checks `value` against the bounds.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError::OutOfBounds`], also for a value that is not finite.
-    pub fn check(&self, value: f64) -> Result<(), ParameterError> {
-        check(self.name, value, self.lower, self.upper, self.unit)
-    }
-}
+//! Bounds of parameters, and the error when one is not within.
 
 /// What is wrong with a parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

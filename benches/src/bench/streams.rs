@@ -1,6 +1,6 @@
 //! Random numbers for each purpose.
 
-use ferntast_emulation::random::Random;
+use ferntast_emulation::random::{Random, mixed};
 
 /// Streams of random numbers, so that one's length does not change another.
 #[derive(Clone, Copy)]
@@ -14,15 +14,13 @@ pub(crate) enum Stream {
     Noise = 6,
 }
 
-/// Mixes seed, stream and index (SplitMix64's finaliser).
+/// The random numbers of an element of a stream.
 pub(crate) fn random(seed: u64, stream: Stream, index: usize) -> Random {
-    let mut mixed = seed
+    let number = seed
         .wrapping_mul(0x9E37_79B9_7F4A_7C15)
         .wrapping_add((stream as u64) << 32)
         .wrapping_add(index as u64 + 1);
-    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    Random::new(mixed ^ (mixed >> 31))
+    Random::new(mixed(number))
 }
 
 /// `size` within ±15 %, with either sign.

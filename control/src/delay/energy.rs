@@ -23,7 +23,7 @@ impl Energy {
 
     /// As in a packet \[J\].
     pub(super) fn packet(&self) -> [f32; 2] {
-        let limit = f64::from(crate::frame::ENERGY_LIMIT);
+        let limit = f64::from(super::ENERGY_LIMIT);
         [self.entered, self.left].map(|energy| energy.clamp(0.0, limit) as f32)
     }
 }

@@ -40,9 +40,15 @@ pub use position_position::{PositionPosition, PositionPositionFollower, Position
 pub use tdpa::{Tdpa, TdpaFollower, TdpaLeader};
 pub use wave::{Wave, WaveFollower, WaveLeader};
 
-use crate::frame::{POSITION_LIMIT, VECTOR_LIMIT};
 use ferntast_model::ParameterError;
 use nalgebra::Vector3;
+
+/// Largest position in a frame \[m\].
+pub const POSITION_LIMIT: f32 = 10.0;
+/// Largest velocity \[m/s\] or force \[N\] in a frame.
+pub const VECTOR_LIMIT: f32 = 10_000.0;
+/// Largest energy in a frame \[J\].
+pub const ENERGY_LIMIT: f32 = 1e9;
 
 /// What travels in a frame, as the law has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

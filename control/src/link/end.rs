@@ -154,7 +154,8 @@ impl End {
     }
 }
 
-/// \[s\]
+/// \[s\] As stamps of messages are subtracted: a product, which differs from
+/// [`seconds`] in the last digit.
 pub(super) fn seconds_between(earlier_ns: i64, later_ns: i64) -> f64 {
     later_ns.saturating_sub(earlier_ns) as f64 * 1e-9
 }

@@ -64,11 +64,7 @@ impl FollowerLink {
     pub fn step(&mut self, now_ns: i64, readings: &FollowerReadings) -> FollowerStep {
         let taken = self.end.take(now_ns);
         let rearm = taken.is_some_and(|frame| self.arming.observe(frame.arming));
-        let tip = readings
-            .tip
-            .map(|tip| (self.velocity.step(&tip), tip.silence))
-            .filter(|(_, silence)| *silence <= ESTIMATE_LIFE)
-            .map(|(motion, _)| motion);
+        let tip = self.velocity.fresh(readings.tip, ESTIMATE_LIFE);
         let dt = self.end.elapsed(now_ns);
         let connected = self.end.connected(now_ns);
         let newest = self.end.newest(now_ns);

@@ -69,11 +69,7 @@ impl LeaderLink {
     /// One step at `now_ns`.
     pub fn step(&mut self, now_ns: i64, readings: &LeaderReadings) -> LeaderStep {
         self.end.take(now_ns);
-        let hand = readings
-            .hand
-            .map(|hand| (self.velocity.step(&hand), hand.silence))
-            .filter(|(_, silence)| *silence <= HAND_LIFE)
-            .map(|(motion, _)| motion);
+        let hand = self.velocity.fresh(readings.hand, HAND_LIFE);
         let dt = self.end.elapsed(now_ns);
         let connected = self.end.connected(now_ns);
         let step = self.law.step(dt, hand, self.end.newest(now_ns), connected);

@@ -17,8 +17,16 @@ pub(super) struct VelocityFilter {
 }
 
 impl VelocityFilter {
+    /// Takes in the newest measurement, if there is one; gives its motion while it
+    /// is not older than `life` \[s\].
+    pub fn fresh(&mut self, measured: Option<StampedPosition>, life: f64) -> Option<Motion> {
+        let measured = measured?;
+        let motion = self.step(&measured);
+        (measured.silence <= life).then_some(motion)
+    }
+
     /// Position and velocity at the newest measurement; a repeated stamp changes nothing.
-    pub fn step(&mut self, measured: &StampedPosition) -> Motion {
+    fn step(&mut self, measured: &StampedPosition) -> Motion {
         if let Some((stamp_ns, position)) = self.last {
             let dt = seconds_between(stamp_ns, measured.stamp_ns);
             if !(0.0..=LONGEST_GAP).contains(&dt) {

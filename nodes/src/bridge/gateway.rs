@@ -4,7 +4,7 @@
 //! process with DDS or a Zenoh router.
 
 use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
-use ferntast_msgs::topics::{Authority, Delivery, Row, Switch};
+use ferntast_msgs::topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch};
 
 use super::{
     choice_parameter::ChoiceParameter,
@@ -53,7 +53,7 @@ pub fn comes_in(authority: Authority, scenario: &Scenario) -> bool {
 pub fn goes_out(topic: Row, section: &GatewaySection) -> Carry {
     match topic.delivery {
         Delivery::State => Carry::Newest { period_nanos: 0 },
-        Delivery::Event => Carry::Every { queue: 64 },
+        Delivery::Event => Carry::Every { queue: EVENT_QUEUE },
         Delivery::Stream => {
             let rate = if topic.name.starts_with("/leader/") {
                 section.leader_rate
@@ -85,7 +85,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     })?;
     carrier.add_topics(&ros, &process.bus, Stamp::Round, |topic| {
         match comes_in(topic.authority, scenario) {
-            true => Carry::Every { queue: 64 },
+            true => Carry::Every { queue: EVENT_QUEUE },
             false => Carry::Not,
         }
     })?;

@@ -11,11 +11,11 @@ mod tests;
 use ferntast_model::{ArmModel, joint::JointParameters};
 use ferntast_msgs::{
     Text, Time,
-    sample::{JointSample, Level, TemperatureSample},
+    sample::{JointNames, JointSample, Level, TemperatureSample},
 };
 
 use crate::{
-    config::LimitsSection,
+    config::{LimitsSection, joint_names},
     graph::Build,
     node::{Node, Ticking, ports},
     process::NodeError,
@@ -53,6 +53,7 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 
 /// Watches the arm's measurements against its limits.
 pub struct LimitsNode {
+    names: JointNames,
     joints: Vec<JointParameters>,
     section: LimitsSection,
 }
@@ -61,19 +62,20 @@ impl LimitsNode {
     /// A node that knows the arm's limits from `model`.
     pub fn new(model: &ArmModel, section: LimitsSection) -> LimitsNode {
         LimitsNode {
+            names: joint_names(model),
             joints: model.joint.to_vec(),
             section,
         }
     }
 
-    /// What is near at joint `index`, the worst last.
+    /// What is near at the joint of that place and name, the worst last.
     fn near(
         &self,
         index: usize,
+        name: &str,
         sample: Option<&JointSample>,
         temperature: Option<f64>,
     ) -> [Option<Text<96>>; 3] {
-        let number = index + 1;
         let limits = &self.joints[index];
         let of = |values: Option<&[f64]>| values.and_then(|own| own.get(index)).copied();
         let position = of(sample.map(|own| own.position.as_slice()));
@@ -88,16 +90,16 @@ impl LimitsNode {
         });
         let margin = margin.filter(|own| *own < self.section.position_margin);
         [
-            hot.map(|own| Text::display(format_args!("joint_{number} is at {own:.0} °C"))),
+            hot.map(|own| Text::display(format_args!("{name} is at {own:.0} °C"))),
             strained.map(|own| {
                 let own = own.abs();
                 Text::display(format_args!(
-                    "joint_{number} bears {own:.1} Nm, its sensor's range is {range:.1} Nm"
+                    "{name} bears {own:.1} Nm, its sensor's range is {range:.1} Nm"
                 ))
             }),
             margin.map(|own| {
                 Text::display(format_args!(
-                    "joint_{number} is {own:.2} rad from the end of its range"
+                    "{name} is {own:.2} rad from the end of its range"
                 ))
             }),
         ]
@@ -114,13 +116,21 @@ impl Node for LimitsNode {
         if silence.is_finite() {
             health.input_age = silence;
         }
-        let sample = input.measured_js.message.as_ref();
-        let sample = sample.filter(|_| silence <= MEASUREMENT_LIFE);
+        let sample = input
+            .measured_js
+            .message
+            .as_ref()
+            .filter(|_| silence <= MEASUREMENT_LIFE)
+            .and_then(|own| own.in_order_of(&self.names));
         let temperatures = [&input.temperature_1, &input.temperature_2];
-        for index in 0..self.joints.len() {
+        for (index, name) in self.names.iter().enumerate() {
             let temperature = temperatures.get(index).and_then(|own| own.message);
             let temperature = temperature.map(|own| own.temperature);
-            for words in self.near(index, sample, temperature).into_iter().flatten() {
+            for words in self
+                .near(index, name, sample.as_ref(), temperature)
+                .into_iter()
+                .flatten()
+            {
                 health.level = health.level.max(Level::WARN);
                 health.message = words;
             }

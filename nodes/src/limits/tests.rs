@@ -91,6 +91,25 @@ fn what_is_near_is_told_with_its_margin() {
     );
 }
 
+/// Joints are found by their names, not by their places.
+#[test]
+fn a_sample_in_another_order_is_read_by_name() {
+    let model = model();
+    let mut reversed = JointSample::zero(JointNames::new(["joint_2", "joint_1"]).unwrap(), START);
+    for (place, joint) in model.joint.iter().rev().enumerate() {
+        reversed.position[place] = 0.5 * (joint.position_lower + joint.position_upper);
+    }
+    reversed.position[0] = model.joint[1].position_upper - 0.05;
+    let input = LimitsInput {
+        measured_js: newest(reversed),
+        ..LimitsInput::default()
+    };
+    assert_eq!(
+        told(&input).1,
+        "joint_2 is 0.05 rad from the end of its range"
+    );
+}
+
 #[test]
 fn an_old_measurement_says_nothing() {
     let mut sample = middle(START);

@@ -24,7 +24,7 @@ const PURE: [&str; 7] = [
 const MAY_SIMULATE: [&str; 4] = ["sim", "drivers", "studies", "cli"];
 
 /// Crates whose files are yet to be put in order.
-const STILL_IN_CIRCLES: [&str; 2] = ["control", "identification"];
+const STILL_IN_CIRCLES: [&str; 1] = ["identification"];
 
 /// The folder of a crate of the workspace.
 fn folder(name: &str) -> PathBuf {

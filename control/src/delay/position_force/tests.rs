@@ -1,8 +1,8 @@
 //! The law between a hand with an impedance and a contact with a stiffness.
 
 use super::*;
+use crate::delay::POSITION_LIMIT;
 use crate::delay::{Law, Motion, Received, bounded};
-use crate::frame::POSITION_LIMIT;
 use std::collections::VecDeque;
 
 const DT: f64 = 1e-3;

@@ -7,6 +7,7 @@ use std::str::FromStr;
 
 use ferntast_benches::bench::{BenchConfig, BenchError, Hideable, TrueParameter};
 use ferntast_bus::{Bus, CreateError, PublishError};
+use ferntast_emulation::random::mixed;
 use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
 use ferntast_msgs::Time;
 
@@ -119,20 +120,13 @@ fn quoted(ids: &[&'static str]) -> String {
 /// grows changes what a seed hides only where the new effect is hidden: the
 /// largest of the numbers that seed and id give wins (rendezvous hashing).
 pub fn hidden_by<H: TestBench>(seed: u64) -> Option<H> {
+    let next = |number: u64| mixed(number.wrapping_add(0x9E37_79B9_7F4A_7C15));
     let drawn = |id: &str| {
         id.bytes()
-            .fold(mixed(seed), |so_far, byte| mixed(so_far ^ u64::from(byte)))
+            .fold(next(seed), |so_far, byte| next(so_far ^ u64::from(byte)))
     };
     let largest = H::ALL.iter().copied().max_by_key(|own| drawn(own.id()))?;
     (drawn(largest.id()) > drawn("none")).then_some(largest)
-}
-
-/// SplitMix64's finaliser: neighbours come out unrelated.
-fn mixed(number: u64) -> u64 {
-    let mut mixed = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    mixed ^ (mixed >> 31)
 }
 
 #[cfg(test)]
