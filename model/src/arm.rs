@@ -5,67 +5,38 @@
 //! they turn on the other side of the torque sensor.
 
 use crate::kinematics::Kinematics;
-use crate::{JOINTS, Matrix2, ParameterError, Vector2, check};
-use serde::{Deserialize, Serialize};
+use crate::{JOINTS, Matrix2, Vector2, parameters};
 
 /// Standard gravity \[m/s²\].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// One link, seen as a rigid body that turns about its joint.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LinkParameters {
-    /// From this joint's axis to the next one's, or to the tip \[m\].
-    pub length: f64,
-    /// Mass \[kg\].
-    pub mass: f64,
-    /// From the joint's axis to the centre of mass, along the link \[m\].
-    pub center_of_mass: f64,
-    /// Moment of inertia about the centre of mass \[kg m²\].
-    pub inertia: f64,
-}
-
-impl LinkParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("length", self.length, 0.01, 10.0, "m")?;
-        check("mass", self.mass, 0.01, 1000.0, "kg")?;
-        check("center_of_mass", self.center_of_mass, 0.0, 10.0, "m")?;
-        check("inertia", self.inertia, 1e-6, 1000.0, "kg m²")
+parameters! {
+    /// One link, seen as a rigid body that turns about its joint.
+    #[derive(Copy)]
+    pub struct LinkParameters {
+        /// From this joint's axis to the next one's, or to the tip \[m\].
+        pub length: f64 [0.01..=10.0, "m"],
+        /// Mass \[kg\].
+        pub mass: f64 [0.01..=1000.0, "kg"],
+        /// From the joint's axis to the centre of mass, along the link \[m\].
+        pub center_of_mass: f64 [0.0..=10.0, "m"],
+        /// Moment of inertia about the centre of mass \[kg m²\].
+        pub inertia: f64 [1e-6..=1000.0, "kg m²"],
     }
 }
 
-/// The links and the gravity that they are in.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ArmParameters {
-    /// Acceleration of gravity, base frame \[m/s²\]: zero in orbit.
-    pub gravity: [f64; 2],
-    /// Link 1 and link 2.
-    pub link: [LinkParameters; JOINTS],
+parameters! {
+    /// The links and the gravity that they are in.
+    #[derive(Copy)]
+    pub struct ArmParameters {
+        /// Acceleration of gravity, base frame \[m/s²\]: zero in orbit.
+        pub gravity: [f64; 2] [-20.0..=20.0, "m/s²"],
+        /// Link 1 and link 2.
+        pub link: [LinkParameters; JOINTS] [section],
+    }
 }
 
 impl ArmParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        for (axis, value) in ["gravity[0]", "gravity[1]"].into_iter().zip(self.gravity) {
-            check(axis, value, -20.0, 20.0, "m/s²")?;
-        }
-        for (index, link) in self.link.iter().enumerate() {
-            link.validate()
-                .map_err(|error| error.within(&format!("link[{index}]")))?;
-        }
-        Ok(())
-    }
-
     /// The same arm on the ground, its plane upright: gravity along −y.
     #[must_use]
     pub fn on_ground(mut self) -> Self {

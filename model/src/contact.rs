@@ -1,33 +1,22 @@
 //! Contact of the stylus tip with a surface.
 
 use crate::friction::sign;
-use crate::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use crate::parameters;
 
-/// How a surface pushes and rubs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ContactParameters {
-    /// Stiffness along the normal \[N/m\].
-    pub stiffness: f64,
-    /// Damping along the normal \[N·s/m\].
-    pub damping: f64,
-    /// Coulomb coefficient b_0T of equation (6) \[-\].
-    pub friction: f64,
+parameters! {
+    /// How a surface pushes and rubs.
+    #[derive(Copy)]
+    pub struct ContactParameters {
+        /// Stiffness along the normal \[N/m\].
+        pub stiffness: f64 [1.0..=1e7, "N/m"],
+        /// Damping along the normal \[N·s/m\].
+        pub damping: f64 [0.0..=1e5, "N·s/m"],
+        /// Coulomb coefficient b_0T of equation (6) \[-\].
+        pub friction: f64 [0.0..=3.0, "-"],
+    }
 }
 
 impl ContactParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("stiffness", self.stiffness, 1.0, 1e7, "N/m")?;
-        check("damping", self.damping, 0.0, 1e5, "N·s/m")?;
-        check("friction", self.friction, 0.0, 3.0, "-")
-    }
-
     /// Normal force F_N \[N\] at `penetration` \[m\] (positive inside) that
     /// grows at `rate` \[m/s\]. Never negative: a surface does not pull.
     pub fn normal_force(&self, penetration: f64, rate: f64) -> f64 {

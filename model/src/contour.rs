@@ -5,7 +5,7 @@
 //! outside and negative inside.
 
 use crate::contact::ContactParameters;
-use crate::{ParameterError, Vector2, check};
+use crate::{ParameterError, Vector2, check, parameters};
 use serde::{Deserialize, Serialize};
 
 /// What an edge is made of.
@@ -20,50 +20,55 @@ pub enum Surface {
     Spring,
 }
 
-/// A straight edge. Seen from `from` towards `to`, the free side is on the left.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct EdgeParameters {
-    /// What it is made of.
-    pub surface: Surface,
-    /// One end, base frame \[m\].
-    pub from: [f64; 2],
-    /// The other end, base frame \[m\].
-    pub to: [f64; 2],
-    /// How it pushes and rubs.
-    pub contact: ContactParameters,
+parameters! {
+    /// A straight edge. Seen from `from` towards `to`, the free side is on the left.
+    #[derive(Copy)]
+    pub struct EdgeParameters {
+        /// What it is made of.
+        pub surface: Surface,
+        /// One end, base frame \[m\].
+        pub from: [f64; 2] [-10.0..=10.0, "m"],
+        /// The other end, base frame \[m\].
+        pub to: [f64; 2] [-10.0..=10.0, "m"],
+        /// How it pushes and rubs.
+        pub contact: ContactParameters [section],
+    }
+    check EdgeParameters::has_length;
 }
 
-/// A spring with a flat head: pushed in, it pushes back along `direction`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SpringParameters {
-    /// Where its foot is fixed, base frame \[m\].
-    pub anchor: [f64; 2],
-    /// From the foot to the head; any length but zero \[-\].
-    pub direction: [f64; 2],
-    /// From the foot to the head at rest \[m\].
-    pub rest_length: f64,
-    /// Stiffness \[N/m\].
-    pub stiffness: f64,
-    /// Half of the head's width \[m\].
-    pub half_width: f64,
+parameters! {
+    /// A spring with a flat head: pushed in, it pushes back along `direction`.
+    #[derive(Copy)]
+    pub struct SpringParameters {
+        /// Where its foot is fixed, base frame \[m\].
+        pub anchor: [f64; 2] [-10.0..=10.0, "m"],
+        /// From the foot to the head; any length but zero \[-\].
+        pub direction: [f64; 2],
+        /// From the foot to the head at rest \[m\].
+        pub rest_length: f64 [1e-3..=10.0, "m"],
+        /// Stiffness \[N/m\].
+        pub stiffness: f64 [1.0..=1e6, "N/m"],
+        /// Half of the head's width \[m\].
+        pub half_width: f64 [1e-4..=10.0, "m"],
+    }
+    check SpringParameters::has_direction;
 }
 
-/// Edges, springs, and the nominal point in the free space between them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contour {
-    /// Tip point in the middle of the workspace, base frame \[m\].
-    pub nominal_tip: [f64; 2],
-    /// Side that the elbow is bent to there.
-    pub nominal_elbow: crate::kinematics::Elbow,
-    /// Straight edges.
-    #[serde(default)]
-    pub edge: Vec<EdgeParameters>,
-    /// Springs.
-    #[serde(default)]
-    pub spring: Vec<SpringParameters>,
+parameters! {
+    /// Edges, springs, and the nominal point in the free space between them.
+    pub struct Contour {
+        /// Tip point in the middle of the workspace, base frame \[m\].
+        pub nominal_tip: [f64; 2] [-10.0..=10.0, "m"],
+        /// Side that the elbow is bent to there.
+        pub nominal_elbow: crate::kinematics::Elbow,
+        /// Straight edges.
+        #[serde(default)]
+        pub edge: Vec<EdgeParameters> [section],
+        /// Springs.
+        #[serde(default)]
+        pub spring: Vec<SpringParameters> [section],
+    }
+    check Contour::nominal_tip_is_free;
 }
 
 /// One straight front of the contour, ready for use in a loop.
@@ -145,19 +150,9 @@ pub fn nearest(features: &[Feature], tip: &Vector2<f64>, reach: f64) -> Option<N
 }
 
 impl EdgeParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check_point("from", self.from)?;
-        check_point("to", self.to)?;
+    fn has_length(&self) -> Result<(), ParameterError> {
         let length = (Vector2::from(self.to) - Vector2::from(self.from)).norm();
-        check("length from `from` to `to`", length, 1e-4, 20.0, "m")?;
-        self.contact
-            .validate()
-            .map_err(|error| error.within("contact"))
+        check("length from `from` to `to`", length, 1e-4, 20.0, "m")
     }
 
     /// The edge as a feature.
@@ -175,18 +170,9 @@ impl EdgeParameters {
 }
 
 impl SpringParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check_point("anchor", self.anchor)?;
+    fn has_direction(&self) -> Result<(), ParameterError> {
         let [x, y] = self.direction;
-        check("length of direction", x.hypot(y), 1e-6, 1e6, "-")?;
-        check("rest_length", self.rest_length, 1e-3, 10.0, "m")?;
-        check("stiffness", self.stiffness, 1.0, 1e6, "N/m")?;
-        check("half_width", self.half_width, 1e-4, 10.0, "m")
+        check("length of direction", x.hypot(y), 1e-6, 1e6, "-")
     }
 
     /// The spring as a feature: its head.
@@ -207,22 +193,7 @@ impl SpringParameters {
 }
 
 impl Contour {
-    /// Checks every value against its bounds, and that the nominal tip is free.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check_point("nominal_tip", self.nominal_tip)?;
-        for (index, edge) in self.edge.iter().enumerate() {
-            edge.validate()
-                .map_err(|error| error.within(&format!("edge[{index}]")))?;
-        }
-        for (index, spring) in self.spring.iter().enumerate() {
-            spring
-                .validate()
-                .map_err(|error| error.within(&format!("spring[{index}]")))?;
-        }
+    fn nominal_tip_is_free(&self) -> Result<(), ParameterError> {
         let tip = Vector2::from(self.nominal_tip);
         for feature in self.features() {
             if feature.faces(&tip) && feature.distance(&tip) <= 0.0 {
@@ -248,11 +219,6 @@ impl Contour {
         let springs = self.spring.iter().map(SpringParameters::feature);
         edges.chain(springs).collect()
     }
-}
-
-fn check_point(key: &str, point: [f64; 2]) -> Result<(), ParameterError> {
-    check(&format!("{key}[0]"), point[0], -10.0, 10.0, "m")?;
-    check(&format!("{key}[1]"), point[1], -10.0, 10.0, "m")
 }
 
 #[cfg(test)]

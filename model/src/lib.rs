@@ -15,45 +15,26 @@ pub mod joint;
 pub mod kinematics;
 mod parameter;
 pub mod recursive_least_squares;
+pub mod section;
 
 pub use nalgebra::{Matrix2, Vector2};
 pub use parameter::{ParameterError, check};
-
-use serde::{Deserialize, Serialize};
+pub use section::{Bounded, Section};
 
 /// Number of joints of the arm.
 pub const JOINTS: usize = 2;
 
-/// Everything that is believed of one arm and the contour it works on:
-/// the sections `[arm]`, `[[joint]]` (two) and `[contour]` of a file in
-/// `config/arms/`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ArmModel {
-    /// Links and gravity.
-    pub arm: arm::ArmParameters,
-    /// Joint 1 and joint 2.
-    pub joint: [joint::JointParameters; JOINTS],
-    /// Edges and springs, and the nominal tip point between them.
-    pub contour: contour::Contour,
-}
-
-impl ArmModel {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, with key, value, bounds, unit.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        self.arm.validate().map_err(|error| error.within("arm"))?;
-        for (index, joint) in self.joint.iter().enumerate() {
-            joint
-                .validate()
-                .map_err(|error| error.within(&format!("joint[{index}]")))?;
-        }
-        self.contour
-            .validate()
-            .map_err(|error| error.within("contour"))
+parameters! {
+    /// Everything that is believed of one arm and the contour it works on:
+    /// the sections `[arm]`, `[[joint]]` (two) and `[contour]` of a file in
+    /// `config/arms/`.
+    pub struct ArmModel {
+        /// Links and gravity.
+        pub arm: arm::ArmParameters [section],
+        /// Joint 1 and joint 2.
+        pub joint: [joint::JointParameters; JOINTS] [section],
+        /// Edges and springs, and the nominal tip point between them.
+        pub contour: contour::Contour [section],
     }
 }
 

@@ -33,16 +33,16 @@ use nalgebra::Vector3;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
-    FourChannel {
+    pub struct FourChannel {
         /// K: stiffness of the coupling, at the hand's scale \[N/m\].
-        stiffness = 200.0 in 0.1 .. 10000.0 "N/m",
+        pub stiffness: f64 [0.1..=10000.0, "N/m"] = 200.0,
         /// B: damping of the coupling, at the hand's scale \[N·s/m\].
-        damping = 20.0 in 0.1 .. 1000.0 "N·s/m",
+        pub damping: f64 [0.1..=1000.0, "N·s/m"] = 20.0,
         /// Largest speed of the tip's command, at the hand's scale \[m/s\].
-        largest_speed = 1.0 in 0.01 .. 10.0 "m/s",
+        pub largest_speed: f64 [0.01..=10.0, "m/s"] = 1.0,
         /// Stiffness of the arm's servo at the tip; a session takes the arm's own
         /// where that is larger \[N/m\].
-        servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
+        pub servo_stiffness: f64 [1.0..=1000000.0, "N/m"] = 7000.0,
     }
 }
 law_ends!(

@@ -2,7 +2,6 @@
 //! counts as live, how a force fades.
 
 use super::{Motion, Received};
-use ferntast_model::{ParameterError, check};
 use nalgebra::Vector3;
 
 /// Scales and deadlines. Laws reckon in *hand units*: the tip's position as
@@ -21,30 +20,7 @@ pub struct Mapping {
     pub force_ramp: f64,
 }
 
-impl Default for Mapping {
-    fn default() -> Self {
-        Mapping {
-            position_scale: 1.0,
-            force_scale: 0.05,
-            workspace_offset: [0.35355, 0.0, 0.0],
-            deadline: 0.025,
-            force_ramp: 0.2,
-        }
-    }
-}
-
 impl Mapping {
-    pub(super) fn validate(&self) -> Result<(), ParameterError> {
-        check("position_scale", self.position_scale, 1e-3, 1e3, "-")?;
-        check("force_scale", self.force_scale, 0.0, 1e3, "-")?;
-        for (axis, value) in self.workspace_offset.iter().enumerate() {
-            let key = format!("workspace_offset[{axis}]");
-            check(&key, *value, -10.0, 10.0, "m")?;
-        }
-        check("deadline", self.deadline, 0.002, 0.030, "s")?;
-        check("force_ramp", self.force_ramp, 0.001, 10.0, "s")
-    }
-
     /// What may be acted on.
     pub(super) fn live(&self, connected: bool, received: Option<Received>) -> Option<Received> {
         received.filter(|own| connected && own.packet.valid && own.silence <= self.deadline)
@@ -107,45 +83,25 @@ pub(super) fn shortened(own: Vector3<f64>, limit: f64) -> Vector3<f64> {
     }
 }
 
-/// Declares the parameters of a law: those of [`Mapping`] and its own, each
-/// with default, bounds and unit.
+/// Declares the parameters of a law: those of [`Mapping`] and its own.
 macro_rules! law_parameters {
-    (
-        $(#[$meta:meta])*
-        $name:ident {
-            $($(#[$doc:meta])* $key:ident = $default:literal in $lower:literal .. $upper:literal $unit:literal,)*
-        }
-    ) => {
-        $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-        #[serde(deny_unknown_fields, default)]
-        pub struct $name {
-            /// s_x: motion of the tip by motion of the hand \[-\].
-            pub position_scale: f64,
-            /// s_F: force on the hand by force on the tip \[-\].
-            pub force_scale: f64,
-            /// x_0: tip position when the hand is in the middle of its
-            /// workspace, follower base frame \[m\].
-            pub workspace_offset: [f64; 3],
-            /// Silence after which the other end counts as lost \[s\].
-            pub deadline: f64,
-            /// Time in which the force on the hand fades out on loss, and in
-            /// again \[s\].
-            pub force_ramp: f64,
-            $($(#[$doc])* pub $key: f64,)*
-        }
-
-        impl Default for $name {
-            fn default() -> Self {
-                let base = $crate::delay::Mapping::default();
-                $name {
-                    position_scale: base.position_scale,
-                    force_scale: base.force_scale,
-                    workspace_offset: base.workspace_offset,
-                    deadline: base.deadline,
-                    force_ramp: base.force_ramp,
-                    $($key: $default,)*
-                }
+    ($(#[$meta:meta])* pub struct $name:ident { $($own:tt)* }) => {
+        ferntast_model::parameters! {
+            $(#[$meta])*
+            pub struct $name {
+                /// s_x: motion of the tip by motion of the hand \[-\].
+                pub position_scale: f64 [1e-3..=1e3, "-"] = 1.0,
+                /// s_F: force on the hand by force on the tip \[-\].
+                pub force_scale: f64 [0.0..=1e3, "-"] = 0.05,
+                /// x_0: tip position when the hand is in the middle of its
+                /// workspace, follower base frame \[m\].
+                pub workspace_offset: [f64; 3] [-10.0..=10.0, "m"] = [0.35355, 0.0, 0.0],
+                /// Silence after which the other end counts as lost \[s\].
+                pub deadline: f64 [0.002..=0.030, "s"] = 0.025,
+                /// Time in which the force on the hand fades out on loss, and in
+                /// again \[s\].
+                pub force_ramp: f64 [0.001..=10.0, "s"] = 0.2,
+                $($own)*
             }
         }
 
@@ -158,12 +114,6 @@ macro_rules! law_parameters {
                     deadline: self.deadline,
                     force_ramp: self.force_ramp,
                 }
-            }
-
-            fn check(&self) -> Result<(), ferntast_model::ParameterError> {
-                self.mapping().validate()?;
-                $(ferntast_model::check(stringify!($key), self.$key, $lower, $upper, $unit)?;)*
-                Ok(())
             }
         }
     };
@@ -182,10 +132,6 @@ macro_rules! law_ends {
 
             fn mapping(&self) -> $crate::delay::Mapping {
                 self.mapping()
-            }
-
-            fn validate(&self) -> Result<(), ferntast_model::ParameterError> {
-                self.check()
             }
 
             fn leader(&self) -> $leader {

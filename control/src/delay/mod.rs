@@ -40,7 +40,6 @@ pub use position_position::{PositionPosition, PositionPositionFollower, Position
 pub use tdpa::{Tdpa, TdpaFollower, TdpaLeader};
 pub use wave::{Wave, WaveFollower, WaveLeader};
 
-use ferntast_model::ParameterError;
 use nalgebra::Vector3;
 
 /// Largest position in a frame \[m\].
@@ -195,12 +194,6 @@ pub trait Parameters {
     type Follower: Follower;
     /// Scales between hand and tip.
     fn mapping(&self) -> Mapping;
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    fn validate(&self) -> Result<(), ParameterError>;
     /// The leader's end, at rest.
     fn leader(&self) -> Self::Leader;
     /// The follower's end, at rest.

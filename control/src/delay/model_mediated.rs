@@ -40,30 +40,30 @@ use nalgebra::Vector3;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
-    ModelMediated {
+    pub struct ModelMediated {
         /// b: damping at the hand \[N·s/m\].
-        damping = 2.0 in 0.0 .. 1000.0 "N·s/m",
+        pub damping: f64 [0.0..=1000.0, "N·s/m"] = 2.0,
         /// Time constant with which an update is blended in \[s\].
-        blend_time = 0.1 in 0.001 .. 10.0 "s",
+        pub blend_time: f64 [0.001..=10.0, "s"] = 0.1,
         /// Largest stiffness that is rendered \[N/m\].
-        largest_stiffness = 3000.0 in 10.0 .. 10000.0 "N/m",
+        pub largest_stiffness: f64 [10.0..=10000.0, "N/m"] = 3000.0,
         /// Largest force of the rendered surface on the hand \[N\].
-        largest_force = 30.0 in 0.1 .. 1000.0 "N",
+        pub largest_force: f64 [0.1..=1000.0, "N"] = 30.0,
         /// Smallest contact force at the hand's scale that counts as contact \[N\].
-        contact_threshold = 0.1 in 0.0001 .. 100.0 "N",
+        pub contact_threshold: f64 [0.0001..=100.0, "N"] = 0.1,
         /// How hard the tip presses, at the hand's scale, where the hand feels
         /// nothing yet \[N\].
-        search_force = 2.0 in 0.001 .. 100.0 "N",
+        pub search_force: f64 [0.001..=100.0, "N"] = 2.0,
         /// Time constant with which the tip goes to the hand's position \[s\].
-        position_time = 0.01 in 0.002 .. 1.0 "s",
+        pub position_time: f64 [0.002..=1.0, "s"] = 0.01,
         /// Largest speed of the tip's command, at the hand's scale \[m/s\].
-        largest_speed = 0.5 in 0.01 .. 10.0 "m/s",
+        pub largest_speed: f64 [0.01..=10.0, "m/s"] = 0.5,
         /// Damping with which the tip gives way to what is too hard, at the hand's scale
         /// \[N·s/m\].
-        yield_damping = 50.0 in 1.0 .. 10000.0 "N·s/m",
+        pub yield_damping: f64 [1.0..=10000.0, "N·s/m"] = 50.0,
         /// Stiffness of the arm's servo at the tip; a session takes the arm's own
         /// where that is larger \[N/m\].
-        servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
+        pub servo_stiffness: f64 [1.0..=1000000.0, "N/m"] = 7000.0,
     }
 }
 law_ends!(

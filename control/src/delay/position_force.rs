@@ -29,7 +29,7 @@ use nalgebra::Vector3;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
-    PositionForce {}
+    pub struct PositionForce {}
 }
 law_ends!(
     PositionForce,

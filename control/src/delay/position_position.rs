@@ -25,13 +25,13 @@ use nalgebra::Vector3;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
-    PositionPosition {
+    pub struct PositionPosition {
         /// K: stiffness of the coupling, at the hand's scale \[N/m\].
-        stiffness = 200.0 in 0.1 .. 10000.0 "N/m",
+        pub stiffness: f64 [0.1..=10000.0, "N/m"] = 200.0,
         /// b: damping at each end on top of what the delay needs \[N·s/m\].
-        damping = 5.0 in 0.1 .. 1000.0 "N·s/m",
+        pub damping: f64 [0.1..=1000.0, "N·s/m"] = 5.0,
         /// τ: twice the longest age of what is acted on \[s\].
-        round_trip = 0.1 in 0.002 .. 10.0 "s",
+        pub round_trip: f64 [0.002..=10.0, "s"] = 0.1,
     }
 }
 

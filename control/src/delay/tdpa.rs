@@ -45,28 +45,28 @@ use nalgebra::Vector3;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
-    Tdpa {
+    pub struct Tdpa {
         /// b: damping at the hand \[N·s/m\].
-        damping = 10.0 in 0.0 .. 1000.0 "N·s/m",
+        pub damping: f64 [0.0..=1000.0, "N·s/m"] = 10.0,
         /// m: lightest mass of hand and handle \[kg\].
-        hand_mass = 0.2 in 0.01 .. 20.0 "kg",
+        pub hand_mass: f64 [0.01..=20.0, "kg"] = 0.2,
         /// Largest damping with which a debt is paid back \[N·s/m\].
-        largest_damping = 50.0 in 0.1 .. 10000.0 "N·s/m",
+        pub largest_damping: f64 [0.1..=10000.0, "N·s/m"] = 50.0,
         /// Share of what the leader's end takes in that it promises to the
         /// follower's, which promises the rest to one of what it takes in \[-\].
-        promised_share = 0.35 in 0.0 .. 1.0 "-",
+        pub promised_share: f64 [0.0..=1.0, "-"] = 0.35,
         /// Energy that an end may hold, at the hand's scale; what is beyond
         /// counts as dissipated \[J\].
-        reserve = 0.1 in 0.0 .. 1000.0 "J",
+        pub reserve: f64 [0.0..=1000.0, "J"] = 0.1,
         /// Time constant of the drift compensation \[s\].
-        drift_time = 0.05 in 0.005 .. 10.0 "s",
+        pub drift_time: f64 [0.005..=10.0, "s"] = 0.05,
         /// Largest speed at which drift is made up for, at the hand's scale \[m/s\].
-        drift_speed = 0.1 in 0.0 .. 10.0 "m/s",
+        pub drift_speed: f64 [0.0..=10.0, "m/s"] = 0.1,
         /// Largest speed at which the tip gives way, at the hand's scale \[m/s\].
-        yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
+        pub yield_speed: f64 [0.001..=10.0, "m/s"] = 0.2,
         /// Stiffness of the arm's servo at the tip; a session takes the arm's own
         /// where that is larger \[N/m\].
-        servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
+        pub servo_stiffness: f64 [1.0..=1000000.0, "N/m"] = 7000.0,
     }
 }
 law_ends!(Tdpa, "tdpa", Passive, TdpaLeader, TdpaFollower);

@@ -50,31 +50,31 @@ use nalgebra::Vector3;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
-    Wave {
+    pub struct Wave {
         /// b: impedance of the line, at the hand's scale \[N·s/m\].
-        impedance = 10.0 in 0.1 .. 1000.0 "N·s/m",
+        pub impedance: f64 [0.1..=1000.0, "N·s/m"] = 10.0,
         /// Damping at the hand on top of it, which pays for what the line loses
         /// \[N·s/m\].
-        damping = 2.0 in 0.0 .. 1000.0 "N·s/m",
+        pub damping: f64 [0.0..=1000.0, "N·s/m"] = 2.0,
         /// Time constant of the low pass on what the hand reflects, by the delay of
         /// what comes back: quicker changes are absorbed \[-\].
-        absorption = 1.0 in 0.0 .. 100.0 "-",
+        pub absorption: f64 [0.0..=100.0, "-"] = 1.0,
         /// Longest time that waves wait to be played out \[s\].
-        buffer = 0.02 in 0.002 .. 1.0 "s",
+        pub buffer: f64 [0.002..=1.0, "s"] = 0.02,
         /// Energy that an end may hold in hand; what is beyond counts as
         /// dissipated \[J\].
-        reserve = 0.1 in 0.0 .. 1000.0 "J",
+        pub reserve: f64 [0.0..=1000.0, "J"] = 0.1,
         /// Stiffness with which the drift correction pulls the tip to the hand,
         /// at the hand's scale; below the stiffness of the hand \[N/m\].
-        drift_stiffness = 60.0 in 0.0 .. 10000.0 "N/m",
+        pub drift_stiffness: f64 [0.0..=10000.0, "N/m"] = 60.0,
         /// Largest speed of the drift correction, at the hand's scale \[m/s\].
-        drift_speed = 0.05 in 0.0 .. 10.0 "m/s",
+        pub drift_speed: f64 [0.0..=10.0, "m/s"] = 0.05,
         /// Largest speed at which the tip gives way to pay back, at the hand's
         /// scale \[m/s\].
-        yield_speed = 0.2 in 0.001 .. 10.0 "m/s",
+        pub yield_speed: f64 [0.001..=10.0, "m/s"] = 0.2,
         /// Stiffness of the arm's servo at the tip; a session takes the arm's own
         /// where that is larger \[N/m\].
-        servo_stiffness = 7000.0 in 1.0 .. 1000000.0 "N/m",
+        pub servo_stiffness: f64 [1.0..=1000000.0, "N/m"] = 7000.0,
     }
 }
 

@@ -6,58 +6,29 @@
 
 use super::wear::SurfaceWear;
 use ferntast_model::contour::Feature;
-use ferntast_model::{ParameterError, Vector2, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::{Vector2, parameters};
 
-/// True properties of one kind of surface.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TrueSurface {
-    /// Stiffness along the normal \[N/m\].
-    pub stiffness: f64,
-    /// Damping along the normal \[N·s/m\].
-    pub damping: f64,
-    /// Coulomb coefficient \[-\]; where the surface wears, that of day 0.
-    pub friction: f64,
-    /// Stiffness of the bristle \[N/m\].
-    pub tangential_stiffness: f64,
-    /// Damping of the bristle \[N·s/m\].
-    pub tangential_damping: f64,
-    /// What the days do to it; nothing when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wear: Option<SurfaceWear>,
+parameters! {
+    /// True properties of one kind of surface.
+    #[derive(Copy)]
+    pub struct TrueSurface {
+        /// Stiffness along the normal \[N/m\].
+        pub stiffness: f64 [1.0..=1e6, "N/m"],
+        /// Damping along the normal \[N·s/m\].
+        pub damping: f64 [0.0..=1e3, "N·s/m"],
+        /// Coulomb coefficient \[-\]; where the surface wears, that of day 0.
+        pub friction: f64 [0.0..=3.0, "-"],
+        /// Stiffness of the bristle \[N/m\].
+        pub tangential_stiffness: f64 [1.0..=1e6, "N/m"],
+        /// Damping of the bristle \[N·s/m\].
+        pub tangential_damping: f64 [0.0..=1e3, "N·s/m"],
+        /// What the days do to it; nothing when left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub wear: Option<SurfaceWear> [section],
+    }
 }
 
 impl TrueSurface {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("stiffness", self.stiffness, 1.0, 1e6, "N/m")?;
-        check("damping", self.damping, 0.0, 1e3, "N·s/m")?;
-        check("friction", self.friction, 0.0, 3.0, "-")?;
-        check(
-            "tangential_stiffness",
-            self.tangential_stiffness,
-            1.0,
-            1e6,
-            "N/m",
-        )?;
-        check(
-            "tangential_damping",
-            self.tangential_damping,
-            0.0,
-            1e3,
-            "N·s/m",
-        )?;
-        match &self.wear {
-            Some(wear) => wear.validate().map_err(|error| error.within("wear")),
-            None => Ok(()),
-        }
-    }
-
     /// The surface as it is on `day` of the mission.
     pub(super) fn on_day(&self, day: f64) -> TrueSurface {
         self.wear.map_or(*self, |wear| wear.worn(self, day))

@@ -2,72 +2,42 @@
 
 use super::parameters::ArmConfig;
 use ferntast_model::friction::FrictionParameters;
-use ferntast_model::{JOINTS, ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::{JOINTS, ParameterError, parameters};
 
-/// Date and surroundings of the simulated arm.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Environment {
-    /// Days since 2005-01-26 10:00 UTC, when the arm was mounted outside.
-    pub day: f64,
-    /// Holds surroundings and gears at these temperatures instead of sun and
-    /// heaters \[degC\]; friction still warms the gears.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub temperature: Option<[f64; JOINTS]>,
-    /// The sun as the arm sees it.
-    pub sun: Sun,
-}
-
-impl Environment {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("day", self.day, -3652.5, 36_525.0, "d")?;
-        for (key, value) in ["temperature[0]", "temperature[1]"]
-            .into_iter()
-            .zip(self.temperature.into_iter().flatten())
-        {
-            check(key, value, -150.0, 150.0, "degC")?;
-        }
-        self.sun.validate().map_err(|error| error.within("sun"))
+parameters! {
+    /// Date and surroundings of the simulated arm.
+    #[derive(Copy)]
+    pub struct Environment {
+        /// Days since 2005-01-26 10:00 UTC, when the arm was mounted outside.
+        pub day: f64 [-3652.5..=36_525.0, "d"],
+        /// Holds surroundings and gears at these temperatures instead of sun and
+        /// heaters \[degC\]; friction still warms the gears.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub temperature: Option<[f64; JOINTS]> [-150.0..=150.0, "degC"],
+        /// The sun as the arm sees it.
+        pub sun: Sun [section],
     }
 }
 
-/// The sun: it rises and sets once an orbit, and the orbit's plane turns
-/// against it in some two months.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Sun {
-    /// Time of one orbit \[s\].
-    pub orbit_period: f64,
-    /// Share of an orbit that is sunlit \[-\].
-    pub sunlit: f64,
-    /// Days in which the orbit's plane turns once against the sun \[d\].
-    pub season_period: f64,
-    /// Mission day of the strongest sun \[d\].
-    pub season_peak: f64,
-    /// How much the sun's power varies with the season, as a share of its mean \[-\].
-    pub season_share: f64,
+parameters! {
+    /// The sun: it rises and sets once an orbit, and the orbit's plane turns
+    /// against it in some two months.
+    #[derive(Copy)]
+    pub struct Sun {
+        /// Time of one orbit \[s\].
+        pub orbit_period: f64 [60.0..=1e6, "s"],
+        /// Share of an orbit that is sunlit \[-\].
+        pub sunlit: f64 [0.0..=1.0, "-"],
+        /// Days in which the orbit's plane turns once against the sun \[d\].
+        pub season_period: f64 [0.1..=1e4, "d"],
+        /// Mission day of the strongest sun \[d\].
+        pub season_peak: f64 [-1e5..=1e5, "d"],
+        /// How much the sun's power varies with the season, as a share of its mean \[-\].
+        pub season_share: f64 [0.0..=1.0, "-"],
+    }
 }
 
 impl Sun {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("orbit_period", self.orbit_period, 60.0, 1e6, "s")?;
-        check("sunlit", self.sunlit, 0.0, 1.0, "-")?;
-        check("season_period", self.season_period, 0.1, 1e4, "d")?;
-        check("season_peak", self.season_peak, -1e5, 1e5, "d")?;
-        check("season_share", self.season_share, 0.0, 1.0, "-")
-    }
-
     /// Share of the sun's mean power that reaches the arm at the time `seconds`
     /// \[s\] since the start of the mission.
     pub(super) fn share(&self, seconds: f64) -> f64 {
@@ -84,46 +54,25 @@ impl Sun {
 /// Seconds of a day.
 pub(super) const SECONDS_PER_DAY: f64 = 86_400.0;
 
-/// What is different on the ground: section `[ground]` of an arm's file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GroundParameters {
-    /// Temperature of the laboratory \[degC\].
-    pub temperature: f64,
-    /// Mission day of the measurements there, before the launch.
-    pub day: f64,
-    /// Joint 1 and joint 2.
-    pub joint: [GroundJoint; JOINTS],
+parameters! {
+    /// What is different on the ground: section `[ground]` of an arm's file.
+    pub struct GroundParameters {
+        /// Temperature of the laboratory \[degC\].
+        pub temperature: f64 [-150.0..=150.0, "degC"],
+        /// Mission day of the measurements there, before the launch.
+        pub day: f64 [-3652.5..=0.0, "d"],
+        /// Joint 1 and joint 2.
+        pub joint: [GroundJoint; JOINTS] [section],
+    }
 }
 
-/// One joint on the ground.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GroundJoint {
-    /// Stiffness of flex spline and torque sensor \[Nm/rad\].
-    pub stiffness: f64,
-    /// Friction, as it is and as it is believed.
-    pub friction: FrictionParameters,
-}
-
-impl GroundParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("temperature", self.temperature, -150.0, 150.0, "degC")?;
-        check("day", self.day, -3652.5, 0.0, "d")?;
-        for (index, joint) in self.joint.iter().enumerate() {
-            let within = |error: ParameterError| error.within(&format!("joint[{index}]"));
-            check("stiffness", joint.stiffness, 10.0, 1e5, "Nm/rad").map_err(within)?;
-            joint
-                .friction
-                .validate()
-                .map_err(|error| within(error.within("friction")))?;
-        }
-        Ok(())
+parameters! {
+    /// One joint on the ground.
+    pub struct GroundJoint {
+        /// Stiffness of flex spline and torque sensor \[Nm/rad\].
+        pub stiffness: f64 [10.0..=1e5, "Nm/rad"],
+        /// Friction, as it is and as it is believed.
+        pub friction: FrictionParameters [section],
     }
 }
 

@@ -7,56 +7,38 @@
 use super::temperature::{TemperatureDependence, TemperatureShare};
 use super::wear::GearWear;
 use ferntast_model::friction::FrictionParameters;
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::{ParameterError, parameters};
 
-/// True friction of one joint, equation (4), joint side.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TrueFriction {
-    /// Coulomb friction b_0 \[Nm\].
-    pub b_0: f64,
-    /// Load-dependent Coulomb friction b_0T \[-\].
-    #[serde(rename = "b_0T")]
-    pub b_0t: f64,
-    /// Viscous b_1 \[Nm·s/rad\].
-    pub b_1: f64,
-    /// Quadratic viscous b_2 \[Nm·s²/rad²\].
-    pub b_2: f64,
-    /// Cubic viscous b_3 \[Nm·s³/rad³\].
-    pub b_3: f64,
-    /// Speed from which on the viscous part goes on straight, with the slope
-    /// it has there \[rad/s\].
-    pub linear_from: f64,
-    /// What temperature does to it; nothing when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub temperature: Option<TemperatureDependence>,
-    /// What the days do to it; nothing when left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub wear: Option<GearWear>,
+parameters! {
+    /// True friction of one joint, equation (4), joint side.
+    #[derive(Copy)]
+    pub struct TrueFriction {
+        /// Coulomb friction b_0 \[Nm\].
+        pub b_0: f64 [0.0..=200.0, "Nm"],
+        /// Load-dependent Coulomb friction b_0T \[-\].
+        #[serde(rename = "b_0T")]
+        pub b_0t: f64 [-1.0..=1.0, "-", "b_0T"],
+        /// Viscous b_1 \[Nm·s/rad\].
+        pub b_1: f64 [0.0..=5000.0, "Nm·s/rad"],
+        /// Quadratic viscous b_2 \[Nm·s²/rad²\].
+        pub b_2: f64 [-1e4..=1e4, "Nm·s²/rad²"],
+        /// Cubic viscous b_3 \[Nm·s³/rad³\].
+        pub b_3: f64 [-1e4..=1e4, "Nm·s³/rad³"],
+        /// Speed from which on the viscous part goes on straight, with the slope
+        /// it has there \[rad/s\].
+        pub linear_from: f64 [0.01..=100.0, "rad/s"],
+        /// What temperature does to it; nothing when left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub temperature: Option<TemperatureDependence> [section],
+        /// What the days do to it; nothing when left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub wear: Option<GearWear> [section],
+    }
+    check TrueFriction::no_speed_gains_energy;
 }
 
 impl TrueFriction {
-    /// Checks every value against its bounds, and that no speed gains energy.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("b_0", self.b_0, 0.0, 200.0, "Nm")?;
-        check("b_0T", self.b_0t, -1.0, 1.0, "-")?;
-        check("b_1", self.b_1, 0.0, 5000.0, "Nm·s/rad")?;
-        check("b_2", self.b_2, -1e4, 1e4, "Nm·s²/rad²")?;
-        check("b_3", self.b_3, -1e4, 1e4, "Nm·s³/rad³")?;
-        check("linear_from", self.linear_from, 0.01, 100.0, "rad/s")?;
-        if let Some(dependence) = &self.temperature {
-            dependence
-                .validate()
-                .map_err(|error| error.within("temperature"))?;
-        }
-        if let Some(wear) = &self.wear {
-            wear.validate().map_err(|error| error.within("wear"))?;
-        }
+    fn no_speed_gains_energy(&self) -> Result<(), ParameterError> {
         let edge = self.linear_from;
         let slope = self.b_1 + 2.0 * self.b_2 * edge + 3.0 * self.b_3 * edge * edge;
         let gains = (0..=1000)

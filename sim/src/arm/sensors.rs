@@ -1,46 +1,24 @@
 //! What the sensors make of the truth: range, noise, steps.
 
 use super::noise::Noise;
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::parameters;
 
-/// Sensors of one joint.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SensorParameters {
-    /// Steps of the motor encoder in one turn of the motor \[-\].
-    pub encoder_counts: f64,
-    /// Time constant of the drive's velocity filter \[s\].
-    pub velocity_time_constant: f64,
-    /// Noise of the torque sensor, standard deviation \[Nm\].
-    pub torque_noise: f64,
-    /// Step of the torque sensor \[Nm\].
-    pub torque_step: f64,
-    /// Noise of the current measurement, standard deviation \[A\].
-    pub current_noise: f64,
-    /// Step of the current measurement \[A\].
-    pub current_step: f64,
-}
-
-impl SensorParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("encoder_counts", self.encoder_counts, 4.0, 1e9, "-")?;
-        check(
-            "velocity_time_constant",
-            self.velocity_time_constant,
-            0.0,
-            1.0,
-            "s",
-        )?;
-        check("torque_noise", self.torque_noise, 0.0, 10.0, "Nm")?;
-        check("torque_step", self.torque_step, 0.0, 10.0, "Nm")?;
-        check("current_noise", self.current_noise, 0.0, 10.0, "A")?;
-        check("current_step", self.current_step, 0.0, 10.0, "A")
+parameters! {
+    /// Sensors of one joint.
+    #[derive(Copy)]
+    pub struct SensorParameters {
+        /// Steps of the motor encoder in one turn of the motor \[-\].
+        pub encoder_counts: f64 [4.0..=1e9, "-"],
+        /// Time constant of the drive's velocity filter \[s\].
+        pub velocity_time_constant: f64 [0.0..=1.0, "s"],
+        /// Noise of the torque sensor, standard deviation \[Nm\].
+        pub torque_noise: f64 [0.0..=10.0, "Nm"],
+        /// Step of the torque sensor \[Nm\].
+        pub torque_step: f64 [0.0..=10.0, "Nm"],
+        /// Noise of the current measurement, standard deviation \[A\].
+        pub current_noise: f64 [0.0..=10.0, "A"],
+        /// Step of the current measurement \[A\].
+        pub current_step: f64 [0.0..=10.0, "A"],
     }
 }
 

@@ -7,40 +7,28 @@
 //! τ_F(v, T) = τ_F(v, T₀) · (1 + k(v) (T − T₀)),
 //! k(v) = k_fast + (k_slow − k_fast) exp(−λ|v|), λ such that k(v_neutral) = 0.
 
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::parameters;
 
 /// Friction is never less than this share of what it is at the reference
 /// temperature, however far that is.
 const LEAST_SHARE: f64 = 0.1;
 
-/// Temperature dependence of one joint's friction.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TemperatureDependence {
-    /// Temperature T₀ at which the friction parameters hold as they are \[degC\].
-    pub reference: f64,
-    /// Change per kelvin at rest, as a share: k_slow < 0 \[1/K\].
-    pub slow: f64,
-    /// Change per kelvin at high speed, as a share: k_fast > 0 \[1/K\].
-    pub fast: f64,
-    /// Speed v_neutral at which temperature changes nothing \[rad/s\].
-    pub neutral_speed: f64,
+parameters! {
+    /// Temperature dependence of one joint's friction.
+    #[derive(Copy)]
+    pub struct TemperatureDependence {
+        /// Temperature T₀ at which the friction parameters hold as they are \[degC\].
+        pub reference: f64 [-150.0..=150.0, "degC"],
+        /// Change per kelvin at rest, as a share: k_slow < 0 \[1/K\].
+        pub slow: f64 [-0.1..=-1e-6, "1/K"],
+        /// Change per kelvin at high speed, as a share: k_fast > 0 \[1/K\].
+        pub fast: f64 [1e-6..=0.1, "1/K"],
+        /// Speed v_neutral at which temperature changes nothing \[rad/s\].
+        pub neutral_speed: f64 [1e-3..=10.0, "rad/s"],
+    }
 }
 
 impl TemperatureDependence {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("reference", self.reference, -150.0, 150.0, "degC")?;
-        check("slow", self.slow, -0.1, -1e-6, "1/K")?;
-        check("fast", self.fast, 1e-6, 0.1, "1/K")?;
-        check("neutral_speed", self.neutral_speed, 1e-3, 10.0, "rad/s")
-    }
-
     /// −λ of the equation \[s/rad\]. The bounds keep it finite and negative.
     fn decay(&self) -> f64 {
         (self.fast / (self.fast - self.slow)).ln() / self.neutral_speed

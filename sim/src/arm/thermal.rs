@@ -5,55 +5,42 @@
 
 use super::environment::{Environment, SECONDS_PER_DAY, Sun};
 use super::noise::Noise;
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::{ParameterError, check, parameters};
 
 /// Temperature sensors of a joint; the paper averages five of them.
 pub const TEMPERATURE_SENSORS: usize = 5;
 
-/// Thermal parameters of one joint.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ThermalParameters {
-    /// Temperature T_shade that it would come to without sun and heater \[degC\].
-    pub shade: f64,
-    /// Mean power of the sun while it shines on it \[W\].
-    pub sun_power: f64,
-    /// Power of the heater \[W\].
-    pub heater_power: f64,
-    /// Temperature below which the heater is switched on \[degC\].
-    pub heater_on: f64,
-    /// Temperature above which it is switched off \[degC\].
-    pub heater_off: f64,
-    /// Heat capacity \[J/K\].
-    pub capacity: f64,
-    /// Conductance to the surroundings \[W/K\].
-    pub conductance: f64,
-    /// Standard deviation of the sensors' fixed offsets \[K\].
-    pub sensor_offset: f64,
-    /// Standard deviation of one reading \[K\].
-    pub sensor_noise: f64,
-    /// Time between two readings \[s\].
-    pub sensor_period: f64,
+parameters! {
+    /// Thermal parameters of one joint.
+    #[derive(Copy)]
+    pub struct ThermalParameters {
+        /// Temperature T_shade that it would come to without sun and heater \[degC\].
+        pub shade: f64 [-150.0..=150.0, "degC"],
+        /// Mean power of the sun while it shines on it \[W\].
+        pub sun_power: f64 [0.0..=1e4, "W"],
+        /// Power of the heater \[W\].
+        pub heater_power: f64 [0.0..=1e4, "W"],
+        /// Temperature below which the heater is switched on \[degC\].
+        pub heater_on: f64,
+        /// Temperature above which it is switched off \[degC\].
+        pub heater_off: f64 [-150.0..=150.0, "degC"],
+        /// Heat capacity \[J/K\].
+        pub capacity: f64 [1.0..=1e6, "J/K"],
+        /// Conductance to the surroundings \[W/K\].
+        pub conductance: f64 [0.0..=1e3, "W/K"],
+        /// Standard deviation of the sensors' fixed offsets \[K\].
+        pub sensor_offset: f64 [0.0..=20.0, "K"],
+        /// Standard deviation of one reading \[K\].
+        pub sensor_noise: f64 [0.0..=20.0, "K"],
+        /// Time between two readings \[s\].
+        pub sensor_period: f64 [1e-3..=60.0, "s"],
+    }
+    check ThermalParameters::heater_goes_on_below;
 }
 
 impl ThermalParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("shade", self.shade, -150.0, 150.0, "degC")?;
-        check("sun_power", self.sun_power, 0.0, 1e4, "W")?;
-        check("heater_power", self.heater_power, 0.0, 1e4, "W")?;
-        check("heater_off", self.heater_off, -150.0, 150.0, "degC")?;
-        check("heater_on", self.heater_on, -150.0, self.heater_off, "degC")?;
-        check("capacity", self.capacity, 1.0, 1e6, "J/K")?;
-        check("conductance", self.conductance, 0.0, 1e3, "W/K")?;
-        check("sensor_offset", self.sensor_offset, 0.0, 20.0, "K")?;
-        check("sensor_noise", self.sensor_noise, 0.0, 20.0, "K")?;
-        check("sensor_period", self.sensor_period, 1e-3, 60.0, "s")
+    fn heater_goes_on_below(&self) -> Result<(), ParameterError> {
+        check("heater_on", self.heater_on, -150.0, self.heater_off, "degC")
     }
 }
 

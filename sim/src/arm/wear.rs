@@ -2,32 +2,22 @@
 
 use super::contact::TrueSurface;
 use super::friction::TrueFriction;
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::parameters;
 
 const DAYS_PER_YEAR: f64 = 365.25;
 
-/// Wear of one gear: all its friction grows evenly with the days (Figs. 7, 10, 11).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GearWear {
-    /// Growth of friction, as a share of it \[1/year\].
-    pub per_year: f64,
-    /// Mission day at which the friction parameters hold as they are.
-    pub reference_day: f64,
+parameters! {
+    /// Wear of one gear: all its friction grows evenly with the days (Figs. 7, 10, 11).
+    #[derive(Copy)]
+    pub struct GearWear {
+        /// Growth of friction, as a share of it \[1/year\].
+        pub per_year: f64 [0.0..=1.0, "1/year"],
+        /// Mission day at which the friction parameters hold as they are.
+        pub reference_day: f64 [0.0..=36_525.0, "d"],
+    }
 }
 
 impl GearWear {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("per_year", self.per_year, 0.0, 1.0, "1/year")?;
-        check("reference_day", self.reference_day, 0.0, 36_525.0, "d")
-    }
-
     /// `friction` as it is on `day` of the mission.
     pub(super) fn worn(&self, friction: &TrueFriction, day: f64) -> TrueFriction {
         let years = (day - self.reference_day) / DAYS_PER_YEAR;
@@ -43,28 +33,19 @@ impl GearWear {
     }
 }
 
-/// Wear of a surface: its Coulomb coefficient goes from `friction` on day 0
-/// towards `worn_friction` (Fig. 17).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceWear {
-    /// Coulomb coefficient in the end \[-\].
-    pub worn_friction: f64,
-    /// Days in which 63 % of the way is gone \[d\].
-    pub days: f64,
+parameters! {
+    /// Wear of a surface: its Coulomb coefficient goes from `friction` on day 0
+    /// towards `worn_friction` (Fig. 17).
+    #[derive(Copy)]
+    pub struct SurfaceWear {
+        /// Coulomb coefficient in the end \[-\].
+        pub worn_friction: f64 [0.0..=3.0, "-"],
+        /// Days in which 63 % of the way is gone \[d\].
+        pub days: f64 [1e-3..=1e6, "d"],
+    }
 }
 
 impl SurfaceWear {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("worn_friction", self.worn_friction, 0.0, 3.0, "-")?;
-        check("days", self.days, 1e-3, 1e6, "d")
-    }
-
     /// `surface` as it is on `day` of the mission; before it, as on day 0.
     pub(super) fn worn(&self, surface: &TrueSurface, day: f64) -> TrueSurface {
         let left = (-day.max(0.0) / self.days).exp();

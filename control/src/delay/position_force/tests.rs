@@ -212,7 +212,7 @@ fn parameters_out_of_bounds_are_named() {
         deadline: 0.5,
         ..PositionForce::default()
     };
-    let error = law.check().unwrap_err();
+    let error = law.validate().unwrap_err();
     assert_eq!(error.key(), "deadline");
     assert!(error.to_string().contains("0.03"), "{error}");
 }
