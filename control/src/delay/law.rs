@@ -5,7 +5,7 @@ use super::{
     LeaderEnd, LeaderInput, LeaderOutput, Mapping, ModelMediated, Parameters, PositionForce,
     PositionPosition, Tdpa, Wave,
 };
-use ferntast_model::ParameterError;
+use ferntast_model::{ParameterError, Section};
 use serde::{Deserialize, Serialize};
 
 /// Makes [`Law`] and its ends from one line a law.
@@ -153,6 +153,13 @@ impl Law {
     /// \[-\]: energy at the follower's port times this compares with the leader's.
     pub fn power_scale(&self) -> f64 {
         self.mapping().power_scale()
+    }
+}
+
+impl Section for Law {
+    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
+        let within = |error: ParameterError| error.within(&format!("{key} ({})", self.name()));
+        self.validate().map_err(within)
     }
 }
 

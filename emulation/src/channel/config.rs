@@ -1,32 +1,23 @@
 //! What a channel does to frames: the files in `config/links/`.
 
-use ferntast_model::{ParameterError, check};
+use ferntast_model::{ParameterError, Section, check, parameters};
 use serde::{Deserialize, Serialize};
 
-/// Both directions of a link.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LinkConfig {
-    /// What it stands for, and where its figures come from.
-    #[serde(default)]
-    pub description: String,
-    /// Leader to follower: motion forward.
-    pub up: ChannelConfig,
-    /// Follower to leader: force back.
-    pub down: ChannelConfig,
+parameters! {
+    /// Both directions of a link.
+    #[derive(Default)]
+    pub struct LinkConfig {
+        /// What it stands for, and where its figures come from.
+        #[serde(default)]
+        pub description: String,
+        /// Leader to follower: motion forward.
+        pub up: ChannelConfig [section],
+        /// Follower to leader: force back.
+        pub down: ChannelConfig [section],
+    }
 }
 
 impl LinkConfig {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, with key, value, bounds, unit.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        self.up.validate().map_err(|error| error.within("up"))?;
-        self.down.validate().map_err(|error| error.within("down"))
-    }
-
     /// Round trip of a frame of `bytes` each way through empty queues and
     /// without jitter \[s\].
     pub fn nominal_round_trip(&self, bytes: usize) -> f64 {
@@ -34,27 +25,27 @@ impl LinkConfig {
     }
 }
 
-/// One direction. What is left out does nothing.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ChannelConfig {
-    /// Fixed delay, after transmission \[s\].
-    pub delay: f64,
-    /// What the delay varies by.
-    pub jitter: Option<Jitter>,
-    /// Whether jitter lets frames overtake each other; otherwise a frame waits
-    /// for those before it.
-    pub overtaking: bool,
-    /// Which frames are lost.
-    pub loss: Option<Loss>,
-    /// Frames that are held back so that later ones overtake them.
-    pub reordering: Option<Reordering>,
-    /// Probability that a frame arrives twice \[-\].
-    pub duplication: f64,
-    /// How fast bits go in.
-    pub bandwidth: Option<Bandwidth>,
-    /// When nothing goes in.
-    pub blackout: Vec<Blackout>,
+parameters! {
+    /// One direction. What is left out does nothing.
+    pub struct ChannelConfig {
+        /// Fixed delay, after transmission \[s\].
+        pub delay: f64 [0.0..=LONGEST_DELAY, "s"] = 0.0,
+        /// What the delay varies by.
+        pub jitter: Option<Jitter> [section] = None,
+        /// Whether jitter lets frames overtake each other; otherwise a frame waits
+        /// for those before it.
+        pub overtaking: bool = false,
+        /// Which frames are lost.
+        pub loss: Option<Loss> [section] = None,
+        /// Frames that are held back so that later ones overtake them.
+        pub reordering: Option<Reordering> [section] = None,
+        /// Probability that a frame arrives twice \[-\].
+        pub duplication: f64 [0.0..=1.0, "-"] = 0.0,
+        /// How fast bits go in.
+        pub bandwidth: Option<Bandwidth> [section] = None,
+        /// When nothing goes in.
+        pub blackout: Vec<Blackout> [section] = Vec::new(),
+    }
 }
 
 /// Distribution of what is added to the delay of each frame, independently.
@@ -77,6 +68,17 @@ pub enum Jitter {
         /// \[s\]
         mean: f64,
     },
+}
+
+impl Section for Jitter {
+    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
+        let (name, value) = match *self {
+            Jitter::Uniform { half_width } => ("half_width", half_width),
+            Jitter::Normal { deviation } => ("deviation", deviation),
+            Jitter::Exponential { mean } => ("mean", mean),
+        };
+        check(&format!("{key}.{name}"), value, 0.0, LONGEST_DELAY, "s")
+    }
 }
 
 /// Which frames are lost.
@@ -121,40 +123,66 @@ impl Loss {
     }
 }
 
-/// Frames that are held back.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Reordering {
-    /// Probability that a frame is held back \[-\].
-    pub probability: f64,
-    /// By how much \[s\].
-    pub hold_back: f64,
+impl Section for Loss {
+    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
+        let share = |name: &str, value: f64, least: f64| {
+            check(&format!("{key}.{name}"), value, least, 1.0, "-")
+        };
+        match *self {
+            Loss::Independent { probability } => share("probability", probability, 0.0),
+            Loss::GilbertElliott {
+                good_to_bad,
+                bad_to_good,
+                loss_in_good,
+                loss_in_bad,
+            } => {
+                share("good_to_bad", good_to_bad, 0.0)?;
+                // Zero would be a state that is never left.
+                share("bad_to_good", bad_to_good, 1e-6)?;
+                share("loss_in_good", loss_in_good, 0.0)?;
+                share("loss_in_bad", loss_in_bad, 0.0)
+            }
+        }
+    }
 }
 
-/// How fast bits go in.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Bandwidth {
-    /// \[bit/s\]
-    pub rate: f64,
-    /// Bytes that may wait for transmission; what comes on top is dropped.
-    pub queue: u32,
-    /// Bytes that each frame costs on top of its own.
-    #[serde(default)]
-    pub overhead: u32,
+parameters! {
+    /// Frames that are held back.
+    #[derive(Copy)]
+    pub struct Reordering {
+        /// Probability that a frame is held back \[-\].
+        pub probability: f64 [0.0..=1.0, "-"],
+        /// By how much \[s\].
+        pub hold_back: f64 [0.0..=LONGEST_DELAY, "s"],
+    }
 }
 
-/// A time in which every frame that goes in is lost.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Blackout {
-    /// Start after the channel's first frame \[s\].
-    pub start: f64,
-    /// \[s\]
-    pub duration: f64,
-    /// From one start to the next \[s\]; 0 for once.
-    #[serde(default)]
-    pub period: f64,
+parameters! {
+    /// How fast bits go in.
+    #[derive(Copy)]
+    pub struct Bandwidth {
+        /// \[bit/s\]
+        pub rate: f64 [100.0..=1e12, "bit/s"],
+        /// Bytes that may wait for transmission; what comes on top is dropped.
+        pub queue: u32 [64.0..=1e9, "byte"],
+        /// Bytes that each frame costs on top of its own.
+        #[serde(default)]
+        pub overhead: u32 [0.0..=10_000.0, "byte"],
+    }
+}
+
+parameters! {
+    /// A time in which every frame that goes in is lost.
+    #[derive(Copy)]
+    pub struct Blackout {
+        /// Start after the channel's first frame \[s\].
+        pub start: f64 [0.0..=1e9, "s"],
+        /// \[s\]
+        pub duration: f64 [0.0..=1e9, "s"],
+        /// From one start to the next \[s\]; 0 for once.
+        #[serde(default)]
+        pub period: f64 [0.0..=1e9, "s"],
+    }
 }
 
 impl Blackout {
@@ -196,68 +224,5 @@ impl ChannelConfig {
     /// Share of frames lost in the long run, blackouts and queue apart \[-\].
     pub fn mean_loss(&self) -> f64 {
         self.loss.map_or(0.0, |loss| loss.mean())
-    }
-
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, with key, value, bounds, unit.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("delay", self.delay, 0.0, LONGEST_DELAY, "s")?;
-        let (key, value) = match self.jitter {
-            None => ("jitter", 0.0),
-            Some(Jitter::Uniform { half_width }) => ("jitter.half_width", half_width),
-            Some(Jitter::Normal { deviation }) => ("jitter.deviation", deviation),
-            Some(Jitter::Exponential { mean }) => ("jitter.mean", mean),
-        };
-        check(key, value, 0.0, LONGEST_DELAY, "s")?;
-        match self.loss {
-            None => {}
-            Some(Loss::Independent { probability }) => {
-                check("loss.probability", probability, 0.0, 1.0, "-")?;
-            }
-            Some(Loss::GilbertElliott {
-                good_to_bad,
-                bad_to_good,
-                loss_in_good,
-                loss_in_bad,
-            }) => {
-                check("loss.good_to_bad", good_to_bad, 0.0, 1.0, "-")?;
-                // Zero would be a state that is never left.
-                check("loss.bad_to_good", bad_to_good, 1e-6, 1.0, "-")?;
-                check("loss.loss_in_good", loss_in_good, 0.0, 1.0, "-")?;
-                check("loss.loss_in_bad", loss_in_bad, 0.0, 1.0, "-")?;
-            }
-        }
-        if let Some(own) = self.reordering {
-            check("reordering.probability", own.probability, 0.0, 1.0, "-")?;
-            check(
-                "reordering.hold_back",
-                own.hold_back,
-                0.0,
-                LONGEST_DELAY,
-                "s",
-            )?;
-        }
-        check("duplication", self.duplication, 0.0, 1.0, "-")?;
-        if let Some(own) = self.bandwidth {
-            check("bandwidth.rate", own.rate, 100.0, 1e12, "bit/s")?;
-            check("bandwidth.queue", f64::from(own.queue), 64.0, 1e9, "byte")?;
-            check(
-                "bandwidth.overhead",
-                f64::from(own.overhead),
-                0.0,
-                10_000.0,
-                "byte",
-            )?;
-        }
-        for (index, own) in self.blackout.iter().enumerate() {
-            let key = |name: &str| format!("blackout[{index}].{name}");
-            check(&key("start"), own.start, 0.0, 1e9, "s")?;
-            check(&key("duration"), own.duration, 0.0, 1e9, "s")?;
-            check(&key("period"), own.period, 0.0, 1e9, "s")?;
-        }
-        Ok(())
     }
 }

@@ -10,43 +10,20 @@
 //! maintained posture"; Speich, Shao, Goldfarb 2005, "Modeling the human hand as it
 //! interacts with a telemanipulation system").
 
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::parameters;
 
-/// Impedance of hand and handle, the same along both axes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ImpedanceParameters {
-    /// M \[kg\].
-    pub mass: f64,
-    /// B \[N·s/m\].
-    pub damping: f64,
-    /// K \[N/m\].
-    pub stiffness: f64,
-}
-
-impl Default for ImpedanceParameters {
-    /// A firm grip, as it is often taken in stability analyses of
-    /// teleoperators (Hashtrudi-Zaad and Salcudean 2001).
-    fn default() -> Self {
-        ImpedanceParameters {
-            mass: 0.5,
-            damping: 50.0,
-            stiffness: 1000.0,
-        }
-    }
-}
-
-impl ImpedanceParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("mass", self.mass, 0.01, 20.0, "kg")?;
-        check("damping", self.damping, 0.0, 1000.0, "N·s/m")?;
-        check("stiffness", self.stiffness, 1.0, 10_000.0, "N/m")
+parameters! {
+    /// Impedance of hand and handle, the same along both axes; by default a firm
+    /// grip, as it is often taken in stability analyses of teleoperators
+    /// (Hashtrudi-Zaad and Salcudean 2001).
+    #[derive(Copy)]
+    pub struct ImpedanceParameters {
+        /// M \[kg\].
+        pub mass: f64 [0.01..=20.0, "kg"] = 0.5,
+        /// B \[N·s/m\].
+        pub damping: f64 [0.0..=1000.0, "N·s/m"] = 50.0,
+        /// K \[N/m\].
+        pub stiffness: f64 [1.0..=10_000.0, "N/m"] = 1000.0,
     }
 }
 

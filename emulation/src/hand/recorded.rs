@@ -1,8 +1,7 @@
 //! Recorded human motion, from text.
 
 use super::HandState;
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::{ParameterError, parameters};
 
 /// Why a recording cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -181,38 +180,17 @@ fn number(text: &str, line: usize, column: &'static str) -> Result<f64, Recordin
     Ok(value)
 }
 
-/// How a recording is played.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RecordedHandConfig {
-    /// Whether it starts again at its end.
-    pub repeat: bool,
-    /// Time in which the hand goes from the end back to the start, when it
-    /// repeats \[s\].
-    pub return_time: f64,
-    /// Positions are multiplied by this \[-\].
-    pub scale: f64,
-}
-
-impl Default for RecordedHandConfig {
-    fn default() -> Self {
-        RecordedHandConfig {
-            repeat: false,
-            return_time: 1.0,
-            scale: 1.0,
-        }
-    }
-}
-
-impl RecordedHandConfig {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("return_time", self.return_time, 0.01, 60.0, "s")?;
-        check("scale", self.scale, -100.0, 100.0, "-")
+parameters! {
+    /// How a recording is played.
+    #[derive(Copy)]
+    pub struct RecordedHandConfig {
+        /// Whether it starts again at its end.
+        pub repeat: bool = false,
+        /// Time in which the hand goes from the end back to the start, when it
+        /// repeats \[s\].
+        pub return_time: f64 [0.01..=60.0, "s"] = 1.0,
+        /// Positions are multiplied by this \[-\].
+        pub scale: f64 [-100.0..=100.0, "-"] = 1.0,
     }
 }
 

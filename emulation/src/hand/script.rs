@@ -1,7 +1,7 @@
 //! The scripted operator: a hand with an impedance whose target follows a script.
 
 use super::{HandImpedance, HandState, ImpedanceParameters, Tremor, TremorParameters};
-use ferntast_model::{ParameterError, check};
+use ferntast_model::{Bounded, ParameterError, Section, check, parameters};
 use serde::{Deserialize, Serialize};
 
 /// How the target moves in one phase. It starts where the phase before ended.
@@ -44,81 +44,52 @@ pub struct Phase {
     pub motion: Motion,
 }
 
-/// Where the target goes.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Script {
-    /// Where it starts, leader base frame \[m\].
-    #[serde(default)]
-    pub start: [f64; 2],
-    /// Whether it goes on with the first phase after the last.
-    #[serde(default)]
-    pub repeat: bool,
-    /// The phases, in order.
-    pub phase: Vec<Phase>,
-}
-
-impl Script {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, with key, value, bounds, unit.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("start[0]", self.start[0], -1.0, 1.0, "m")?;
-        check("start[1]", self.start[1], -1.0, 1.0, "m")?;
-        for (index, phase) in self.phase.iter().enumerate() {
-            let key = |name: &str| format!("phase[{index}].{name}");
-            check(&key("duration"), phase.duration, 0.01, 3600.0, "s")?;
-            let (name, point) = match phase.motion {
-                Motion::Reach { to } | Motion::Slide { to } => ("to", to),
-                Motion::Sine {
-                    amplitude,
-                    frequency,
-                } => {
-                    check(&key("frequency"), frequency, 0.0, 50.0, "Hz")?;
-                    ("amplitude", amplitude)
-                }
-                Motion::Hold {} => ("to", [0.0; 2]),
-            };
-            for (axis, value) in point.into_iter().enumerate() {
-                check(&key(&format!("{name}[{axis}]")), value, -1.0, 1.0, "m")?;
-            }
-        }
-        Ok(())
+parameters! {
+    /// Where the target goes.
+    #[derive(Default)]
+    pub struct Script {
+        /// Where it starts, leader base frame \[m\].
+        #[serde(default)]
+        pub start: [f64; 2] [-1.0..=1.0, "m"],
+        /// Whether it goes on with the first phase after the last.
+        #[serde(default)]
+        pub repeat: bool,
+        /// The phases, in order.
+        pub phase: Vec<Phase> [section],
     }
 }
 
-/// A scripted operator: the section `[hand]` of a scenario.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ScriptedHandConfig {
-    /// Impedance of the hand.
-    #[serde(default)]
-    pub impedance: ImpedanceParameters,
-    /// Trembling; none when left out.
-    #[serde(default)]
-    pub tremor: Option<TremorParameters>,
-    /// Where it wants to be.
-    pub script: Script,
+impl Section for Phase {
+    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
+        let key = |name: &str| format!("{key}.{name}");
+        check(&key("duration"), self.duration, 0.01, 3600.0, "s")?;
+        let (name, point) = match self.motion {
+            Motion::Reach { to } | Motion::Slide { to } => ("to", to),
+            Motion::Sine {
+                amplitude,
+                frequency,
+            } => {
+                check(&key("frequency"), frequency, 0.0, 50.0, "Hz")?;
+                ("amplitude", amplitude)
+            }
+            Motion::Hold {} => return Ok(()),
+        };
+        point.check_bounds(&key(name), &(-1.0..=1.0), "m")
+    }
 }
 
-impl ScriptedHandConfig {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, with key, value, bounds, unit.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        self.impedance
-            .validate()
-            .map_err(|error| error.within("impedance"))?;
-        if let Some(tremor) = &self.tremor {
-            tremor.validate().map_err(|error| error.within("tremor"))?;
-        }
-        self.script
-            .validate()
-            .map_err(|error| error.within("script"))
+parameters! {
+    /// A scripted operator: the section `[hand]` of a scenario.
+    #[derive(Default)]
+    pub struct ScriptedHandConfig {
+        /// Impedance of the hand.
+        #[serde(default)]
+        pub impedance: ImpedanceParameters [section],
+        /// Trembling; none when left out.
+        #[serde(default)]
+        pub tremor: Option<TremorParameters> [section],
+        /// Where it wants to be.
+        pub script: Script [section],
     }
 }
 

@@ -2,25 +2,14 @@
 //! Koller 1990, *Tremor*; Riviere, Rader, Khosla 1997 found about 50 µm).
 
 use crate::random::Random;
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::parameters;
 
-/// How a hand trembles.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TremorParameters {
-    /// Root mean square along each axis \[m\].
-    pub amplitude: f64,
-}
-
-impl TremorParameters {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("amplitude", self.amplitude, 0.0, 0.01, "m")
+parameters! {
+    /// How a hand trembles.
+    #[derive(Copy)]
+    pub struct TremorParameters {
+        /// Root mean square along each axis \[m\].
+        pub amplitude: f64 [0.0..=0.01, "m"],
     }
 }
 

@@ -6,67 +6,67 @@ use ferntast_control::{
     delay::Law, haptics::MasterConfig, playout::LONGEST_BUFFER, servo::ServoConfig,
 };
 use ferntast_emulation::hand::{RecordedHandConfig, ScriptedHandConfig};
-use ferntast_model::{ParameterError, check};
+use ferntast_model::parameters;
 use serde::{Deserialize, Serialize};
 
-/// A file of `config/scenarios/`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Scenario {
-    /// Its name.
-    pub name: String,
-    /// What it is, in a sentence.
-    pub description: String,
-    /// The arm: a file of `config/arms/` or a path.
-    pub arm: String,
-    /// Seed of everything that is random.
-    pub seed: u64,
-    /// Length in lockstep, where no other is asked for \[s\].
-    pub duration: f64,
-    /// Where virtual time starts: seconds since the UNIX epoch \[s\].
-    pub start: i64,
-    /// The hand on the master.
-    pub hand: HandSection,
-    /// The link.
-    pub link: LinkSection,
-    /// The delay law.
-    pub law: Law,
-    /// Parameters of the laws that it may be switched to; one that is not
-    /// listed has its defaults, and the scales and the offset of `law`.
-    #[serde(default)]
-    pub laws: Vec<Law>,
-    /// The joint servo.
-    #[serde(default)]
-    pub servo: ServoConfig,
-    /// The haptic master bridge.
-    #[serde(default)]
-    pub master: MasterConfig,
-    /// ROS 2.
-    #[serde(default)]
-    pub gateway: GatewaySection,
-    /// Recordings.
-    #[serde(default)]
-    pub recorder: RecorderSection,
-    /// Warnings near the arm's limits; without this section there are none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limits: Option<LimitsSection>,
+parameters! {
+    /// A file of `config/scenarios/`.
+    pub struct Scenario {
+        /// Its name.
+        pub name: String,
+        /// What it is, in a sentence.
+        pub description: String,
+        /// The arm: a file of `config/arms/` or a path.
+        pub arm: String,
+        /// Seed of everything that is random.
+        pub seed: u64,
+        /// Length in lockstep, where no other is asked for \[s\].
+        pub duration: f64 [0.01..=1e6, "s"],
+        /// Where virtual time starts: seconds since the UNIX epoch \[s\].
+        pub start: i64 [1.0..=2e9, "s"],
+        /// The hand on the master.
+        pub hand: HandSection [section],
+        /// The link.
+        pub link: LinkSection [section],
+        /// The delay law.
+        pub law: Law [section],
+        /// Parameters of the laws that it may be switched to; one that is not
+        /// listed has its defaults, and the scales and the offset of `law`.
+        #[serde(default)]
+        pub laws: Vec<Law> [section],
+        /// The joint servo.
+        #[serde(default)]
+        pub servo: ServoConfig [section],
+        /// The haptic master bridge.
+        #[serde(default)]
+        pub master: MasterConfig [section],
+        /// ROS 2.
+        #[serde(default)]
+        pub gateway: GatewaySection [section],
+        /// Recordings.
+        #[serde(default)]
+        pub recorder: RecorderSection [section],
+        /// Warnings near the arm's limits; without this section there are none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub limits: Option<LimitsSection> [section],
+    }
 }
 
-/// The hand on the master.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct HandSection {
-    /// Whose hand.
-    pub source: HandSource,
-    /// The scripted operator.
-    #[serde(default)]
-    pub scripted: Option<ScriptedHandConfig>,
-    /// File with recorded motion (t_s,x_m,y_m), relative to the scenario's folder.
-    #[serde(default)]
-    pub recording: Option<PathBuf>,
-    /// How a recorded motion is played.
-    #[serde(default)]
-    pub recorded: RecordedHandConfig,
+parameters! {
+    /// The hand on the master.
+    pub struct HandSection {
+        /// Whose hand.
+        pub source: HandSource,
+        /// The scripted operator.
+        #[serde(default)]
+        pub scripted: Option<ScriptedHandConfig> [section],
+        /// File with recorded motion (t_s,x_m,y_m), relative to the scenario's folder.
+        #[serde(default)]
+        pub recording: Option<PathBuf>,
+        /// How a recorded motion is played.
+        #[serde(default)]
+        pub recorded: RecordedHandConfig [section],
+    }
 }
 
 /// Whose hand moves the master.
@@ -81,19 +81,19 @@ pub enum HandSource {
     Crtk,
 }
 
-/// The link.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LinkSection {
-    /// The channel: a file of `config/links/` or a path.
-    pub channel: String,
-    /// Where the arm's end listens and the operator's end connects to.
-    #[serde(default = "link_endpoint")]
-    pub endpoint: String,
-    /// Jitter buffer at both ends: frames are played out evenly, this much after
-    /// the quickest way; 0 acts on the newest at once \[s\].
-    #[serde(default)]
-    pub buffer: f64,
+parameters! {
+    /// The link.
+    pub struct LinkSection {
+        /// The channel: a file of `config/links/` or a path.
+        pub channel: String,
+        /// Where the arm's end listens and the operator's end connects to.
+        #[serde(default = "link_endpoint")]
+        pub endpoint: String,
+        /// Jitter buffer at both ends: frames are played out evenly, this much after
+        /// the quickest way; 0 acts on the newest at once \[s\].
+        #[serde(default)]
+        pub buffer: f64 [0.0..=LONGEST_BUFFER, "s"],
+    }
 }
 
 fn link_endpoint() -> String {
@@ -110,45 +110,31 @@ pub enum Middleware {
     Zenoh,
 }
 
-/// ROS 2.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct GatewaySection {
-    /// How ROS 2 is reached.
-    pub middleware: Middleware,
-    /// ROS domain.
-    pub domain_id: u32,
-    /// Name of the node on ROS 2.
-    pub node_name: String,
-    /// Endpoint of our own Zenoh router.
-    pub router_endpoint: String,
-    /// Most messages a second on a servo stream of the follower \[Hz\].
-    pub stream_rate: f64,
-    /// Most messages a second on a servo stream of the leader \[Hz\].
-    pub leader_rate: f64,
-    /// Whether peers may command joint positions on `/follower/servo_jp`, past
-    /// the master, the link and the authority of who holds them.
-    #[serde(skip_serializing_if = "is_off")]
-    pub servo_jp: bool,
+parameters! {
+    /// ROS 2.
+    pub struct GatewaySection {
+        /// How ROS 2 is reached.
+        pub middleware: Middleware = Middleware::Dds,
+        /// ROS domain.
+        pub domain_id: u32 [0.0..=232.0, "-"] = 0,
+        /// Name of the node on ROS 2.
+        pub node_name: String = "ferntast".to_owned(),
+        /// Endpoint of our own Zenoh router.
+        pub router_endpoint: String = "tcp/127.0.0.1:7447".to_owned(),
+        /// Most messages a second on a servo stream of the follower \[Hz\].
+        pub stream_rate: f64 [1.0..=1000.0, "Hz"] = 250.0,
+        /// Most messages a second on a servo stream of the leader \[Hz\].
+        pub leader_rate: f64 [1.0..=1000.0, "Hz"] = 500.0,
+        /// Whether peers may command joint positions on `/follower/servo_jp`, past
+        /// the master, the link and the authority of who holds them.
+        #[serde(skip_serializing_if = "is_off")]
+        pub servo_jp: bool = false,
+    }
 }
 
 /// A switch that is off is not written into recordings, which had none before.
 fn is_off(switch: &bool) -> bool {
     !switch
-}
-
-impl Default for GatewaySection {
-    fn default() -> Self {
-        GatewaySection {
-            middleware: Middleware::Dds,
-            domain_id: 0,
-            node_name: "ferntast".to_owned(),
-            router_endpoint: "tcp/127.0.0.1:7447".to_owned(),
-            stream_rate: 250.0,
-            leader_rate: 500.0,
-            servo_jp: false,
-        }
-    }
 }
 
 impl GatewaySection {
@@ -158,47 +144,25 @@ impl GatewaySection {
     }
 }
 
-/// Recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RecorderSection {
-    /// Messages of one topic that may wait for the recorder.
-    pub queue: usize,
-}
-
-impl Default for RecorderSection {
-    fn default() -> Self {
-        RecorderSection { queue: 64 }
+parameters! {
+    /// Recordings.
+    #[derive(Copy)]
+    pub struct RecorderSection {
+        /// Messages of one topic that may wait for the recorder.
+        pub queue: usize [1.0..=64.0, "messages"] = 64,
     }
 }
 
-/// How near to the arm's limits is near.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct LimitsSection {
-    /// From the end of a joint's range \[rad\].
-    pub position_margin: f64,
-    /// Share of the torque sensor's range \[-\].
-    pub torque_share: f64,
-    /// Temperature of a joint \[degC\].
-    pub temperature: f64,
-}
-
-impl Default for LimitsSection {
-    fn default() -> Self {
-        LimitsSection {
-            position_margin: 0.1,
-            torque_share: 0.8,
-            temperature: 60.0,
-        }
-    }
-}
-
-impl LimitsSection {
-    fn validate(&self) -> Result<(), ParameterError> {
-        check("position_margin", self.position_margin, 0.0, 3.0, "rad")?;
-        check("torque_share", self.torque_share, 0.0, 1.0, "-")?;
-        check("temperature", self.temperature, -50.0, 150.0, "degC")
+parameters! {
+    /// How near to the arm's limits is near.
+    #[derive(Copy)]
+    pub struct LimitsSection {
+        /// From the end of a joint's range \[rad\].
+        pub position_margin: f64 [0.0..=3.0, "rad"] = 0.1,
+        /// Share of the torque sensor's range \[-\].
+        pub torque_share: f64 [0.0..=1.0, "-"] = 0.8,
+        /// Temperature of a joint \[degC\].
+        pub temperature: f64 [-50.0..=150.0, "degC"] = 60.0,
     }
 }
 
@@ -231,47 +195,5 @@ impl Scenario {
             recorder: RecorderSection::default(),
             limits: None,
         }
-    }
-
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds, with key, value, bounds, unit.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("duration", self.duration, 0.01, 1e6, "s")?;
-        check("start", self.start as f64, 1.0, 2e9, "s")?;
-        if let Some(scripted) = &self.hand.scripted {
-            scripted
-                .validate()
-                .map_err(|error| error.within("hand.scripted"))?;
-        }
-        self.hand
-            .recorded
-            .validate()
-            .map_err(|error| error.within("hand.recorded"))?;
-        self.law.validate().map_err(|error| error.within("law"))?;
-        for law in &self.laws {
-            law.validate()
-                .map_err(|error| error.within(&format!("laws ({})", law.name())))?;
-        }
-        self.servo
-            .validate()
-            .map_err(|error| error.within("servo"))?;
-        self.master
-            .validate()
-            .map_err(|error| error.within("master"))?;
-        check("buffer", self.link.buffer, 0.0, LONGEST_BUFFER, "s")
-            .map_err(|error| error.within("link"))?;
-        let gateway = &self.gateway;
-        let within = |error: ParameterError| error.within("gateway");
-        check("stream_rate", gateway.stream_rate, 1.0, 1000.0, "Hz").map_err(within)?;
-        check("leader_rate", gateway.leader_rate, 1.0, 1000.0, "Hz").map_err(within)?;
-        check("domain_id", f64::from(gateway.domain_id), 0.0, 232.0, "-").map_err(within)?;
-        self.limits
-            .map_or(Ok(()), |limits| limits.validate())
-            .map_err(|error| error.within("limits"))?;
-        check("queue", self.recorder.queue as f64, 1.0, 64.0, "messages")
-            .map_err(|error| error.within("recorder"))
     }
 }

@@ -83,7 +83,7 @@ impl Trial {
     ///
     /// # Errors
     ///
-    /// The first value of law, link or hand that is out of bounds.
+    /// The first value of law, link, hand or tip that is out of bounds.
     pub fn run(&self) -> Result<Outcome, ParameterError> {
         self.run_with(|_| {})
     }
@@ -97,6 +97,7 @@ impl Trial {
         self.law.validate()?;
         self.link.validate()?;
         self.hand.validate()?;
+        self.tip.validate()?;
         let (forth, back) = (
             self.link.up.nominal_delay(FRAME_LENGTH),
             self.link.down.nominal_delay(FRAME_LENGTH),

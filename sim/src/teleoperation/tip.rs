@@ -2,36 +2,25 @@
 //! damper pull to where it is told, the same along both axes.
 
 use super::environment::{Environment, Surface};
-use serde::{Deserialize, Serialize};
+use ferntast_model::parameters;
 
 /// Steps of the dynamics in a tick of the laws.
 const SUBSTEPS: u32 = 4;
 
-/// The servo: mass, natural frequency, damping ratio.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct TipParameters {
-    /// Mass at the tip \[kg\].
-    pub mass: f64,
-    /// Natural frequency \[rad/s\].
-    pub frequency: f64,
-    /// Damping ratio \[-\].
-    pub damping_ratio: f64,
-    /// How far the servo's spring lets itself be stretched \[m\]: bounds how
-    /// hard the tip presses.
-    pub reach: f64,
-}
-
-impl Default for TipParameters {
-    /// Spring 6.75 kN/m: a stiff position servo of a light arm; presses with
-    /// up to 67 N.
-    fn default() -> Self {
-        TipParameters {
-            mass: 0.3,
-            frequency: 150.0,
-            damping_ratio: 1.0,
-            reach: 0.01,
-        }
+parameters! {
+    /// The servo: mass, natural frequency, damping ratio. By default its spring has
+    /// 6.75 kN/m: a stiff position servo of a light arm; presses with up to 67 N.
+    #[derive(Copy)]
+    pub struct TipParameters {
+        /// Mass at the tip \[kg\].
+        pub mass: f64 [1e-3..=100.0, "kg"] = 0.3,
+        /// Natural frequency \[rad/s\].
+        pub frequency: f64 [1.0..=1000.0, "rad/s"] = 150.0,
+        /// Damping ratio \[-\].
+        pub damping_ratio: f64 [0.0..=10.0, "-"] = 1.0,
+        /// How far the servo's spring lets itself be stretched \[m\]: bounds how
+        /// hard the tip presses.
+        pub reach: f64 [1e-4..=1.0, "m"] = 0.01,
     }
 }
 

@@ -7,10 +7,10 @@ use std::{
 };
 
 use ferntast_identification::{contact_friction::ContactFriction, damping::Average};
-use ferntast_model::{ParameterError, check, contour::Surface};
+use ferntast_model::{ParameterError, check, contour::Surface, parameters};
 use ferntast_nodes::config::{self, ConfigError, FileKind};
 use ferntast_sim::arm::ArmConfig;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::{
     Conditions, ExperimentError, IdentifyError, Plan,
@@ -21,24 +21,25 @@ use super::{
 /// Ranges of speed of Figs. 12, 13 (and 10), 14 (and 11) \[deg/s\].
 pub const RANGES: [[f64; 2]; 3] = [[0.5, 1.5], [4.0, 6.0], [27.0, 35.0]];
 
-/// A file of `config/experiments/` that begins a campaign.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Mission {
-    /// Its name.
-    pub name: String,
-    /// What it is, in a sentence.
-    pub description: String,
-    /// The arm: a file of `config/arms/` or a path.
-    pub arm: String,
-    /// Seed of all noise.
-    pub seed: u64,
-    /// Whether the reference on the ground comes first.
-    pub ground: bool,
-    /// Dates: days since 2005-01-26 10:00 UTC.
-    pub days: Vec<f64>,
-    /// What is done on each date.
-    pub experiment: Vec<Plan>,
+parameters! {
+    /// A file of `config/experiments/` that begins a campaign.
+    pub struct Mission {
+        /// Its name.
+        pub name: String,
+        /// What it is, in a sentence.
+        pub description: String,
+        /// The arm: a file of `config/arms/` or a path.
+        pub arm: String,
+        /// Seed of all noise.
+        pub seed: u64,
+        /// Whether the reference on the ground comes first.
+        pub ground: bool,
+        /// Dates: days since 2005-01-26 10:00 UTC.
+        pub days: Vec<f64> [0.0..=36_525.0, "d"],
+        /// What is done on each date.
+        pub experiment: Vec<Plan>,
+    }
+    check Mission::has_neither_nothing_nor_too_much;
 }
 
 /// Where campaigns are.
@@ -57,24 +58,10 @@ impl Mission {
         config::load(FILE, name, Mission::validate)
     }
 
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("number of days", self.days.len() as f64, 1.0, 1000.0, "-")?;
-        for &day in &self.days {
-            check("days", day, 0.0, 36_525.0, "d")?;
-        }
-        check(
-            "number of experiments",
-            self.experiment.len() as f64,
-            1.0,
-            20.0,
-            "-",
-        )?;
-        Ok(())
+    fn has_neither_nothing_nor_too_much(&self) -> Result<(), ParameterError> {
+        let (days, experiments) = (self.days.len() as f64, self.experiment.len() as f64);
+        check("number of days", days, 1.0, 1000.0, "-")?;
+        check("number of experiments", experiments, 1.0, 20.0, "-")
     }
 
     /// All runs: the ground first, then date by date.
