@@ -27,7 +27,7 @@ pub struct Arguments {
 
     /// What to do; without it the state is only told.
     #[arg(value_enum)]
-    command: Option<Word>,
+    command: Option<StateChange>,
 
     /// Name of the session.
     #[arg(long, default_value = "default", value_name = "NAME")]
@@ -43,7 +43,7 @@ enum Device {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Word {
+enum StateChange {
     /// Drives on.
     Enable,
     /// Drives off.
@@ -73,10 +73,10 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         Device::Leader => (topics::LEADER_STATE_COMMAND, topics::LEADER_OPERATING_STATE),
     };
     let wish = arguments.command.map(|word| match word {
-        Word::Enable => (StateCommand::ENABLE, OperatingState::ENABLED),
-        Word::Disable => (StateCommand::DISABLE, OperatingState::DISABLED),
-        Word::Pause => (StateCommand::PAUSE, OperatingState::PAUSED),
-        Word::Resume => (StateCommand::RESUME, OperatingState::ENABLED),
+        StateChange::Enable => (StateCommand::ENABLE, OperatingState::ENABLED),
+        StateChange::Disable => (StateCommand::DISABLE, OperatingState::DISABLED),
+        StateChange::Pause => (StateCommand::PAUSE, OperatingState::PAUSED),
+        StateChange::Resume => (StateCommand::RESUME, OperatingState::ENABLED),
     });
     let state = ask(&bus, command_topic, state_topic, wish);
     drop(bus);

@@ -1,13 +1,13 @@
 //! One page in the browser: the console of a session, and the lab.
 //!
 //! ```text
-//! browser ── HTTP, WebSocket ── server ┬ session: desk ── the bus
+//! browser ── HTTP, WebSocket ── server ┬ session: shared_session ── the bus
 //!                                      └ lab: work of `ferntast-lab`
 //! ```
 //!
 //! * [`server`]: listens, and asks [`guard`] about every request,
 //! * [`assets`]: the page itself; nothing comes from a network,
-//! * [`session`]: who sits at the desk of a session, what is shown there, and
+//! * [`session`]: who operates a session, what is shown there, and
 //!   the hand that the mouse moves,
 //! * [`lab`]: recordings and experiments of a folder.
 

@@ -64,7 +64,7 @@ impl Listen {
 #[derive(Default)]
 pub struct Content {
     /// The session, if one runs.
-    pub desk: Option<Arc<session::Desk>>,
+    pub shared: Option<Arc<session::SharedSession>>,
     /// The lab's folder.
     pub folder: PathBuf,
 }
@@ -103,7 +103,7 @@ impl Server {
         let router = Router::new()
             .merge(assets::routes())
             .merge(lab::routes(Arc::new(lab)))
-            .merge(session::routes(content.desk))
+            .merge(session::routes(content.shared))
             .layer(middleware::from_fn_with_state(guard, guard::watch));
         let thread = std::thread::Builder::new()
             .name("page".to_owned())

@@ -47,7 +47,7 @@ const HOLD: u8 = 2;
 
 /// One frame of the link.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct LinkFrame {
     /// Identity of the session.
     pub session: u16,
     /// One more with every frame sent; wraps.
@@ -139,7 +139,7 @@ pub enum FrameError {
 
 /// Writes `frame` into `bytes`. Values are written as they are; [`decode`]
 /// refuses those that are out of range.
-pub fn encode(frame: &Frame, bytes: &mut [u8; FRAME_LENGTH]) {
+pub fn encode(frame: &LinkFrame, bytes: &mut [u8; FRAME_LENGTH]) {
     let mut flags = (frame.state.code() << 2) | ((frame.arming & 0x0f) << 4);
     if frame.packet.valid {
         flags |= VALID;
@@ -179,7 +179,7 @@ pub fn encode(frame: &Frame, bytes: &mut [u8; FRAME_LENGTH]) {
 ///
 /// [`FrameError`] by kind, in the order length, checksum, version, session,
 /// time, value. Never panics, whatever the bytes.
-pub fn decode(bytes: &[u8], session: u16, now_ns: i64) -> Result<Frame, FrameError> {
+pub fn decode(bytes: &[u8], session: u16, now_ns: i64) -> Result<LinkFrame, FrameError> {
     let found = bytes.len();
     let bytes: &[u8; FRAME_LENGTH] = bytes.try_into().map_err(|_| FrameError::Length { found })?;
     let (found, expected) = (
@@ -217,7 +217,7 @@ pub fn decode(bytes: &[u8], session: u16, now_ns: i64) -> Result<Frame, FrameErr
     // The newest time before now that ends in these bits.
     let ago = ((now_ns / ECHO_UNIT) as u32).wrapping_sub(u32::from_le_bytes(part(bytes, 16)));
     let echo_ns = (now_ns / ECHO_UNIT - i64::from(ago)) * ECHO_UNIT;
-    Ok(Frame {
+    Ok(LinkFrame {
         session,
         sequence: u32::from_le_bytes(part(bytes, 4)),
         sent_ns,
@@ -281,7 +281,7 @@ mod tests {
 
     const NOW: i64 = 1_700_000_000_000_000_000;
 
-    fn any_frame() -> impl Strategy<Value = Frame> {
+    fn any_frame() -> impl Strategy<Value = LinkFrame> {
         let packet = (
             any::<bool>(),
             proptest::array::uniform3(-10.0..=10.0f32),
@@ -295,7 +295,7 @@ mod tests {
             packet,
         )
             .prop_map(
-                |((session, sequence, age), (echo, hold, state, arming, law), packet)| Frame {
+                |((session, sequence, age), (echo, hold, state, arming, law), packet)| LinkFrame {
                     session,
                     sequence,
                     sent_ns: NOW - age,
@@ -325,7 +325,7 @@ mod tests {
 
     fn example() -> [u8; FRAME_LENGTH] {
         let mut bytes = [0; FRAME_LENGTH];
-        let frame = Frame {
+        let frame = LinkFrame {
             session: 7,
             sequence: 1,
             sent_ns: NOW,

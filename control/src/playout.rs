@@ -18,7 +18,7 @@
 //!
 //! Allocates when made, never afterwards.
 
-use crate::frame::Frame;
+use crate::frame::LinkFrame;
 use crate::meter::behind;
 use crate::nanoseconds;
 
@@ -48,7 +48,7 @@ pub enum Offered {
 #[derive(Clone, Debug)]
 pub struct PlayOut {
     buffer_ns: i64,
-    slots: Box<[Option<Frame>; SLOTS]>,
+    slots: Box<[Option<LinkFrame>; SLOTS]>,
     waiting: usize,
     /// Smallest transit time [ns].
     base_ns: Option<i64>,
@@ -79,7 +79,7 @@ impl PlayOut {
     }
 
     /// A frame arrived at `now_ns`.
-    pub fn offer(&mut self, frame: &Frame, now_ns: i64) -> Offered {
+    pub fn offer(&mut self, frame: &LinkFrame, now_ns: i64) -> Offered {
         self.after_outage(now_ns);
         self.arrived_ns = Some(now_ns);
         if let Some((sequence, sent_ns)) = self.last {
@@ -125,18 +125,18 @@ impl PlayOut {
 
     /// The frame to act on from `now_ns` on, when there is a new one: the newest
     /// that is due. Those before it are dropped.
-    pub fn take(&mut self, now_ns: i64) -> Option<Frame> {
+    pub fn take(&mut self, now_ns: i64) -> Option<LinkFrame> {
         self.after_outage(now_ns);
         if self.waiting == 0 {
             return None;
         }
         let base_ns = self.base_ns.unwrap_or(0);
         let buffer_ns = self.buffer_ns;
-        let due = |frame: &Frame| {
+        let due = |frame: &LinkFrame| {
             let due_ns = frame.sent_ns.saturating_add(base_ns);
             buffer_ns == 0 || due_ns.saturating_add(buffer_ns) <= now_ns
         };
-        let mut newest: Option<Frame> = None;
+        let mut newest: Option<LinkFrame> = None;
         for frame in self.slots.iter().flatten().filter(|frame| due(frame)) {
             if newest.is_none_or(|own| behind(own.sequence, frame.sequence)) {
                 newest = Some(*frame);
@@ -178,8 +178,8 @@ mod tests {
     const START: i64 = 1_700_000_000_000_000_000;
     const MS: i64 = 1_000_000;
 
-    fn frame(sequence: u32, sent_ms: i64) -> Frame {
-        Frame {
+    fn frame(sequence: u32, sent_ms: i64) -> LinkFrame {
+        LinkFrame {
             session: 1,
             sequence,
             sent_ns: START + sent_ms * MS,

@@ -1,7 +1,7 @@
 //! The hardware behind the clocks: a slow one costs every step microseconds.
 
+use super::host::Host;
 use super::report::Check;
-use super::surroundings::Surroundings;
 
 const FOLDER: &str = "/sys/devices/system/clocksource/clocksource0";
 
@@ -16,11 +16,11 @@ const FAST: [&str; 7] = [
     "tod",
 ];
 
-pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
+pub(super) fn check(host: &dyn Host) -> Check {
     const ID: &str = "clock_source";
     const TITLE: &str = "Clock source";
     let path = format!("{FOLDER}/current_clocksource");
-    let current = match surroundings.read(&path) {
+    let current = match host.read(&path) {
         Ok(text) => text.trim().to_owned(),
         Err(error) => {
             return Check::ok(ID, TITLE, "").warn(
@@ -33,7 +33,7 @@ pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
     if FAST.contains(&current.as_str()) {
         return check;
     }
-    let available = surroundings.read(&format!("{FOLDER}/available_clocksource"));
+    let available = host.read(&format!("{FOLDER}/available_clocksource"));
     let available = available.unwrap_or_default();
     let better = FAST
         .iter()

@@ -1,14 +1,14 @@
 //! The UDP ports of DDS in the ROS domain, and the participants that have some.
 
+use super::host::Host;
 use super::network_table::{holders, sockets};
 use super::options::DoctorOptions;
 use super::report::Check;
 use super::ros_domain::{DomainPorts, domain};
-use super::surroundings::Surroundings;
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let empty = Check::ok("discovery_ports", "DDS ports (UDP)", "");
-    let domain = domain(surroundings, options).ok();
+    let domain = domain(host, options).ok();
     let Some((domain, ports)) = domain.and_then(|id| Some((id, DomainPorts::of(id)?))) else {
         return empty.fail(
             "none without a valid ROS domain",
@@ -16,10 +16,10 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
         );
     };
     let shared = ports.discovery_multicast();
-    let sharing = surroundings.try_sharing_udp_port(shared);
+    let sharing = host.try_sharing_udp_port(shared);
     let mut check = empty.with("discovery_port", shared);
 
-    let sockets = match sockets(surroundings, "udp") {
+    let sockets = match sockets(host, "udp") {
         Ok(sockets) => sockets,
         Err(error) => {
             check.found = format!("discovery port {shared}; participants unknown");
@@ -33,7 +33,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     participants.sort_by_key(|(index, _)| *index);
     participants.dedup_by_key(|(index, _)| *index);
     let theirs: Vec<_> = participants.iter().map(|(_, socket)| *socket).collect();
-    let names: Vec<String> = holders(surroundings, &theirs)
+    let names: Vec<String> = holders(host, &theirs)
         .iter()
         .map(ToString::to_string)
         .collect();
@@ -57,7 +57,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
             .iter()
             .filter(|socket| socket.port == shared)
             .collect();
-        let names = holders(surroundings, &on_port);
+        let names = holders(host, &on_port);
         let names: Vec<String> = names.iter().map(ToString::to_string).collect();
         let (whom, stop) = if names.is_empty() {
             (

@@ -1,15 +1,11 @@
 //! Variables that keep stock ROS 2 nodes, started in this shell, from finding
 //! others.
 
+use super::host::Host;
 use super::report::Check;
-use super::surroundings::Surroundings;
 
-pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
-    let set = |name| {
-        surroundings
-            .variable(name)
-            .filter(|value| !value.is_empty())
-    };
+pub(super) fn check(host: &dyn Host) -> Check {
+    let set = |name| host.variable(name).filter(|value| !value.is_empty());
     let mut check = Check::ok("discovery_range", "ROS discovery range", "");
     let mut restricted = false;
 

@@ -3,20 +3,20 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::host::{FileSystem, Host};
 use super::options::DoctorOptions;
 use super::report::Check;
-use super::surroundings::{FileSystem, Surroundings};
 use super::text::quoted;
 use super::units;
 
 /// With less than this no recording is worth starting.
-const FEWEST_MINUTES: f64 = 1.0;
+const MIN_MINUTES: f64 = 1.0;
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let wanted = &options.recording_folder;
     let empty =
         Check::ok("disk", "Disk for recordings", "").with("folder", wanted.display().to_string());
-    let (folder, file_system) = match nearest(surroundings, wanted) {
+    let (folder, file_system) = match nearest(host, wanted) {
         Ok(found) => found,
         Err(error) => {
             return empty.fail(
@@ -54,7 +54,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
             "record elsewhere, or mount it for writing",
         );
     }
-    if let Err(error) = surroundings.try_writing(&folder) {
+    if let Err(error) = host.try_writing(&folder) {
         let mend = match error.kind() {
             io::ErrorKind::PermissionDenied => {
                 // Only the folder itself changes hands, never one above it.
@@ -74,7 +74,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     }
     let enough = options.recording_duration.as_secs_f64() / 60.0;
     match minutes {
-        Some(minutes) if minutes < FEWEST_MINUTES.min(enough) => check.fail("full", elsewhere),
+        Some(minutes) if minutes < MIN_MINUTES.min(enough) => check.fail("full", elsewhere),
         Some(minutes) if minutes < enough => {
             let found = format!("less than the {} that should fit", units::minutes(enough));
             check.warn(&found, elsewhere)
@@ -84,7 +84,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
 }
 
 /// The folder, or the nearest above it that is there.
-fn nearest(surroundings: &dyn Surroundings, folder: &Path) -> io::Result<(PathBuf, FileSystem)> {
+fn nearest(host: &dyn Host, folder: &Path) -> io::Result<(PathBuf, FileSystem)> {
     let here = PathBuf::from(".");
     let mut error = io::Error::from(io::ErrorKind::NotFound);
     for candidate in folder.ancestors() {
@@ -93,7 +93,7 @@ fn nearest(surroundings: &dyn Surroundings, folder: &Path) -> io::Result<(PathBu
         } else {
             candidate
         };
-        match surroundings.file_system(candidate) {
+        match host.file_system(candidate) {
             Ok(file_system) => return Ok((candidate.to_owned(), file_system)),
             Err(failed) if failed.kind() == io::ErrorKind::NotFound => error = failed,
             Err(failed) => return Err(failed),

@@ -5,7 +5,7 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 
-use super::surroundings::{FileSystem, Interface, Surroundings, WakeUps};
+use super::host::{FileSystem, Host, Interface, WakeUps};
 
 type Answer = Result<(), (io::ErrorKind, &'static str)>;
 
@@ -143,7 +143,7 @@ fn not_there(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::NotFound, format!("no {what}"))
 }
 
-impl Surroundings for Fake {
+impl Host for Fake {
     fn variable(&self, name: &str) -> Option<String> {
         self.variables.get(name).cloned()
     }

@@ -1,12 +1,12 @@
 //! Which kernel, and whether it bounds the wake-up lateness.
 
+use super::host::Host;
 use super::report::Check;
-use super::surroundings::Surroundings;
 
-pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
+pub(super) fn check(host: &dyn Host) -> Check {
     const ID: &str = "kernel";
     const TITLE: &str = "Kernel";
-    let release = match surroundings.read("/proc/sys/kernel/osrelease") {
+    let release = match host.read("/proc/sys/kernel/osrelease") {
         Ok(text) => text.trim().to_owned(),
         Err(error) => {
             return Check::ok(ID, TITLE, "").warn(
@@ -16,7 +16,7 @@ pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
         }
     };
     let says = |path, word| {
-        let text = surroundings.read(path);
+        let text = host.read(path);
         text.is_ok_and(|text| text.split_whitespace().any(|found| found == word))
     };
     let preempt_rt = says("/sys/kernel/realtime", "1") || says("/proc/version", "PREEMPT_RT");

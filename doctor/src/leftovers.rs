@@ -3,16 +3,16 @@
 
 use std::collections::BTreeMap;
 
+use super::host::Host;
 use super::network_table::processes;
 use super::options::DoctorOptions;
 use super::report::Check;
-use super::surroundings::Surroundings;
 use super::text::quoted;
 
 /// Segments, and the folders in which the middleware keeps what belongs to them.
 const FOLDERS: [&str; 2] = ["/dev/shm", "/tmp"];
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let check = Check::ok("leftovers", "Leftovers of sessions", "");
     let prefix = &options.shared_memory_prefix;
     if prefix.is_empty() {
@@ -23,7 +23,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     }
     let mut sessions: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for folder in FOLDERS {
-        for name in surroundings.list(folder).unwrap_or_default() {
+        for name in host.list(folder).unwrap_or_default() {
             if let Some(rest) = name.strip_prefix(prefix.as_str()) {
                 let session = rest.split('.').next().unwrap_or_default();
                 let paths = sessions.entry(session.to_owned()).or_default();
@@ -35,7 +35,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     let open = if sessions.is_empty() {
         OpenFiles::default()
     } else {
-        open_files(surroundings, prefix)
+        open_files(host, prefix)
     };
     for (session, paths) in sessions {
         if paths.iter().any(|path| open.holds(path)) {
@@ -119,17 +119,17 @@ impl OpenFiles {
     }
 }
 
-fn open_files(surroundings: &dyn Surroundings, prefix: &str) -> OpenFiles {
+fn open_files(host: &dyn Host, prefix: &str) -> OpenFiles {
     let starts: Vec<String> = FOLDERS
         .iter()
         .map(|folder| format!("{folder}/{prefix}"))
         .collect();
     let ours = |path: &str| starts.iter().any(|start| path.starts_with(start.as_str()));
     let mut open = OpenFiles::default();
-    for id in processes(surroundings) {
-        let maps = surroundings.read(&format!("/proc/{id}/maps"));
+    for id in processes(host) {
+        let maps = host.read(&format!("/proc/{id}/maps"));
         let folder = format!("/proc/{id}/fd");
-        let files = surroundings.list(&folder);
+        let files = host.list(&folder);
         // A process that ended meanwhile holds nothing.
         let denied = |error: &std::io::Error| error.kind() == std::io::ErrorKind::PermissionDenied;
         if maps.as_ref().is_err_and(denied) || files.as_ref().is_err_and(denied) {
@@ -143,7 +143,7 @@ fn open_files(surroundings: &dyn Surroundings, prefix: &str) -> OpenFiles {
         open.paths
             .extend(mapped.filter(|path| ours(path)).map(str::to_owned));
         for file in files.unwrap_or_default() {
-            let target = surroundings.link_target(&format!("{folder}/{file}"));
+            let target = host.link_target(&format!("{folder}/{file}"));
             open.paths.extend(target.ok().filter(|path| ours(path)));
         }
     }

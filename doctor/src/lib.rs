@@ -2,7 +2,7 @@
 //! mend it.
 //!
 //! One check a file. A check is a function of the options and the
-//! [`Surroundings`]; it never fails: what cannot be found out is said so in
+//! [`Host`]; it never fails: what cannot be found out is said so in
 //! its [`Check`].
 
 mod clock_source;
@@ -25,7 +25,7 @@ mod ros_distribution;
 mod ros_domain;
 mod shared_memory;
 
-mod surroundings;
+mod host;
 mod tcp_ports;
 mod text;
 mod units;
@@ -34,11 +34,11 @@ mod wake_up_lateness;
 #[cfg(test)]
 mod fake;
 
+pub use host::{FileSystem, Host, Interface, WakeUps};
 pub use machine::Machine;
 pub use options::{DoctorOptions, RosMiddleware, TcpEndpoint};
 pub use peers::{Peer, PeerKind};
 pub use report::{Check, Report, Status};
-pub use surroundings::{FileSystem, Interface, Surroundings, WakeUps};
 pub use text::ReportText;
 
 /// Examines this machine. Takes about twice
@@ -50,31 +50,31 @@ pub fn examine(options: &DoctorOptions, peers: &dyn Fn() -> Result<Vec<Peer>, St
     examine_in(&Machine, options, peers)
 }
 
-/// Examines any [`Surroundings`]; otherwise as [`examine`].
+/// Examines any [`Host`]; otherwise as [`examine`].
 pub fn examine_in(
-    surroundings: &dyn Surroundings,
+    host: &dyn Host,
     options: &DoctorOptions,
     peers: &dyn Fn() -> Result<Vec<Peer>, String>,
 ) -> Report {
     let mut checks = vec![
-        kernel::check(surroundings),
-        clock_source::check(surroundings),
-        processor::check(surroundings),
-        processor_quota::check(surroundings),
-        real_time_priority::check(surroundings, options),
-        wake_up_lateness::check(surroundings, options),
-        shared_memory::check(surroundings, options),
-        leftovers::check(surroundings, options),
-        disk::check(surroundings, options),
-        tcp_ports::check(surroundings, options),
-        ros_distribution::check(surroundings, options),
-        ros_domain::check(surroundings, options),
+        kernel::check(host),
+        clock_source::check(host),
+        processor::check(host),
+        processor_quota::check(host),
+        real_time_priority::check(host, options),
+        wake_up_lateness::check(host, options),
+        shared_memory::check(host, options),
+        leftovers::check(host, options),
+        disk::check(host, options),
+        tcp_ports::check(host, options),
+        ros_distribution::check(host, options),
+        ros_domain::check(host, options),
     ];
     // rmw_zenoh peers meet at a router over TCP: no ports of DDS, no multicast.
     if options.middleware == RosMiddleware::Dds {
-        checks.push(discovery_range::check(surroundings));
-        checks.push(discovery_ports::check(surroundings, options));
-        checks.push(multicast::check(surroundings));
+        checks.push(discovery_range::check(host));
+        checks.push(discovery_ports::check(host, options));
+        checks.push(multicast::check(host));
     }
     checks.push(peers::check(options, peers));
     Report { checks }

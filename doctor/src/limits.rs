@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::surroundings::Surroundings;
+use super::host::Host;
 
 /// Capability to raise one's scheduling priority (bit of `CapEff`).
 const CAP_SYS_NICE: u32 = 23;
@@ -19,8 +19,8 @@ pub(super) struct Limit {
 /// # Errors
 ///
 /// The file cannot be read, or has no such line.
-pub(super) fn limit(surroundings: &dyn Surroundings, name: &str) -> io::Result<Limit> {
-    let text = surroundings.read("/proc/self/limits")?;
+pub(super) fn limit(host: &dyn Host, name: &str) -> io::Result<Limit> {
+    let text = host.read("/proc/self/limits")?;
     let unknown = || {
         io::Error::new(
             io::ErrorKind::InvalidData,
@@ -44,24 +44,24 @@ pub(super) fn limit(surroundings: &dyn Surroundings, name: &str) -> io::Result<L
 }
 
 /// The value of a line `name:` of `/proc/self/status`.
-pub(super) fn status_line(surroundings: &dyn Surroundings, name: &str) -> Option<String> {
-    let text = surroundings.read("/proc/self/status").ok()?;
+pub(super) fn status_line(host: &dyn Host, name: &str) -> Option<String> {
+    let text = host.read("/proc/self/status").ok()?;
     let mut lines = text.lines();
     let value = lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(':'))?;
     Some(value.trim().to_owned())
 }
 
 /// Whether this process may raise priorities without a limit.
-pub(super) fn may_raise_priority(surroundings: &dyn Surroundings) -> bool {
-    let effective = status_line(surroundings, "CapEff");
+pub(super) fn may_raise_priority(host: &dyn Host) -> bool {
+    let effective = status_line(host, "CapEff");
     let bits = effective.and_then(|text| u64::from_str_radix(&text, 16).ok());
     bits.is_some_and(|bits| bits >> CAP_SYS_NICE & 1 == 1)
 }
 
 /// Whether this process runs in a Docker or Podman container.
-pub(super) fn in_container(surroundings: &dyn Surroundings) -> bool {
+pub(super) fn in_container(host: &dyn Host) -> bool {
     let names = |folder, wanted| {
-        let names = surroundings.list(folder).unwrap_or_default();
+        let names = host.list(folder).unwrap_or_default();
         names.iter().any(|name| name == wanted)
     };
     names("/", ".dockerenv") || names("/run", ".containerenv")

@@ -3,15 +3,15 @@
 
 use std::net::Ipv4Addr;
 
+use super::host::Host;
 use super::report::Check;
-use super::surroundings::Surroundings;
 
 /// DDSI-RTPS 2.5, section 9.6.2.4.1: the group in which participants meet.
 const GROUP: Ipv4Addr = Ipv4Addr::new(239, 255, 0, 1);
 
-pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
+pub(super) fn check(host: &dyn Host) -> Check {
     let empty = Check::ok("multicast", "Multicast", "");
-    let interfaces = match surroundings.interfaces() {
+    let interfaces = match host.interfaces() {
         Ok(interfaces) => interfaces,
         Err(error) => {
             return empty.fail(
@@ -27,7 +27,7 @@ pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
             if !interface.multicast {
                 continue;
             }
-            match surroundings.try_multicast(GROUP, *address) {
+            match host.try_multicast(GROUP, *address) {
                 Ok(()) => working.push((interface, *address)),
                 Err(error) => failing.push(format!("{} ({address}): {error}", interface.name)),
             }

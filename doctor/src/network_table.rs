@@ -5,7 +5,7 @@ use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
-use super::surroundings::Surroundings;
+use super::host::Host;
 
 /// A socket of this machine (of this network namespace).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,9 +44,9 @@ impl fmt::Display for Holder {
 /// # Errors
 ///
 /// The IPv4 table cannot be read. Without IPv6 there is no table of it.
-pub(super) fn sockets(surroundings: &dyn Surroundings, protocol: &str) -> io::Result<Vec<Socket>> {
-    let mut text = surroundings.read(&format!("/proc/net/{protocol}"))?;
-    if let Ok(more) = surroundings.read(&format!("/proc/net/{protocol}6")) {
+pub(super) fn sockets(host: &dyn Host, protocol: &str) -> io::Result<Vec<Socket>> {
+    let mut text = host.read(&format!("/proc/net/{protocol}"))?;
+    if let Ok(more) = host.read(&format!("/proc/net/{protocol}6")) {
         text.push('\n');
         text.push_str(&more);
     }
@@ -90,17 +90,17 @@ fn parse_address(text: &str) -> Option<IpAddr> {
 }
 
 /// The holders of sockets, in their order.
-pub(super) fn holders(surroundings: &dyn Surroundings, sockets: &[&Socket]) -> Vec<Holder> {
+pub(super) fn holders(host: &dyn Host, sockets: &[&Socket]) -> Vec<Holder> {
     let mut found: BTreeMap<u64, Holder> = BTreeMap::new();
     if !sockets.is_empty() {
-        for id in processes(surroundings) {
+        for id in processes(host) {
             let folder = format!("/proc/{id}/fd");
-            for file in surroundings.list(&folder).unwrap_or_default() {
-                let Some(inode) = socket_inode(surroundings, &format!("{folder}/{file}")) else {
+            for file in host.list(&folder).unwrap_or_default() {
+                let Some(inode) = socket_inode(host, &format!("{folder}/{file}")) else {
                     continue;
                 };
                 if sockets.iter().any(|socket| socket.inode == inode) {
-                    let name = surroundings.read(&format!("/proc/{id}/comm"));
+                    let name = host.read(&format!("/proc/{id}/comm"));
                     let name = name.unwrap_or_default().trim().to_owned();
                     found.entry(inode).or_insert(Holder::Process { id, name });
                 }
@@ -115,13 +115,13 @@ pub(super) fn holders(surroundings: &dyn Surroundings, sockets: &[&Socket]) -> V
 }
 
 /// The ids of the processes that run.
-pub(super) fn processes(surroundings: &dyn Surroundings) -> Vec<u32> {
-    let names = surroundings.list("/proc").unwrap_or_default();
+pub(super) fn processes(host: &dyn Host) -> Vec<u32> {
+    let names = host.list("/proc").unwrap_or_default();
     names.iter().filter_map(|name| name.parse().ok()).collect()
 }
 
-fn socket_inode(surroundings: &dyn Surroundings, path: &str) -> Option<u64> {
-    let target = surroundings.link_target(path).ok()?;
+fn socket_inode(host: &dyn Host, path: &str) -> Option<u64> {
+    let target = host.link_target(path).ok()?;
     target
         .strip_prefix("socket:[")?
         .strip_suffix(']')?

@@ -47,7 +47,7 @@ impl Peer {
 }
 
 /// More names than this do not help a reader; all are in the values.
-const MOST_NAMES: usize = 6;
+const MAX_NAMES: usize = 6;
 
 pub(super) fn check(
     options: &DoctorOptions,
@@ -109,7 +109,7 @@ fn shortened(names: &[String]) -> String {
     if names.is_empty() {
         return "none".to_owned();
     }
-    let shown: Vec<&str> = names.iter().take(MOST_NAMES).map(String::as_str).collect();
+    let shown: Vec<&str> = names.iter().take(MAX_NAMES).map(String::as_str).collect();
     match names.len() - shown.len() {
         0 => shown.join(", "),
         more => format!("{} and {more} more", shown.join(", ")),

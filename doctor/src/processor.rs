@@ -2,17 +2,17 @@
 
 use std::collections::BTreeSet;
 
+use super::host::Host;
 use super::limits::status_line;
 use super::report::Check;
-use super::surroundings::Surroundings;
 
 /// With one core, every node waits for every other.
-const FEWEST_CORES: usize = 2;
+const MIN_CORES: usize = 2;
 
-pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
+pub(super) fn check(host: &dyn Host) -> Check {
     const ID: &str = "processor";
     const TITLE: &str = "Processor";
-    let allowed = status_line(surroundings, "Cpus_allowed_list");
+    let allowed = status_line(host, "Cpus_allowed_list");
     let Some(cores) = allowed.as_deref().and_then(parse_cores) else {
         return Check::ok(ID, TITLE, "").warn(
             "number of cores unknown: /proc/self/status does not say",
@@ -23,7 +23,7 @@ pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
         .iter()
         .filter_map(|core| {
             let path = format!("/sys/devices/system/cpu/cpu{core}/cpufreq/scaling_governor");
-            let text = surroundings.read(&path).ok()?;
+            let text = host.read(&path).ok()?;
             Some(text.trim().to_owned())
         })
         .collect();
@@ -39,7 +39,7 @@ pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
     let mut check = Check::ok(ID, TITLE, found)
         .with("cores", cores.len())
         .with("governors", names.as_str());
-    if cores.len() < FEWEST_CORES {
+    if cores.len() < MIN_CORES {
         check = check.warn(
             "too few: the nodes of a session wait for each other",
             "give this process more cores (taskset, cpuset, `docker run --cpus`, the virtual machine's settings)",
@@ -51,7 +51,7 @@ pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
             "`echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor`",
         );
     }
-    let load = surroundings.read("/proc/loadavg").ok();
+    let load = host.read("/proc/loadavg").ok();
     let load = load.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
     if let Some(load) = load {
         check = check.with("load_last_minute", load);

@@ -2,13 +2,13 @@
 //! when the share is used up, the kernel stops every thread, real-time or
 //! not, until the next period (usually 100 ms).
 
+use super::host::Host;
 use super::report::Check;
-use super::surroundings::Surroundings;
 
-pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
+pub(super) fn check(host: &dyn Host) -> Check {
     const ID: &str = "processor_quota";
     const TITLE: &str = "Processor quota";
-    let Some((quota, period)) = version_2(surroundings).or_else(|| version_1(surroundings)) else {
+    let Some((quota, period)) = version_2(host).or_else(|| version_1(host)) else {
         return Check::ok(ID, TITLE, "none");
     };
     let cores = quota / period;
@@ -25,18 +25,14 @@ pub(super) fn check(surroundings: &dyn Surroundings) -> Check {
 }
 
 /// Quota and period \[µs\] of the group mounted at the root.
-fn version_2(surroundings: &dyn Surroundings) -> Option<(f64, f64)> {
-    let text = surroundings.read("/sys/fs/cgroup/cpu.max").ok()?;
+fn version_2(host: &dyn Host) -> Option<(f64, f64)> {
+    let text = host.read("/sys/fs/cgroup/cpu.max").ok()?;
     let mut words = text.split_whitespace();
     quota(words.next()?, words.next()?)
 }
 
-fn version_1(surroundings: &dyn Surroundings) -> Option<(f64, f64)> {
-    let read = |name| {
-        surroundings
-            .read(&format!("/sys/fs/cgroup/cpu/{name}"))
-            .ok()
-    };
+fn version_1(host: &dyn Host) -> Option<(f64, f64)> {
+    let read = |name| host.read(&format!("/sys/fs/cgroup/cpu/{name}")).ok();
     quota(&read("cpu.cfs_quota_us")?, &read("cpu.cfs_period_us")?)
 }
 

@@ -1,16 +1,16 @@
 //! Whether the 1 kHz loops may run before everything else (SCHED_FIFO).
 
+use super::host::Host;
 use super::limits::{in_container, limit, may_raise_priority};
 use super::options::DoctorOptions;
 use super::report::Check;
-use super::surroundings::Surroundings;
 use super::units;
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let priority = options.real_time_priority;
-    let allowed = limit(surroundings, "Max realtime priority").ok();
-    let locked = limit(surroundings, "Max locked memory").ok();
-    let granted = surroundings.try_real_time_priority(priority);
+    let allowed = limit(host, "Max realtime priority").ok();
+    let locked = limit(host, "Max locked memory").ok();
+    let granted = host.try_real_time_priority(priority);
 
     let mut check = Check::ok("real_time_priority", "Real-time priority", "")
         .with("granted", granted.is_ok())
@@ -40,16 +40,16 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     let enough = |value: Option<u64>| value.is_none_or(|value| value >= wanted);
     let mend = if !(1..=99).contains(&priority) {
         "choose a priority from 1 to 99".to_owned()
-    } else if in_container(surroundings) {
+    } else if in_container(host) {
         "start the container with `--cap-add SYS_NICE --ulimit rtprio=99 --ulimit memlock=-1`"
             .to_owned()
-    } else if may_raise_priority(surroundings) || allowed.is_some_and(|limit| enough(limit.soft)) {
+    } else if may_raise_priority(host) || allowed.is_some_and(|limit| enough(limit.soft)) {
         // Permitted, yet refused: the control group has no real-time budget.
         "`sudo sysctl kernel.sched_rt_runtime_us=-1`: the control group of this shell has no real-time budget".to_owned()
     } else if allowed.is_some_and(|limit| enough(limit.hard)) {
         format!("`ulimit -r {priority}` in this shell")
     } else {
-        let program = surroundings.link_target("/proc/self/exe");
+        let program = host.link_target("/proc/self/exe");
         let program = program.unwrap_or_else(|_| "ferntast".to_owned());
         format!(
             "`echo \"$USER - rtprio 98\" | sudo tee /etc/security/limits.d/90-ferntast.conf`, then log in again; or `sudo setcap cap_sys_nice+ep {program}`, again after each build"

@@ -1,8 +1,8 @@
 //! Which ROS 2 is here, and whether its nodes understand a session.
 
+use super::host::Host;
 use super::options::{DoctorOptions, RosMiddleware};
 use super::report::Check;
-use super::surroundings::Surroundings;
 
 const FOLDER: &str = "/opt/ros";
 
@@ -14,15 +14,11 @@ const OLD: [&str; 8] = [
 /// The last ones of ROS 1, which can stand in the same folder.
 const ROS_1: [&str; 4] = ["indigo", "kinetic", "melodic", "noetic"];
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
-    let set = |name| {
-        surroundings
-            .variable(name)
-            .filter(|value| !value.is_empty())
-    };
-    let mut installed = surroundings.list(FOLDER).unwrap_or_default();
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
+    let set = |name| host.variable(name).filter(|value| !value.is_empty());
+    let mut installed = host.list(FOLDER).unwrap_or_default();
     installed.retain(|name| {
-        let files = surroundings.list(&format!("{FOLDER}/{name}"));
+        let files = host.list(&format!("{FOLDER}/{name}"));
         files.is_ok_and(|files| files.iter().any(|file| file == "setup.bash"))
     });
     let sourced = set("ROS_DISTRO");

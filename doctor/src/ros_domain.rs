@@ -1,8 +1,8 @@
 //! The ROS domain, and whether DDS has ports of its own in it.
 
+use super::host::Host;
 use super::options::{DoctorOptions, RosMiddleware};
 use super::report::Check;
-use super::surroundings::Surroundings;
 
 /// The largest domain whose first port is a port: 7400 + 250·232 = 65400.
 pub(super) const LARGEST: u32 = 232;
@@ -57,27 +57,24 @@ impl DomainPorts {
 
 /// The domain in force: of the options, else `ROS_DOMAIN_ID`, else 0. The
 /// error is the text that is no domain.
-pub(super) fn domain(
-    surroundings: &dyn Surroundings,
-    options: &DoctorOptions,
-) -> Result<u32, String> {
+pub(super) fn domain(host: &dyn Host, options: &DoctorOptions) -> Result<u32, String> {
     match options.ros_domain {
         Some(domain) => Ok(domain),
-        None => of_environment(surroundings).unwrap_or(Ok(0)),
+        None => of_environment(host).unwrap_or(Ok(0)),
     }
 }
 
-fn of_environment(surroundings: &dyn Surroundings) -> Option<Result<u32, String>> {
-    let text = surroundings.variable("ROS_DOMAIN_ID")?;
+fn of_environment(host: &dyn Host) -> Option<Result<u32, String>> {
+    let text = host.variable("ROS_DOMAIN_ID")?;
     if text.is_empty() {
         return None;
     }
     Some(text.trim().parse().map_err(|_| text))
 }
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let empty = Check::ok("ros_domain", "ROS domain", "");
-    let domain = match domain(surroundings, options) {
+    let domain = match domain(host, options) {
         Ok(domain) => domain,
         Err(text) => {
             return empty.with("ros_domain_id", text.as_str()).fail(
@@ -86,7 +83,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
             );
         }
     };
-    let environment = of_environment(surroundings);
+    let environment = of_environment(host);
     let source = match (&environment, options.ros_domain) {
         (_, Some(_)) => "configured",
         (Some(_), None) => "ROS_DOMAIN_ID",
@@ -112,7 +109,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
             format!("`export ROS_DOMAIN_ID=0`, or another from 0 to {LARGEST}"),
         );
     };
-    let (first, last) = ephemeral(surroundings);
+    let (first, last) = ephemeral(host);
     if ports.base <= last && ports.last() >= first {
         let free = u32::from(first.saturating_sub(7400 + 250)) / 250;
         check = check.warn(
@@ -127,12 +124,12 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     check
 }
 
-fn ephemeral(surroundings: &dyn Surroundings) -> (u16, u16) {
+fn ephemeral(host: &dyn Host) -> (u16, u16) {
     let parse = |text: String| {
         let mut words = text.split_whitespace();
         Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?))
     };
-    let text = surroundings.read("/proc/sys/net/ipv4/ip_local_port_range");
+    let text = host.read("/proc/sys/net/ipv4/ip_local_port_range");
     text.ok().and_then(parse).unwrap_or(EPHEMERAL)
 }
 

@@ -3,19 +3,19 @@
 use std::io;
 use std::path::Path;
 
+use super::host::Host;
 use super::limits::in_container;
 use super::options::DoctorOptions;
 use super::report::Check;
-use super::surroundings::Surroundings;
 use super::units;
 
 const FOLDER: &str = "/dev/shm";
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let mut check = Check::ok("shared_memory", "Shared memory", "");
-    let container = in_container(surroundings);
+    let container = in_container(host);
     let needed = units::bytes(options.shared_memory_bytes);
-    let file_system = match surroundings.file_system(Path::new(FOLDER)) {
+    let file_system = match host.file_system(Path::new(FOLDER)) {
         Ok(file_system) => file_system,
         Err(error) => {
             return check.fail(
@@ -40,7 +40,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
         units::bytes(file_system.free_bytes)
     );
 
-    match mounted_as(surroundings) {
+    match mounted_as(host) {
         Some(kind) if kind == "tmpfs" => {}
         Some(kind) => {
             check = check.with("file_system", kind.as_str()).warn(
@@ -63,7 +63,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     if file_system.read_only {
         return check.fail("mounted read-only", remount);
     }
-    if let Err(error) = surroundings.try_writing(Path::new(FOLDER)) {
+    if let Err(error) = host.try_writing(Path::new(FOLDER)) {
         let mend = match error.kind() {
             io::ErrorKind::PermissionDenied => "`sudo chmod 1777 /dev/shm`",
             _ => remount,
@@ -80,8 +80,8 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
 }
 
 /// The type of the file system mounted at the folder; the last mount is on top.
-fn mounted_as(surroundings: &dyn Surroundings) -> Option<String> {
-    let text = surroundings.read("/proc/mounts").ok()?;
+fn mounted_as(host: &dyn Host) -> Option<String> {
+    let text = host.read("/proc/mounts").ok()?;
     let mount = |line: &str| {
         let mut words = line.split_whitespace().skip(1);
         let (place, kind) = (words.next()?, words.next()?);

@@ -4,17 +4,17 @@ use std::collections::BTreeSet;
 use std::io;
 use std::net::SocketAddr;
 
+use super::host::Host;
 use super::network_table::{Holder, holders, sockets};
 use super::options::{DoctorOptions, TcpEndpoint};
 use super::report::{Check, Status};
-use super::surroundings::Surroundings;
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let mut check = Check::ok("tcp_ports", "TCP ports", "");
     let mut free = Vec::new();
     let mut taken = Vec::new();
     for endpoint in &options.tcp_endpoints {
-        match examine(surroundings, endpoint) {
+        match examine(host, endpoint) {
             Ok(()) => free.push(format!("{} ({})", endpoint.address, endpoint.purpose)),
             Err(trouble) => {
                 let found = format!(
@@ -41,26 +41,26 @@ struct Trouble {
     mend: String,
 }
 
-fn examine(surroundings: &dyn Surroundings, endpoint: &TcpEndpoint) -> Result<(), Trouble> {
+fn examine(host: &dyn Host, endpoint: &TcpEndpoint) -> Result<(), Trouble> {
     let address = endpoint
         .address
         .strip_prefix("tcp/")
         .unwrap_or(&endpoint.address);
-    let addresses = surroundings.resolve(address).map_err(|error| Trouble {
+    let addresses = host.resolve(address).map_err(|error| Trouble {
         found: format!("is no endpoint: {error}"),
         mend: "write tcp/HOST:PORT, for example tcp/127.0.0.1:7447".to_owned(),
     })?;
     for address in addresses {
-        let refused = surroundings.try_listening(address);
-        refused.map_err(|error| explain(surroundings, address, &error))?;
+        let refused = host.try_listening(address);
+        refused.map_err(|error| explain(host, address, &error))?;
     }
     Ok(())
 }
 
-fn explain(surroundings: &dyn Surroundings, address: SocketAddr, error: &io::Error) -> Trouble {
+fn explain(host: &dyn Host, address: SocketAddr, error: &io::Error) -> Trouble {
     match error.kind() {
         io::ErrorKind::AddrInUse => {
-            let holders = holders_of(surroundings, address);
+            let holders = holders_of(host, address);
             let names: BTreeSet<String> = holders.iter().map(ToString::to_string).collect();
             let names = Vec::from_iter(names).join(", ");
             let seen = |holder: &Holder| matches!(holder, Holder::Process { .. });
@@ -97,13 +97,13 @@ fn explain(surroundings: &dyn Surroundings, address: SocketAddr, error: &io::Err
     }
 }
 
-fn holders_of(surroundings: &dyn Surroundings, address: SocketAddr) -> Vec<Holder> {
-    let sockets = sockets(surroundings, "tcp").unwrap_or_default();
+fn holders_of(host: &dyn Host, address: SocketAddr) -> Vec<Holder> {
+    let sockets = sockets(host, "tcp").unwrap_or_default();
     let on_port: Vec<_> = sockets
         .iter()
         .filter(|socket| socket.port == address.port() && socket.listening)
         .collect();
-    holders(surroundings, &on_port)
+    holders(host, &on_port)
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 use std::io;
 use std::time::Duration;
 
+use super::host::{Host, WakeUps};
 use super::options::DoctorOptions;
 use super::report::{Check, Status};
-use super::surroundings::{Surroundings, WakeUps};
 
 /// Percentiles of how late a loop woke \[µs\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ struct Lateness {
     worst: f64,
 }
 
-pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) -> Check {
+pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let period = options.wake_up_period.max(Duration::from_micros(10));
     let duration = options
         .wake_up_duration
@@ -23,7 +23,7 @@ pub(super) fn check(surroundings: &dyn Surroundings, options: &DoctorOptions) ->
     // At least a few, or there are no percentiles.
     let count = (duration.as_nanos() / period.as_nanos()).clamp(10, 10_000_000) as usize;
     let measure = |priority| {
-        let lateness = surroundings.wake_up_lateness(WakeUps {
+        let lateness = host.wake_up_lateness(WakeUps {
             period,
             count,
             priority,

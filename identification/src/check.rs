@@ -4,7 +4,7 @@ use crate::data::{Dataset, Inertia, JointType, ModelSpec, Session};
 use crate::error::PrepareError;
 
 /// Samples of a session at least.
-pub const FEWEST_SAMPLES: usize = 100;
+pub const MIN_SAMPLES: usize = 100;
 
 /// Checks recordings and the model's numbers.
 ///
@@ -94,11 +94,11 @@ fn check_session(session: &Session, joint: JointType) -> Result<(), PrepareError
             period: session.period,
         });
     }
-    if session.len() < FEWEST_SAMPLES {
+    if session.len() < MIN_SAMPLES {
         return Err(PrepareError::TooFewSamples {
             session: name(),
             samples: session.len(),
-            needed: FEWEST_SAMPLES,
+            needed: MIN_SAMPLES,
         });
     }
     let channels = [

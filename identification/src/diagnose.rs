@@ -45,7 +45,7 @@ const UNNAMED_OF_REST: f64 = 0.6;
 /// has not got its shape.
 const LEAST_OF_MAP: f64 = 0.92;
 /// Effects named on top of each other before giving up.
-const MOST_EFFECTS: usize = 3;
+const MAX_EFFECTS: usize = 3;
 
 /// What the recordings say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -274,7 +274,7 @@ fn judge(
     let mut named = 0.0;
     let mut best = first.clone();
     let mut setup = setup.extended(BoundTerm::new(best.effect.clone(), best.shape.clone()));
-    for step in 0..MOST_EFFECTS {
+    for step in 0..MAX_EFFECTS {
         let design = Design::new(&setup);
         let own = dependence::on_own_signals(&setup, &design, &best.effect);
         if own > WRONG_SHAPE * (own + best.score.gain) {
@@ -285,7 +285,7 @@ fn judge(
             .first()
             .map_or((0.0, 0.0), |d| (d.gain, d.strength));
         let share = unnamed / (unnamed + named).max(1e-300);
-        progress((step as f64 + 1.0) / MOST_EFFECTS as f64);
+        progress((step as f64 + 1.0) / MAX_EFFECTS as f64);
         let notable = share > UNNAMED_NOTABLE && of_rest > UNNAMED_OF_REST;
         let has_shape = named >= LEAST_OF_MAP * most_by_one;
         if share <= UNNAMED_SHARE && !notable && has_shape {

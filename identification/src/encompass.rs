@@ -4,7 +4,7 @@
 
 use crate::candidates::Candidate;
 use crate::design::Design;
-use crate::effects::{Effect, EffectDescription, EffectHandle, MOST_COLUMNS, Memory, Point};
+use crate::effects::{Effect, EffectDescription, EffectHandle, MAX_COLUMNS, Memory, Point};
 use crate::family::as_good;
 use crate::setup::Setup;
 use crate::validation::beside;
@@ -30,8 +30,8 @@ impl Effect for Beyond {
     }
 
     fn evaluate(&self, shape: &[f64], point: &Point, memory: &mut Memory, columns: &mut [f64]) {
-        let mut all = [0.0; MOST_COLUMNS];
-        let count = self.whole.columns().min(MOST_COLUMNS);
+        let mut all = [0.0; MAX_COLUMNS];
+        let count = self.whole.columns().min(MAX_COLUMNS);
         self.whole.evaluate(shape, point, memory, &mut all[..count]);
         columns.fill(all[self.column]);
     }

@@ -12,7 +12,7 @@ const SAME: f64 = 2.0;
 /// A rival explains this share of the best one's gain at least.
 const LEAST_RATIO: f64 = 0.85;
 /// … and leaves at most this many times the mean square.
-const MOST_LEFT: f64 = 1.05;
+const MAX_LEFT: f64 = 1.05;
 /// A suspect explains this share of the mean square at least …
 const SUSPECT_SHARE: f64 = 0.2;
 /// … and scatter does as much with this chance at most.
@@ -71,7 +71,7 @@ pub(crate) fn as_good(design: &Design, best: &Candidate, other: &Candidate) -> b
     };
     ratio > LEAST_RATIO
         && ratio < LEAST_RATIO.recip()
-        && (left(more) < MOST_LEFT * left(less) || difference(design, best, other).abs() < SAME)
+        && (left(more) < MAX_LEFT * left(less) || difference(design, best, other).abs() < SAME)
 }
 
 /// Puts the simplest of those that are as good as the best first.

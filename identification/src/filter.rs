@@ -188,7 +188,7 @@ pub fn noise_level(signal: &[f64]) -> f64 {
 /// Widths \[samples\] that a signal is smoothed by.
 const WIDTHS: [f64; 6] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
 /// Share of noise in a derivative that is good enough.
-const MOST_NOISE: f64 = 0.05;
+const MAX_NOISE: f64 = 0.05;
 
 /// The least width \[samples\] of [`Kernel::sharp`] that leaves the derivative of
 /// this `order` a twentieth noise; the greatest where none does.
@@ -204,7 +204,7 @@ pub fn least_width(signals: &[Vec<f64>], order: u8, period: f64) -> f64 {
                 count += 1.0;
             }
         }
-        noise * noise * kernel.noise_gain() < MOST_NOISE * MOST_NOISE * sum / count
+        noise * noise * kernel.noise_gain() < MAX_NOISE * MAX_NOISE * sum / count
     };
     let [.., greatest] = WIDTHS;
     let least = WIDTHS.into_iter().find(|width| is_quiet(*width));

@@ -9,7 +9,7 @@ use crate::setup::Setup;
 
 /// Rows closer in time than this \[s\] are no repeat.
 const APART: f64 = 1.0;
-const FEWEST_PAIRS: usize = 40;
+const MIN_PAIRS: usize = 40;
 
 /// Two levels of noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -74,7 +74,7 @@ pub fn find(setup: &Setup, design: &Design, left_out: f64) -> NoiseFloor {
     }
     let within = square / rows.max(1) as f64;
     NoiseFloor {
-        repeats: (pairs >= FEWEST_PAIRS).then(|| (sum / pairs as f64).sqrt()),
+        repeats: (pairs >= MIN_PAIRS).then(|| (sum / pairs as f64).sqrt()),
         pairs,
         sessions: (design.sessions.len() > 1).then(|| (left_out - within).max(0.0).sqrt()),
     }

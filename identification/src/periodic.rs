@@ -6,7 +6,7 @@ use crate::setup::Setup;
 
 /// Bins of position for each period of the finest ripple.
 const BINS_A_PERIOD: f64 = 8.0;
-const MOST_BINS: usize = 1 << 15;
+const MAX_BINS: usize = 1 << 15;
 
 /// The strongest wave numbers k \[1/rad\] of the residual over position within
 /// the bounds of a periodic `effect`, at most `count`, strongest first.
@@ -25,7 +25,7 @@ pub fn peaks(setup: &Setup, design: &Design, effect: &EffectHandle, count: usize
         return Vec::new();
     }
     let finest = std::f64::consts::TAU / highest;
-    let bins = ((range / finest * BINS_A_PERIOD).ceil() as usize).clamp(64, MOST_BINS);
+    let bins = ((range / finest * BINS_A_PERIOD).ceil() as usize).clamp(64, MAX_BINS);
     let highest = highest.min(std::f64::consts::TAU * bins as f64 / (4.0 * range));
     let width = range / bins as f64;
     let mut sums = vec![(0.0, 0.0); bins];
@@ -79,7 +79,7 @@ pub fn peaks(setup: &Setup, design: &Design, effect: &EffectHandle, count: usize
 pub fn tried(setup: &Setup, effect: &EffectHandle) -> usize {
     let bounds = effect.bounds(&setup.facts);
     bounds.first().map_or(0, |b| {
-        ((b[1] - b[0]) * setup.facts.travel() / std::f64::consts::PI).clamp(0.0, MOST_BINS as f64)
+        ((b[1] - b[0]) * setup.facts.travel() / std::f64::consts::PI).clamp(0.0, MAX_BINS as f64)
             as usize
     })
 }

@@ -9,7 +9,7 @@ use crate::setup::{BoundTerm, Setup};
 use crate::signals::Signals;
 
 /// Fits of a model whose effects act on its own prediction, at most, …
-const MOST_PREDICTIONS: usize = 20;
+const MAX_PREDICTIONS: usize = 20;
 /// … and none after one that moves no parameter by this share of its standard error.
 const SAME_PREDICTION: f64 = 0.02;
 /// Steps that one fit may go on for.
@@ -61,7 +61,7 @@ impl Setup {
         // say.
         let mut before: Option<DVector<f64>> = None;
         let mut stride = 1.0;
-        for _ in 0..MOST_PREDICTIONS {
+        for _ in 0..MAX_PREDICTIONS {
             let together = Design::new(self);
             let kept = self.predicting_columns();
             let error = |k: &usize| together.covariance[(*k, *k)].max(1e-300).sqrt();

@@ -6,7 +6,7 @@ use crate::gram::Gram;
 use crate::setup::Setup;
 
 /// Rounds over all parameters of a shape, at most …
-const MOST_ROUNDS: usize = 6;
+const MAX_ROUNDS: usize = 6;
 /// … and no more once a round leaves this share of the error.
 const ENOUGH: f64 = 0.995;
 /// Grid points for each searched parameter that has bounds but no grid.
@@ -102,7 +102,7 @@ pub fn polish(setup: &Setup, design: &Design, effect: &EffectHandle, start: &[f6
     let grid = grid(setup, effect);
     let mut error = error_of(setup, design, effect, &shape);
     let searched = bounds.iter().filter(|[low, high]| high > low).count();
-    let rounds = if searched > 1 { MOST_ROUNDS } else { 1 };
+    let rounds = if searched > 1 { MAX_ROUNDS } else { 1 };
     for _ in 0..rounds {
         let before = error;
         let spacing = spacing(&grid, &shape);

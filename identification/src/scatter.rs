@@ -18,7 +18,7 @@ use crate::setup::Setup;
 use crate::statistics::{f_tail, mean_error};
 
 /// A part whose scale a session says no better than this counts for nothing there.
-const MOST_ERROR: f64 = 0.1;
+const MAX_ERROR: f64 = 0.1;
 /// Degrees of freedom that the scatter of the other parts is worth: they
 /// scatter alike, not equally.
 const WORTH: f64 = 4.0;
@@ -87,7 +87,7 @@ fn scales(own: &Gram, design: &Design, shapes: &DMatrix<f64>) -> Vec<Option<f64>
     (0..shapes.ncols())
         .map(|at| {
             let variance = error * inverse[(at, at)];
-            (variance > 0.0 && variance < MOST_ERROR * MOST_ERROR).then(|| scales[at])
+            (variance > 0.0 && variance < MAX_ERROR * MAX_ERROR).then(|| scales[at])
         })
         .collect()
 }

@@ -15,7 +15,7 @@ use crate::refine;
 use crate::signals::{Filters, RESOLVED, Signals, quantile};
 
 /// Rounds over the shapes of a model's effects, at most, …
-const MOST_ROUNDS: usize = 8;
+const MAX_ROUNDS: usize = 8;
 /// … and none after one that moves no shape by this share.
 const SETTLED: f64 = 0.002;
 
@@ -288,7 +288,7 @@ impl Setup {
             .collect();
         let predicts = self.terms.iter().any(|t| t.effect.row().needs_prediction);
         let most = match (predicts, searched.len()) {
-            (true, _) => MOST_ROUNDS,
+            (true, _) => MAX_ROUNDS,
             (false, 0 | 1) => 1,
             (false, _) => 2,
         };

@@ -10,7 +10,7 @@
 use nalgebra::DVector;
 use serde::Serialize;
 
-use crate::effects::{MOST_COLUMNS, Memory, Point, with_columns};
+use crate::effects::{MAX_COLUMNS, Memory, Point, with_columns};
 use crate::setup::Setup;
 use crate::signals::Signals;
 
@@ -65,7 +65,7 @@ pub fn simulate(
                 count += 1;
             }
             for point in &signals.points[at..end] {
-                let mut columns = [0.0; MOST_COLUMNS];
+                let mut columns = [0.0; MAX_COLUMNS];
                 for (term, memory) in setup.terms.iter().zip(&mut memories) {
                     let width = term.effect.columns();
                     term.effect
@@ -100,7 +100,7 @@ fn torque(
     if setup.facts.joint_torque {
         still += point.load;
     }
-    let mut columns = [0.0; MOST_COLUMNS];
+    let mut columns = [0.0; MAX_COLUMNS];
     for (((term, places), memory), extra) in with_columns(&setup.terms).zip(memories).zip(extra) {
         let width = places.len();
         // The channels are already without it.

@@ -17,7 +17,7 @@ use crate::setup::{BoundTerm, Setup};
 use crate::signals::{Channels, Signals};
 
 /// Steps, whole or halved, at most, …
-const MOST_STEPS: usize = 10;
+const MAX_STEPS: usize = 10;
 /// … and none after one that is shorter than this share of a standard error, …
 const SETTLED: f64 = 0.2;
 /// … or than this share of the whole one.
@@ -38,7 +38,7 @@ impl Setup {
         let mut design = Design::new(self);
         let (mut error, rows) = left(&design);
         let mut share = 1.0;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if share < SHORTEST || self.is_settled(&design) {
                 return;
             }

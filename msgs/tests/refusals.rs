@@ -283,9 +283,9 @@ fn a_twin_s_lists_are_of_one_length_and_fit() {
         &mut long.std_errors,
         &mut long.excitation,
     ] {
-        list.resize(MOST_PARAMETERS + 1, 0.0);
+        list.resize(MAX_TWIN_PARAMETERS + 1, 0.0);
     }
-    long.names.resize(MOST_PARAMETERS + 1, String::new());
+    long.names.resize(MAX_TWIN_PARAMETERS + 1, String::new());
     for (bad, field) in [(short, "std_errors"), (long, "names")] {
         match TwinParametersSample::from_ros(&bad) {
             Err(InvalidMessage::WrongLength { field: found, .. }) => assert_eq!(found, field),
@@ -293,7 +293,7 @@ fn a_twin_s_lists_are_of_one_length_and_fit() {
         }
     }
     let mut many = known_sample;
-    many.count = MOST_PARAMETERS as u32 + 1;
+    many.count = MAX_TWIN_PARAMETERS as u32 + 1;
     assert!(many.check().is_err());
 }
 

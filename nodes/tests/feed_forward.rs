@@ -42,7 +42,7 @@ fn willing() -> (FeedForward, Vec<(&'static str, f64)>) {
 fn by_the_lab(ids: &[&str], shape: &[f64], values: &[(&str, f64)], point: &Point) -> f64 {
     let torque = |id: &&str| -> f64 {
         let effect = effects::find(id).expect("an effect of the catalogue");
-        let mut columns = [0.0; effects::MOST_COLUMNS];
+        let mut columns = [0.0; effects::MAX_COLUMNS];
         let names = effect.row().coefficients;
         let columns = &mut columns[..names.len()];
         effect.evaluate(shape, point, &mut [0.0; 4], columns);

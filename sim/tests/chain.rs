@@ -7,7 +7,7 @@ use ferntast_control::delay::{
 };
 use ferntast_control::frame::{self, FRAME_LENGTH, Frame};
 use ferntast_control::haptics::{HandCommand, Master, MasterConfig};
-use ferntast_control::meter::{Arrival, LinkMeasurement, Meter};
+use ferntast_control::meter::{Arrival, LinkMeasurement, LinkMeter};
 use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{Command, Measurement, Servo, ServoConfig, ServoInput, Target};
 use ferntast_emulation::channel::{Blackout, Channel, ChannelConfig, LinkConfig};
@@ -38,7 +38,7 @@ const SCRIPT: &str = r#"
 
 /// One end's side of the link.
 struct End {
-    meter: Meter,
+    meter: LinkMeter,
     channel: Channel,
     sequence: u32,
     newest: Option<Packet>,
@@ -49,7 +49,7 @@ impl End {
     /// `outgoing` is the channel that this end sends into.
     fn new(outgoing: ChannelConfig, seed: u64) -> End {
         End {
-            meter: Meter::new(),
+            meter: LinkMeter::new(),
             channel: Channel::new(outgoing, seed).expect("valid"),
             sequence: 0,
             newest: None,

@@ -13,7 +13,7 @@ use super::{
 };
 
 /// No joint and no contact has so many effects that these data can tell apart.
-const MOST_STEPS: usize = 8;
+const MAX_STEPS: usize = 8;
 
 /// Diagnose and add until the model is complete, or what is left has no name.
 #[derive(Debug, clap::Args)]
@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         let unit = opened.torque_unit();
         let best = diagnosis.candidates.first();
         let (Some(best), Verdict::Missing, true) =
-            (best, diagnosis.verdict, steps.len() < MOST_STEPS)
+            (best, diagnosis.verdict, steps.len() < MAX_STEPS)
         else {
             if !json {
                 table::diagnosis(&diagnosis, unit);

@@ -31,7 +31,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         token: page.token,
     };
     let content = Content {
-        desk: None,
+        shared: None,
         folder: arguments.folder,
     };
     let server = Server::start(&listen, content).map_err(Failure::refused)?;

@@ -4,7 +4,7 @@ use ferntast_identification::compare::Series;
 use serde::Serialize;
 
 /// Points of all sessions together that are sent at most.
-pub const MOST_POINTS: usize = 400_000;
+pub const MAX_POINTS: usize = 400_000;
 
 /// The signals of one session. Columns are as long as `time` or empty.
 #[derive(Debug, Serialize)]

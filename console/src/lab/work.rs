@@ -21,7 +21,7 @@ use tokio::sync::mpsc;
 
 use super::{
     Joint, Lab, LabError,
-    drawing::{Drawing, MOST_POINTS},
+    drawing::{Drawing, MAX_POINTS},
 };
 
 /// Says how much is done.
@@ -123,7 +123,7 @@ pub async fn compare(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> R
         with_joint(lab, &joint, |opened| {
             progress(0.3);
             let sessions = opened.dataset.sessions.len() + opened.dataset.held_out.len();
-            let comparison = opened.compare_drawing(MOST_POINTS / sessions.max(1))?;
+            let comparison = opened.compare_drawing(MAX_POINTS / sessions.max(1))?;
             let drawings: Vec<Drawing> = comparison.series.iter().map(Drawing::of).collect();
             Ok(Compared {
                 comparison,

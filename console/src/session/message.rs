@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::seat::LetGo;
+use super::operator_lock::Release;
 
 /// What a page says.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -28,7 +28,7 @@ pub enum Request {
     /// Arm, hold, re-arm; anybody may stop.
     State {
         /// What.
-        word: Word,
+        word: StateRequest,
     },
     /// The channel is to be like that.
     Link {
@@ -63,7 +63,7 @@ pub enum Request {
 /// What is to be done about the operating state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Word {
+pub enum StateRequest {
     /// Drives on.
     Arm,
     /// Stay where you are.
@@ -123,8 +123,8 @@ pub struct Snapshot {
     pub states: BTreeMap<&'static str, (String, String)>,
     /// Who holds the authority.
     pub authority: AuthorityView,
-    /// The seat.
-    pub seat: SeatView,
+    /// Who operates.
+    pub seat: OperatorView,
     /// Temperatures \[degC\].
     pub temperatures: [Option<f32>; 2],
     /// The recorder.
@@ -201,15 +201,15 @@ pub enum Holder {
     Client,
 }
 
-/// The operator's seat.
+/// Who operates.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct SeatView {
+pub struct OperatorView {
     /// The page that operates.
     pub operator: Option<u64>,
     /// Where it wants the hand, while it holds it.
     pub target: Option<[f32; 2]>,
     /// Why the hand was let go.
-    pub let_go: Option<LetGo>,
+    pub let_go: Option<Release>,
     /// Pages that watch, the operator's included.
     pub pages: usize,
 }
@@ -254,7 +254,12 @@ mod tests {
         let hand = read(r#"{"type":"hand","x":0.01,"y":-0.02}"#);
         assert_eq!(hand, Some(Request::Hand { x: 0.01, y: -0.02 }));
         let stop = read(r#"{"type":"state","word":"stop"}"#);
-        assert_eq!(stop, Some(Request::State { word: Word::Stop }));
+        assert_eq!(
+            stop,
+            Some(Request::State {
+                word: StateRequest::Stop
+            })
+        );
         assert_eq!(
             read(r#"{"type":"record"}"#),
             Some(Request::Record {

@@ -1,15 +1,15 @@
 //! A session's console: pages over WebSocket on one side, the bus on the other.
 //!
-//! * [`seat`]: who operates, and whether the hand is held,
-//! * [`desk`]: what pages and the loop share,
+//! * [`operator_lock`]: who operates, and whether the hand is held,
+//! * [`shared_session`]: what pages and the loop share,
 //! * [`link`](SessionPorts): the loop's side, topics of the bus,
 //! * [`message`]: what is said between page and server.
 
-pub mod desk;
 pub mod hand;
 pub mod message;
+pub mod operator_lock;
 mod ports;
-pub mod seat;
+pub mod shared_session;
 
 use std::sync::Arc;
 
@@ -23,9 +23,9 @@ use axum::{
     routing::get,
 };
 
-pub use desk::Desk;
 pub use hand::{GripModel, PageHand};
 pub use ports::SessionPorts;
+pub use shared_session::SharedSession;
 
 use message::{Answer, Request};
 
@@ -34,42 +34,42 @@ const LONGEST_REQUEST: usize = 4096;
 
 /// The session's addresses. Without a session there is only the word that
 /// there is none.
-pub fn routes(desk: Option<Arc<Desk>>) -> Router {
-    let about = desk.is_some();
+pub fn routes(shared: Option<Arc<SharedSession>>) -> Router {
+    let about = shared.is_some();
     let router = Router::new().route(
         "/api/about",
         get(move || async move { Json(serde_json::json!({ "session": about })) }),
     );
-    match desk {
-        Some(desk) => router.merge(
+    match shared {
+        Some(shared) => router.merge(
             Router::new()
                 .route("/api/session", get(connect))
-                .with_state(desk),
+                .with_state(shared),
         ),
         None => router,
     }
 }
 
-async fn connect(State(desk): State<Arc<Desk>>, upgrade: WebSocketUpgrade) -> Response {
+async fn connect(State(shared): State<Arc<SharedSession>>, upgrade: WebSocketUpgrade) -> Response {
     upgrade
         .max_message_size(LONGEST_REQUEST)
         .on_upgrade(move |socket| async move {
-            let page = desk.enter();
-            serve(&desk, page, socket).await;
-            desk.leave(page);
+            let page = shared.enter();
+            serve(&shared, page, socket).await;
+            shared.leave(page);
         })
 }
 
 /// Talks with a page until it goes.
-async fn serve(desk: &Desk, page: u64, mut socket: WebSocket) {
+async fn serve(shared: &SharedSession, page: u64, mut socket: WebSocket) {
     let hello = Answer::Hello {
         page,
-        session: &desk.about,
+        session: &shared.about,
     };
     if send(&mut socket, &hello).await.is_none() {
         return;
     }
-    let mut snapshots = desk.snapshots();
+    let mut snapshots = shared.snapshots();
     loop {
         tokio::select! {
             changed = snapshots.changed() => {
@@ -85,7 +85,7 @@ async fn serve(desk: &Desk, page: u64, mut socket: WebSocket) {
                     _ => return,
                 };
                 let refused = match serde_json::from_str::<Request>(&text) {
-                    Ok(request) => desk.ask(page, request).err().map(|error| error.to_string()),
+                    Ok(request) => shared.ask(page, request).err().map(|error| error.to_string()),
                     Err(error) => Some(format!("not understood: {error}")),
                 };
                 if let Some(reason) = refused

@@ -15,10 +15,10 @@ use ferntast_msgs::{
 };
 
 use super::{
-    Desk, PageHand,
+    PageHand, SharedSession,
     message::{
-        AuthorityView, ContactView, Holder, LinkView, NodeView, RecorderView, Request, SeatView,
-        Snapshot, Word,
+        AuthorityView, ContactView, Holder, LinkView, NodeView, OperatorView, RecorderView,
+        Request, Snapshot, StateRequest,
     },
 };
 
@@ -56,7 +56,7 @@ impl<M: Message> Newest<M> {
 /// The topics of the console. One [`round`](SessionPorts::round) carries out
 /// what pages want, moves the hand, and shows a snapshot when one is due.
 pub struct SessionPorts {
-    desk: Arc<Desk>,
+    shared: Arc<SharedSession>,
     hand: PageHand,
     joints: Newest<JointSample>,
     tip: Newest<PoseSample>,
@@ -90,9 +90,13 @@ impl SessionPorts {
     /// # Errors
     ///
     /// A topic that cannot be opened.
-    pub fn connect(bus: &Bus, desk: Arc<Desk>, hand: PageHand) -> Result<Self, CreateError> {
+    pub fn connect(
+        bus: &Bus,
+        shared: Arc<SharedSession>,
+        hand: PageHand,
+    ) -> Result<Self, CreateError> {
         Ok(SessionPorts {
-            desk,
+            shared,
             hand,
             joints: Newest::open(bus, topics::FOLLOWER_MEASURED_JS)?,
             tip: Newest::open(bus, topics::FOLLOWER_MEASURED_CP)?,
@@ -138,14 +142,14 @@ impl SessionPorts {
 
     /// One round at `now`. Gives how many messages could not be sent so far.
     pub fn round(&mut self, now: Time) -> u64 {
-        for wish in self.desk.wishes() {
+        for wish in self.shared.wishes() {
             self.carry_out(now, wish);
         }
         self.move_hand(now);
         self.listen(now);
         if now >= self.snapshot_due {
             self.snapshot_due = now.plus_nanos(SNAPSHOT_NANOS);
-            if self.desk.pages() > 0 {
+            if self.shared.pages() > 0 {
                 self.show(now);
             }
         }
@@ -196,17 +200,17 @@ impl SessionPorts {
         self.recorder_command.publish(now, &command).is_ok()
     }
 
-    fn command(&mut self, now: Time, word: Word) {
+    fn command(&mut self, now: Time, word: StateRequest) {
         let command = match word {
-            Word::Stop => StateCommand::DISABLE,
-            Word::Hold => StateCommand::PAUSE,
-            Word::Rearm => StateCommand::RESUME,
-            Word::Arm => StateCommand::ENABLE,
+            StateRequest::Stop => StateCommand::DISABLE,
+            StateRequest::Hold => StateCommand::PAUSE,
+            StateRequest::Rearm => StateCommand::RESUME,
+            StateRequest::Arm => StateCommand::ENABLE,
         };
         for (publisher, (_, state)) in self.state_commands.iter_mut().zip(&mut self.states) {
             let state = state.take(now).map(|sample| sample.state);
             // A fault is left by way of disabled.
-            let way_out = word == Word::Arm && state == Some(OperatingState::FAULT);
+            let way_out = word == StateRequest::Arm && state == Some(OperatingState::FAULT);
             let first = way_out.then_some(StateCommand::DISABLE);
             for command in first.into_iter().chain([command]) {
                 let sample = StateCommandSample::new(now, command);
@@ -216,7 +220,7 @@ impl SessionPorts {
     }
 
     fn move_hand(&mut self, now: Time) {
-        let seat = self.desk.look();
+        let lock = self.shared.look();
         let dt = self.last.map_or(0.0, |last| now.seconds_since(last));
         self.last = Some(now);
         let at = self.leader.take(now).map_or([0.0; 3], |pose| pose.position);
@@ -225,8 +229,8 @@ impl SessionPorts {
         let force = force.map_or([0.0; 3], |wrench| wrench.force);
         let hand = self
             .hand
-            .step(dt, seat.target(), [at[0], at[1]], [force[0], force[1]]);
-        if let (Some([x, y]), Some(page)) = (hand, seat.operator()) {
+            .step(dt, lock.target(), [at[0], at[1]], [force[0], force[1]]);
+        if let (Some([x, y]), Some(page)) = (hand, lock.operator()) {
             let pose = PoseSample {
                 source: PAGE_SOURCE | page,
                 ..PoseSample::at(now, Frame::LEADER_BASE, [x, y, 0.0])
@@ -255,7 +259,7 @@ impl SessionPorts {
             self.nodes_due = now.plus_nanos(NODES_NANOS);
             self.nodes.iter().map(|health| node(now, health)).collect()
         });
-        let seat = self.desk.look();
+        let lock = self.shared.look();
         let joints = self.joints.take(now);
         let snapshot = Snapshot {
             r#type: "snapshot",
@@ -286,11 +290,11 @@ impl SessionPorts {
                 })
                 .collect(),
             authority: self.authority.take(now).map(authority).unwrap_or_default(),
-            seat: SeatView {
-                operator: seat.operator(),
-                target: seat.target().map(short),
-                let_go: seat.reason(),
-                pages: self.desk.pages(),
+            seat: OperatorView {
+                operator: lock.operator(),
+                target: lock.target().map(short),
+                let_go: lock.reason(),
+                pages: self.shared.pages(),
             },
             temperatures: self
                 .temperatures
@@ -300,7 +304,7 @@ impl SessionPorts {
             nodes,
         };
         if let Ok(text) = serde_json::to_string(&snapshot) {
-            self.desk.show(text);
+            self.shared.show(text);
         }
     }
 }

@@ -16,7 +16,7 @@ const TIME: f64 = 0.05;
 
 /// What a follower whose tip gives way sees, in hand units.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
+pub(super) struct TouchingTip {
     /// Force of the contact on the tip, zero where it is not known [N].
     pub contact: Vector3<f64>,
     /// The tip [m].
@@ -27,12 +27,12 @@ pub(super) struct Touch {
     pub lead: Vector3<f64>,
 }
 
-impl Touch {
+impl TouchingTip {
     /// Of `input`, with the last command \[m\], hand units.
     pub fn new(mapping: &Mapping, input: &FollowerInput, command: Option<Vector3<f64>>) -> Self {
         let tip = input.tip.map(|tip| mapping.tip_at_hand(tip.position));
         let here = command.or(tip);
-        Touch {
+        TouchingTip {
             contact: mapping.contact_at_hand(input.contact_force.unwrap_or([0.0; 3])),
             tip,
             here,

@@ -23,8 +23,8 @@
 //! **On loss.** No command, the force fades out. Afterwards the command begins at
 //! the tip and approaches by K and B.
 
-use super::contact::{CommandForce, Touch};
-use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
+use super::contact::{CommandForce, TouchingTip};
+use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     vector,
@@ -90,7 +90,7 @@ impl Other {
 pub struct FourChannelLeader {
     parameters: FourChannel,
     mapping: Mapping,
-    fade: Fade,
+    fade: ForceRamp,
     tip: Other,
     /// The newest force received, hand units [N].
     contact: Vector3<f64>,
@@ -103,7 +103,7 @@ impl FourChannelLeader {
         FourChannelLeader {
             parameters: law.clone(),
             mapping: law.mapping(),
-            fade: Fade::default(),
+            fade: ForceRamp::default(),
             tip: Other::default(),
             contact: Vector3::zeros(),
             position: Vector3::zeros(),
@@ -176,12 +176,12 @@ impl Follower for FourChannelFollower {
         let live = self.mapping.live(input.connected, input.received);
         let newest = live.map(|received| (vector(received.packet.position), received.fresh));
         self.hand.step(dt, newest);
-        let Touch {
+        let TouchingTip {
             contact,
             here,
             lead,
             ..
-        } = Touch::new(&self.mapping, input, self.command);
+        } = TouchingTip::new(&self.mapping, input, self.command);
         let pushed = self.force.step(dt, contact, lead);
         // Implicit in both springs.
         let give = own.damping + (own.stiffness + self.force.stiffness()) * dt;

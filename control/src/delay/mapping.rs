@@ -63,9 +63,9 @@ impl Mapping {
 
 /// How far a force is faded in, 0 … 1.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Fade(f64);
+pub(super) struct ForceRamp(f64);
 
-impl Fade {
+impl ForceRamp {
     pub fn step(&mut self, dt: f64, ramp: f64, live: bool) -> f64 {
         let change = if live { dt / ramp } else { -dt / ramp };
         self.0 = (self.0 + change).clamp(0.0, 1.0);

@@ -19,13 +19,13 @@
 mod contact;
 mod end;
 mod energy;
+mod energy_tank;
 mod four_channel;
 mod law;
 mod mapping;
 mod model_mediated;
 mod position_force;
 mod position_position;
-mod store;
 mod tdpa;
 mod wave;
 

@@ -29,8 +29,8 @@ mod estimate;
 
 pub use estimate::SurfaceModel;
 
-use super::contact::{CommandForce, Touch};
-use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
+use super::contact::{CommandForce, TouchingTip};
+use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     vector,
@@ -103,7 +103,7 @@ fn unpacked(packet: &Packet) -> Option<SurfaceModel> {
 pub struct ModelMediatedLeader {
     parameters: ModelMediated,
     mapping: Mapping,
-    fade: Fade,
+    fade: ForceRamp,
     /// What is rendered.
     surface: Option<SurfaceModel>,
     received: Option<SurfaceModel>,
@@ -114,7 +114,7 @@ impl ModelMediatedLeader {
         ModelMediatedLeader {
             parameters: law.clone(),
             mapping: law.mapping(),
-            fade: Fade::default(),
+            fade: ForceRamp::default(),
             surface: None,
             received: None,
         }
@@ -218,12 +218,12 @@ impl Follower for ModelMediatedFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
         let live = self.mapping.live(input.connected, input.received);
-        let Touch {
+        let TouchingTip {
             contact,
             tip,
             here,
             lead,
-        } = Touch::new(&self.mapping, input, self.command);
+        } = TouchingTip::new(&self.mapping, input, self.command);
         if let (Some(tip), Some(_)) = (tip, input.contact_force) {
             self.model = self.estimator.step(dt, tip, contact);
         }

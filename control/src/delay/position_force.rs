@@ -20,7 +20,7 @@
 //! gear) with a firm hand (0.5 kg, 50 N·s/m, 1000 N/m) and 20 or 30 ms round
 //! trip, pressing is steady up to a force scale of 0.1 and bounces at 0.15. Transparent without delay and with a stiff servo.
 
-use super::mapping::{Fade, Mapping, law_ends, law_parameters};
+use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     vector,
@@ -43,7 +43,7 @@ law_ends!(
 #[derive(Clone, Debug)]
 pub struct PositionForceLeader {
     mapping: Mapping,
-    fade: Fade,
+    fade: ForceRamp,
     /// The newest force received, scaled [N].
     force: Vector3<f64>,
 }
@@ -52,7 +52,7 @@ impl PositionForceLeader {
     fn new(law: &PositionForce) -> Self {
         PositionForceLeader {
             mapping: law.mapping(),
-            fade: Fade::default(),
+            fade: ForceRamp::default(),
             force: Vector3::zeros(),
         }
     }

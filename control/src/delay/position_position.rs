@@ -16,7 +16,7 @@
 //!
 //! **On loss.** As the other laws: no command, the force fades out.
 
-use super::mapping::{Fade, Mapping, law_ends, law_parameters};
+use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     Received, vector,
@@ -61,7 +61,7 @@ impl PositionPosition {
 pub struct PositionPositionLeader {
     parameters: PositionPosition,
     mapping: Mapping,
-    fade: Fade,
+    fade: ForceRamp,
     /// Newest, hand units [m].
     tip: Vector3<f64>,
     dissipated: f64,
@@ -72,7 +72,7 @@ impl PositionPositionLeader {
         PositionPositionLeader {
             parameters: law.clone(),
             mapping: law.mapping(),
-            fade: Fade::default(),
+            fade: ForceRamp::default(),
             tip: Vector3::zeros(),
             dissipated: 0.0,
         }

@@ -2,10 +2,10 @@
 //! controllers at both ends, drift compensated.
 //!
 //! Position goes forward, contact force back. Each end observes the energy at its
-//! port and keeps a store: what its port took in, what the other end promised in
+//! port and keeps a tank: what its port took in, what the other end promised in
 //! packets, less what its port gave out and what it promised itself
-//! (`store.rs`; Ryu, Artigas, Preusche 2010, Mechatronics 20). A passivity controller
-//! lets no end give out more than its store holds:
+//! (`tank.rs`; Ryu, Artigas, Preusche 2010, Mechatronics 20). A passivity controller
+//! lets no end give out more than its tank holds:
 //!
 //! * the leader's, of impedance type, takes from the force: F ← F − α v_h;
 //! * the follower's, of admittance type, takes from the motion: v ← v − β F.
@@ -14,7 +14,7 @@
 //! control of haptic interfaces", IEEE T-RA 18, take the same energy one step
 //! later and chatter): the force makes the hand faster, the motion winds up the
 //! servo. What the admittance takes off the motion is drift; the
-//! follower makes up for it as fast as `drift_speed` while its store pays
+//! follower makes up for it as fast as `drift_speed` while its tank pays
 //! (Artigas, Ryu, Preusche 2010, "Position drift compensation in time domain
 //! passivity based teleoperation", IROS; Coelho, Singh, Muskardin, Balachandran,
 //! Kondak 2018, "Smoother position-drift compensation for time domain passivity
@@ -34,9 +34,9 @@
 //! **On loss.** No command, the force fades out. Afterwards the command begins at the
 //! tip and approaches at `drift_speed`.
 
-use super::contact::{CommandForce, Touch};
-use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
-use super::store::Store;
+use super::contact::{CommandForce, TouchingTip};
+use super::energy_tank::EnergyTank;
+use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
     LeaderOutput, Packet, vector,
@@ -80,8 +80,8 @@ const STANDING: f64 = 1e-6;
 pub struct TdpaLeader {
     parameters: Tdpa,
     mapping: Mapping,
-    store: Store,
-    fade: Fade,
+    tank: EnergyTank,
+    fade: ForceRamp,
     /// The newest force received, hand units [N].
     force: Vector3<f64>,
     /// Of the hand at the last step [m].
@@ -93,8 +93,8 @@ impl TdpaLeader {
         TdpaLeader {
             parameters: law.clone(),
             mapping: law.mapping(),
-            store: Store::default(),
-            fade: Fade::default(),
+            tank: EnergyTank::default(),
+            fade: ForceRamp::default(),
             force: Vector3::zeros(),
             position: None,
         }
@@ -104,19 +104,19 @@ impl TdpaLeader {
 impl Leader for TdpaLeader {
     fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
         let own = &self.parameters;
-        self.store.port(energy, own.promised_share);
+        self.tank.port(energy, own.promised_share);
         let live = self.mapping.live(input.connected, input.received);
         if let Some(received) = live {
-            self.store.promise(f64::from(received.packet.energy[0]));
+            self.tank.promise(f64::from(received.packet.energy[0]));
             self.force = vector(received.packet.vector);
         }
-        self.store.limit(own.reserve);
+        self.tank.limit(own.reserve);
         let share = self.fade.step(dt, own.force_ramp, live.is_some());
         let Some(hand) = input.hand else {
             self.position = None;
             return LeaderOutput {
                 force: [0.0; 3],
-                packet: Packet::empty(promise(&self.store, energy)),
+                packet: Packet::empty(promise(&self.tank, energy)),
             };
         };
         let here = Vector3::from(hand.position);
@@ -126,7 +126,7 @@ impl Leader for TdpaLeader {
             _ => hand.velocity.into(),
         };
         self.position = Some(here);
-        let level = self.store.level();
+        let level = self.tank.level();
         let mut force = affordable(dt, share * self.force, velocity, level, own.hand_mass);
         force -= own.damping * Vector3::from(hand.velocity);
         let square = velocity.norm_squared();
@@ -135,12 +135,12 @@ impl Leader for TdpaLeader {
         }
         LeaderOutput {
             force: force.into(),
-            packet: Packet::new(hand.position, hand.velocity, promise(&self.store, energy)),
+            packet: Packet::new(hand.position, hand.velocity, promise(&self.tank, energy)),
         }
     }
 
     fn dissipated(&self) -> f64 {
-        self.store.dissipated()
+        self.tank.dissipated()
     }
 }
 
@@ -166,9 +166,9 @@ fn affordable(
 }
 
 /// What a packet says of energy: promised in place of entered.
-fn promise(store: &Store, energy: Energy) -> Energy {
+fn promise(tank: &EnergyTank, energy: Energy) -> Energy {
     Energy {
-        entered: store.promised(),
+        entered: tank.promised(),
         left: energy.left,
     }
 }
@@ -179,7 +179,7 @@ fn promise(store: &Store, energy: Energy) -> Energy {
 pub struct TdpaFollower {
     parameters: Tdpa,
     mapping: Mapping,
-    store: Store,
+    tank: EnergyTank,
     /// At the command: the servo behind it is passive by itself.
     meter: EnergyMeter,
     force: CommandForce,
@@ -194,7 +194,7 @@ impl TdpaFollower {
         TdpaFollower {
             parameters: law.clone(),
             mapping,
-            store: Store::default(),
+            tank: EnergyTank::default(),
             meter: EnergyMeter::default(),
             force: CommandForce::new(mapping.stiffness_at_hand(law.servo_stiffness)),
             last: Vector3::zeros(),
@@ -207,23 +207,23 @@ impl Follower for TdpaFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
         let live = self.mapping.live(input.connected, input.received);
-        let Touch {
+        let TouchingTip {
             contact,
             here,
             lead,
             ..
-        } = Touch::new(&self.mapping, input, self.command);
+        } = TouchingTip::new(&self.mapping, input, self.command);
         let force = self.force.step(dt, contact, lead);
         let mean = -0.5 * (force + self.last);
         self.last = force;
         self.meter.step(mean.into(), here.map(Into::into));
-        self.store
+        self.tank
             .port(self.meter.energy(), 1.0 - own.promised_share);
         if let Some(received) = live {
-            self.store.promise(f64::from(received.packet.energy[0]));
+            self.tank.promise(f64::from(received.packet.energy[0]));
         }
-        self.store.limit(own.reserve);
-        self.store.add(-self.force.take_wound());
+        self.tank.limit(own.reserve);
+        self.tank.add(-self.force.take_wound());
         let motion = live.zip(here).map(|(received, here)| {
             let hand_velocity = vector(received.packet.vector);
             let hand = vector(received.packet.position) + received.silence * hand_velocity;
@@ -231,11 +231,11 @@ impl Follower for TdpaFollower {
             let wanted = hand_velocity + drift;
             let velocity = self
                 .force
-                .admitted(dt, wanted, self.store.level(), own.yield_speed);
+                .admitted(dt, wanted, self.tank.level(), own.yield_speed);
             (here + velocity * dt, velocity)
         });
         self.command = motion.map(|(position, _)| position);
-        let energy = promise(&self.store, energy);
+        let energy = promise(&self.tank, energy);
         FollowerOutput {
             command: motion.map(|(position, velocity)| self.mapping.command(position, velocity)),
             packet: match (input.tip, input.contact_force) {
@@ -246,6 +246,6 @@ impl Follower for TdpaFollower {
     }
 
     fn dissipated(&self) -> f64 {
-        self.store.dissipated()
+        self.tank.dissipated()
     }
 }

@@ -29,7 +29,7 @@
 //! **Drift.** What was dropped leaves the tip beside the hand's image. The position goes
 //! along in the packet, and a spring pulls the tip there through the matching damper
 //! (after Chopra, Spong, Ortega, Barabanov 2006, "On tracking performance in bilateral
-//! teleoperation", IEEE T-RO 22); against the contact only as far as the follower's store
+//! teleoperation", IEEE T-RO 22); against the contact only as far as the follower's tank
 //! pays. So a steady contact is felt as it is, after some round trips.
 //!
 //! **What it guarantees.** Each end sends no more wave energy than waves and port
@@ -39,9 +39,9 @@
 //! equally fast (their offset changes the absorption only); the servo from command to
 //! tip is passive, up to the kinetic energy of the arm.
 
-use super::contact::{CommandForce, Touch};
-use super::mapping::{Fade, Mapping, law_ends, law_parameters, shortened};
-use super::store::Store;
+use super::contact::{CommandForce, TouchingTip};
+use super::energy_tank::EnergyTank;
+use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
     LeaderOutput, Packet, Received, vector,
@@ -145,18 +145,18 @@ impl Arrived {
     }
 }
 
-/// For how long the store has to be able to pay for a wave that it lets pass
+/// For how long the tank has to be able to pay for a wave that it lets pass
 /// whole [s]; a wave that it cannot pay fades within that time.
 const HORIZON: f64 = 0.02;
 
-/// The wave as far as the store can pay for it.
-fn paid(store: &mut Store, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
+/// The wave as far as the tank can pay for it.
+fn paid(tank: &mut EnergyTank, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
     let power = 0.5 * wave.norm_squared();
     if power <= 0.0 {
         return Vector3::zeros();
     }
-    let share = (store.level().max(0.0) / (power * HORIZON.max(dt))).min(1.0);
-    store.add(-share * power * dt);
+    let share = (tank.level().max(0.0) / (power * HORIZON.max(dt))).min(1.0);
+    tank.add(-share * power * dt);
     share.sqrt() * wave
 }
 
@@ -169,8 +169,8 @@ pub struct WaveLeader {
     mapping: Mapping,
     arrived: Arrived,
     sent: Sent,
-    store: Store,
-    fade: Fade,
+    tank: EnergyTank,
+    fade: ForceRamp,
     /// What is reflected of the wave that comes back [√W].
     reflected: Vector3<f64>,
     position: Option<Vector3<f64>>,
@@ -183,8 +183,8 @@ impl WaveLeader {
             parameters: law.clone(),
             arrived: Arrived::default(),
             sent: Sent::default(),
-            store: Store::default(),
-            fade: Fade::default(),
+            tank: EnergyTank::default(),
+            fade: ForceRamp::default(),
             reflected: Vector3::zeros(),
             position: None,
         }
@@ -198,9 +198,9 @@ impl Leader for WaveLeader {
         let live = self.mapping.live(input.connected, input.received);
         let share = self.fade.step(dt, own.force_ramp, live.is_some());
         let back = self.arrived.step(dt, live, own.buffer);
-        self.store.add(0.5 * back.norm_squared() * dt);
-        self.store.port(energy, 0.0);
-        self.store.limit(own.reserve);
+        self.tank.add(0.5 * back.norm_squared() * dt);
+        self.tank.port(energy, 0.0);
+        self.tank.limit(own.reserve);
         let here: Option<Vector3<f64>> = input.hand.map(|hand| hand.position.into());
         let moved = match (here, self.position) {
             (Some(here), Some(before)) if dt > 0.0 => (here - before) / dt,
@@ -214,7 +214,7 @@ impl Leader for WaveLeader {
             0.0
         };
         self.reflected += pass * (back - self.reflected);
-        let wave = paid(&mut self.store, dt, root * moved - self.reflected);
+        let wave = paid(&mut self.tank, dt, root * moved - self.reflected);
         let velocity = input
             .hand
             .map_or(Vector3::zeros(), |hand| hand.velocity.into());
@@ -229,7 +229,7 @@ impl Leader for WaveLeader {
     }
 
     fn dissipated(&self) -> f64 {
-        self.store.dissipated()
+        self.tank.dissipated()
     }
 }
 
@@ -240,7 +240,7 @@ pub struct WaveFollower {
     mapping: Mapping,
     arrived: Arrived,
     sent: Sent,
-    store: Store,
+    tank: EnergyTank,
     /// At the command: the servo behind it is passive by itself.
     meter: EnergyMeter,
     force: CommandForce,
@@ -256,7 +256,7 @@ impl WaveFollower {
             parameters: law.clone(),
             arrived: Arrived::default(),
             sent: Sent::default(),
-            store: Store::default(),
+            tank: EnergyTank::default(),
             meter: EnergyMeter::default(),
             force: CommandForce::new(law.mapping().stiffness_at_hand(law.servo_stiffness)),
             last: Vector3::zeros(),
@@ -272,20 +272,20 @@ impl Follower for WaveFollower {
         let root = (2.0 * b).sqrt();
         let live = self.mapping.live(input.connected, input.received);
         let forth = self.arrived.step(dt, live, own.buffer);
-        let Touch {
+        let TouchingTip {
             contact,
             here,
             lead,
             ..
-        } = Touch::new(&self.mapping, input, self.command);
+        } = TouchingTip::new(&self.mapping, input, self.command);
         let force = self.force.step(dt, contact, lead);
         let mean = -0.5 * (force + self.last);
         self.last = force;
         self.meter.step(mean.into(), here.map(Into::into));
-        self.store.add(0.5 * forth.norm_squared() * dt);
-        self.store.port(self.meter.energy(), 0.0);
-        self.store.limit(own.reserve);
-        let wave = paid(&mut self.store, dt, -force / root);
+        self.tank.add(0.5 * forth.norm_squared() * dt);
+        self.tank.port(self.meter.energy(), 0.0);
+        self.tank.limit(own.reserve);
+        let wave = paid(&mut self.tank, dt, -force / root);
         // Implicit in the servo's spring.
         let give = 2.0 * b + self.force.stiffness() * dt;
         let command = live.zip(here).map(|(received, here)| {
@@ -294,7 +294,7 @@ impl Follower for WaveFollower {
             let velocity = (root * forth - force + pull) / give;
             let velocity = self
                 .force
-                .admitted(dt, velocity, self.store.level(), own.yield_speed);
+                .admitted(dt, velocity, self.tank.level(), own.yield_speed);
             (here + velocity * dt, velocity)
         });
         self.command = command.map(|(position, _)| position);
@@ -310,6 +310,6 @@ impl Follower for WaveFollower {
     }
 
     fn dissipated(&self) -> f64 {
-        self.store.dissipated()
+        self.tank.dissipated()
     }
 }

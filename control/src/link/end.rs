@@ -2,8 +2,8 @@
 
 use super::{CONNECTED, SEND_PERIOD_NS};
 use crate::delay::Received;
-use crate::frame::{self, FRAME_LENGTH, Frame};
-use crate::meter::{Arrival, LinkMeasurement, Meter, behind};
+use crate::frame::{self, FRAME_LENGTH, LinkFrame};
+use crate::meter::{Arrival, LinkMeasurement, LinkMeter, behind};
 use crate::operating::OperatingState;
 use crate::playout::{Offered, PlayOut};
 use crate::seconds;
@@ -16,7 +16,7 @@ const LONGEST_STEP: f64 = 0.02;
 #[derive(Clone, Debug)]
 pub(super) struct End {
     session: u16,
-    meter: Meter,
+    meter: LinkMeter,
     sequence: u32,
     /// When the next frame is due [ns].
     send_due_ns: i64,
@@ -28,7 +28,7 @@ pub(super) struct End {
     /// Frames that came after their time, which the meter took for good.
     late: u64,
     /// The frame that is acted on.
-    newest: Option<Frame>,
+    newest: Option<LinkFrame>,
     fresh: bool,
     /// Time of the last step [ns].
     last_ns: Option<i64>,
@@ -39,7 +39,7 @@ impl End {
     pub fn new(session: u16, buffer: f64) -> End {
         End {
             session,
-            meter: Meter::new(),
+            meter: LinkMeter::new(),
             sequence: 0,
             send_due_ns: 0,
             play_out: PlayOut::new(buffer),
@@ -60,7 +60,7 @@ impl End {
         }
     }
 
-    fn decoded(&mut self, frame: &Frame, arrived_ns: i64) {
+    fn decoded(&mut self, frame: &LinkFrame, arrived_ns: i64) {
         match self.meter.received(frame, arrived_ns) {
             Arrival::Newest => {
                 self.highest = frame.sequence;
@@ -77,7 +77,7 @@ impl End {
     }
 
     /// The frame to act on from `now_ns` on, if there is a new one.
-    pub fn take(&mut self, now_ns: i64) -> Option<Frame> {
+    pub fn take(&mut self, now_ns: i64) -> Option<LinkFrame> {
         let taken = self.play_out.take(now_ns);
         self.fresh = taken.is_some();
         self.newest = taken.or(self.newest);
@@ -127,7 +127,7 @@ impl End {
         } else {
             now_ns.saturating_add(SEND_PERIOD_NS)
         };
-        let frame = Frame {
+        let frame = LinkFrame {
             session: self.session,
             sequence: self.sequence,
             sent_ns: now_ns,

@@ -1,7 +1,7 @@
 //! The two ends of the link: bytes of frames in, bytes of frames out, and
 //! between them the delay law.
 //!
-//! What arrives is decoded, measured ([`Meter`](crate::meter::Meter)) and played
+//! What arrives is decoded, measured ([`LinkMeter`](crate::meter::LinkMeter)) and played
 //! out ([`PlayOut`](crate::playout::PlayOut)); the law of the end acts on the
 //! frame that is played out and makes the packet of the next one. The nodes of a
 //! session, the lockstep executor and the trials of a sweep run these ends and

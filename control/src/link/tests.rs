@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::delay::{Law, Packet};
-use crate::frame::{self, FRAME_LENGTH, Frame};
+use crate::frame::{self, FRAME_LENGTH, LinkFrame};
 use crate::meter::RefusedCounts;
 use crate::operating::OperatingState;
 use crate::switching::Laws;
@@ -33,9 +33,9 @@ impl Rig {
     }
 
     /// The next good frame, sent now.
-    fn good(&mut self) -> Frame {
+    fn good(&mut self) -> LinkFrame {
         self.sequence += 1;
-        Frame {
+        LinkFrame {
             session: SESSION,
             sequence: self.sequence,
             sent_ns: self.now_ns,
@@ -77,7 +77,7 @@ impl Rig {
     }
 }
 
-fn bytes(frame: &Frame) -> [u8; FRAME_LENGTH] {
+fn bytes(frame: &LinkFrame) -> [u8; FRAME_LENGTH] {
     let mut bytes = [0; FRAME_LENGTH];
     frame::encode(frame, &mut bytes);
     bytes
@@ -149,7 +149,7 @@ fn each_kind_of_bad_frame_is_counted_and_never_acted_on() {
         (
             "session",
             |rig| {
-                bytes(&Frame {
+                bytes(&LinkFrame {
                     session: 8,
                     ..rig.good()
                 })
@@ -162,7 +162,7 @@ fn each_kind_of_bad_frame_is_counted_and_never_acted_on() {
             |rig| {
                 let good = rig.good();
                 let sent_ns = good.sent_ns + 60_000_000;
-                bytes(&Frame { sent_ns, ..good }).to_vec()
+                bytes(&LinkFrame { sent_ns, ..good }).to_vec()
             },
             |own| own.time,
         ),
@@ -171,7 +171,7 @@ fn each_kind_of_bad_frame_is_counted_and_never_acted_on() {
             |rig| {
                 let good = rig.good();
                 let sent_ns = good.sent_ns - 11_000_000_000;
-                bytes(&Frame { sent_ns, ..good }).to_vec()
+                bytes(&LinkFrame { sent_ns, ..good }).to_vec()
             },
             |own| own.time,
         ),
@@ -243,7 +243,7 @@ fn a_buffer_lets_overtaken_frames_fall_into_place() {
 #[test]
 fn a_law_that_is_not_known_commands_nothing() {
     let mut rig = Rig::new();
-    let frame = Frame {
+    let frame = LinkFrame {
         law: 15,
         ..rig.good()
     };

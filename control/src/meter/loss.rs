@@ -71,7 +71,7 @@ impl LossWindow {
         self.missing = 0;
     }
 
-    /// Frame `sequence` arrived at `now_ns`.
+    /// LinkFrame `sequence` arrived at `now_ns`.
     pub fn arrived(&mut self, sequence: u32, now_ns: i64) -> Fate {
         match self.newest {
             None => self.append(sequence, true, now_ns),

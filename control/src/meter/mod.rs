@@ -11,7 +11,7 @@ mod loss;
 
 pub use loss::{Fate, LossWindow};
 
-use crate::frame::{Echo, Frame, FrameError};
+use crate::frame::{Echo, FrameError, LinkFrame};
 use crate::seconds;
 
 /// What becomes of a frame that was decoded.
@@ -97,7 +97,7 @@ struct Newest {
 
 /// Measures one end of the link. Allocates when made, never afterwards.
 #[derive(Clone, Debug)]
-pub struct Meter {
+pub struct LinkMeter {
     newest: Option<Newest>,
     /// Arrival minus sending of the frame that arrived last, in whatever order [ns].
     transit_ns: Option<i64>,
@@ -111,16 +111,16 @@ pub struct Meter {
     refused: RefusedCounts,
 }
 
-impl Default for Meter {
+impl Default for LinkMeter {
     fn default() -> Self {
-        Meter::new()
+        LinkMeter::new()
     }
 }
 
-impl Meter {
+impl LinkMeter {
     /// A meter that has seen nothing.
     pub fn new() -> Self {
-        Meter {
+        LinkMeter {
             newest: None,
             transit_ns: None,
             round_trip_ns: None,
@@ -157,7 +157,7 @@ impl Meter {
     /// back while its clock goes on. Such a frame is the newest, and counting
     /// of losses starts again with it. A frame with a higher number that was
     /// sent earlier is left from before the restart, or replayed: late.
-    pub fn received(&mut self, frame: &Frame, now_ns: i64) -> Arrival {
+    pub fn received(&mut self, frame: &LinkFrame, now_ns: i64) -> Arrival {
         let left_over = self.newest.is_some_and(|newest| {
             behind(newest.sequence, frame.sequence) && frame.sent_ns < newest.sent_ns
         });
@@ -204,7 +204,7 @@ impl Meter {
         }
     }
 
-    fn time_transit(&mut self, frame: &Frame, now_ns: i64) {
+    fn time_transit(&mut self, frame: &LinkFrame, now_ns: i64) {
         let transit = now_ns.saturating_sub(frame.sent_ns);
         if let Some(before) = self.transit_ns {
             let difference = transit.saturating_sub(before).unsigned_abs() as f64;

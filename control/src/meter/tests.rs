@@ -6,8 +6,8 @@ use proptest::prelude::*;
 const NOW: i64 = 1_700_000_000_000_000_000;
 const MS: i64 = 1_000_000;
 
-fn frame(sequence: u32, sent_ns: i64) -> Frame {
-    Frame {
+fn frame(sequence: u32, sent_ns: i64) -> LinkFrame {
+    LinkFrame {
         session: 1,
         sequence,
         sent_ns,
@@ -24,11 +24,11 @@ fn frame(sequence: u32, sent_ns: i64) -> Frame {
 fn round_trip_is_exact_whatever_the_clocks() {
     // Here sends at 0; there (clock 5 s ahead) it arrives after 13.000001 ms,
     // is held for 1.5 ms, and comes back after 7 ms.
-    let (mut here, mut there) = (Meter::new(), Meter::new());
+    let (mut here, mut there) = (LinkMeter::new(), LinkMeter::new());
     let ahead = 5_000 * MS;
     there.received(&frame(0, NOW), NOW + ahead + 13 * MS + 1);
     let back_at = NOW + ahead + 14 * MS + 500_001;
-    let answer = Frame {
+    let answer = LinkFrame {
         echo: there.echo(back_at),
         ..frame(0, back_at)
     };
@@ -43,7 +43,7 @@ fn round_trip_is_exact_whatever_the_clocks() {
 #[test]
 fn jitter_is_that_of_rfc_3550() {
     // Transits 10, 14, 10, 12 ms: |D| = 4, 4, 2 ms.
-    let mut meter = Meter::new();
+    let mut meter = LinkMeter::new();
     for (k, transit) in [10, 14, 10, 12].into_iter().enumerate() {
         let sent = NOW + 20 * MS * k as i64;
         meter.received(&frame(k as u32, sent), sent + transit * MS);
@@ -61,7 +61,7 @@ fn jitter_is_that_of_rfc_3550() {
 
 #[test]
 fn late_and_replayed_frames_are_told_apart_and_not_acted_on() {
-    let mut meter = Meter::new();
+    let mut meter = LinkMeter::new();
     let order = [0, 1, 4, 3, 3, 4, 5];
     let fates = order.map(|k| meter.received(&frame(k, NOW + i64::from(k)), NOW + 10 * MS));
     use Arrival::{Late, Newest, Replayed};
@@ -78,7 +78,7 @@ fn late_and_replayed_frames_are_told_apart_and_not_acted_on() {
 
 #[test]
 fn a_sender_that_starts_again_is_heard() {
-    let mut meter = Meter::new();
+    let mut meter = LinkMeter::new();
     for k in 0..100 {
         meter.received(
             &frame(1000 + k, NOW + i64::from(k) * MS),
@@ -94,7 +94,7 @@ fn a_sender_that_starts_again_is_heard() {
 
 #[test]
 fn sequence_numbers_wrap() {
-    let mut meter = Meter::new();
+    let mut meter = LinkMeter::new();
     for k in 0..10u32 {
         let sequence = (u32::MAX - 4).wrapping_add(k);
         let arrival = meter.received(&frame(sequence, NOW + i64::from(k)), NOW + 1000);
@@ -105,7 +105,7 @@ fn sequence_numbers_wrap() {
 
 #[test]
 fn loss_slides_and_silence_is_total_loss() {
-    let mut meter = Meter::new();
+    let mut meter = LinkMeter::new();
     assert!(meter.measure(NOW).loss.is_nan());
     // Two seconds at 500 Hz: every tenth lost in the first, none in the second.
     for k in 0..1000u32 {
@@ -125,7 +125,7 @@ fn loss_slides_and_silence_is_total_loss() {
 
 #[test]
 fn a_gap_longer_than_the_memory_is_counted() {
-    let mut meter = Meter::new();
+    let mut meter = LinkMeter::new();
     meter.received(&frame(0, NOW), NOW);
     meter.received(&frame(1_000_000, NOW + MS), NOW + MS);
     assert_eq!(meter.measure(NOW + MS).lost, 999_999);
@@ -137,7 +137,7 @@ proptest! {
     /// Against counting everything: any order, any loss, any repetition.
     #[test]
     fn counts_agree_with_plain_bookkeeping(order in proptest::collection::vec((0..300u32, 0..5i64), 1..400)) {
-        let mut meter = Meter::new();
+        let mut meter = LinkMeter::new();
         let mut seen = std::collections::BTreeMap::new();
         let (mut newest, mut now) = (None, NOW);
         let first = order[0].0;

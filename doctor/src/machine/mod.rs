@@ -7,7 +7,7 @@ use std::net::{Ipv4Addr, SocketAddr, TcpListener, ToSocketAddrs};
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
-use super::surroundings::{FileSystem, Interface, Surroundings, WakeUps};
+use super::host::{FileSystem, Host, Interface, WakeUps};
 
 mod network;
 mod scheduling;
@@ -16,7 +16,7 @@ mod scheduling;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Machine;
 
-impl Surroundings for Machine {
+impl Host for Machine {
     fn variable(&self, name: &str) -> Option<String> {
         let value = std::env::var_os(name)?;
         Some(value.to_string_lossy().into_owned())

@@ -6,7 +6,7 @@ use std::net::{Ipv4Addr, SocketAddrV4, UdpSocket};
 use std::os::fd::{AsRawFd, FromRawFd, OwnedFd};
 use std::time::Duration;
 
-use super::super::surroundings::Interface;
+use super::super::host::Interface;
 
 /// Loopback of a datagram takes microseconds; a busy machine some milliseconds.
 const ANSWER_WITHIN: Duration = Duration::from_millis(300);

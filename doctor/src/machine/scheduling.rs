@@ -6,7 +6,7 @@ use ferntast_msgs::Time;
 
 use ferntast_nodes::process::Clock;
 
-use super::super::surroundings::WakeUps;
+use super::super::host::WakeUps;
 
 /// Asks for SCHED_FIFO on a thread that then ends.
 pub(super) fn try_real_time_priority(priority: i32) -> io::Result<()> {

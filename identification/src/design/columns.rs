@@ -1,6 +1,6 @@
 //! Columns of an effect on a session.
 
-use crate::effects::{EffectHandle, Exact, ExactSignal, MOST_COLUMNS, constant_of, parts_of};
+use crate::effects::{EffectHandle, Exact, ExactSignal, MAX_COLUMNS, constant_of, parts_of};
 use crate::filter::Kernel;
 use crate::setup::BoundTerm;
 use crate::signals::{Filters, Signals};
@@ -11,7 +11,7 @@ pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<V
     if let Some(columns) = effect.whole(shape, &signals.points) {
         return columns;
     }
-    let count = effect.columns().min(MOST_COLUMNS);
+    let count = effect.columns().min(MAX_COLUMNS);
     let mut columns = vec![Vec::with_capacity(signals.points.len()); count];
     let extras: Vec<&[f64]> = effect
         .extra()
@@ -19,7 +19,7 @@ pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<V
         .map(|name| signals.extra.get(name).map_or(&[][..], Vec::as_slice))
         .collect();
     let mut memory = [0.0; 4];
-    let mut values = [0.0; MOST_COLUMNS];
+    let mut values = [0.0; MAX_COLUMNS];
     let mut extra = vec![0.0; extras.len()];
     for (at, point) in signals.points.iter().enumerate() {
         for (value, signal) in extra.iter_mut().zip(&extras) {

@@ -11,7 +11,7 @@ use crate::signals::Signals;
 use crate::statistics::jackknife_covariance;
 
 /// Blocks of time in all, at least; a session is one or more of them.
-const FEWEST_BLOCKS: usize = 12;
+const MIN_BLOCKS: usize = 12;
 
 /// Rows of one session.
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ impl Design {
     /// Builds the rows of the model as it stands in `setup`.
     #[must_use]
     pub fn new(setup: &Setup) -> Self {
-        let per_session = FEWEST_BLOCKS.div_ceil(setup.sessions.len().max(1));
+        let per_session = MIN_BLOCKS.div_ceil(setup.sessions.len().max(1));
         let sessions: Vec<SessionDesign> = setup
             .sessions
             .iter()

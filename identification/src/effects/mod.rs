@@ -87,7 +87,7 @@ impl Point {
 }
 
 /// Longest list of columns of one effect.
-pub const MOST_COLUMNS: usize = 12;
+pub const MAX_COLUMNS: usize = 12;
 /// What an effect with a state remembers from sample to sample.
 pub type Memory = [f64; 4];
 

@@ -5,7 +5,7 @@ use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator};
 /// Longest expression \[bytes\].
 const LONGEST: usize = 1000;
 /// Most different names in an expression.
-pub const MOST_NAMES: usize = 24;
+pub const MAX_NAMES: usize = 24;
 const DEEPEST: usize = 40;
 
 const FUNCTIONS: [&str; 14] = [
@@ -103,9 +103,9 @@ impl Formula {
         let text = prepare(expression)?;
         let parsed =
             FlatEx::<f64, Operators, Number>::parse(&text).map_err(|e| e.msg().to_owned())?;
-        if parsed.var_names().len() > MOST_NAMES {
+        if parsed.var_names().len() > MAX_NAMES {
             return Err(format!(
-                "it has {} names, at most {MOST_NAMES} are possible",
+                "it has {} names, at most {MAX_NAMES} are possible",
                 parsed.var_names().len()
             ));
         }

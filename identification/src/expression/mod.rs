@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use crate::data::{CustomEffect, Subject};
 use crate::effects::{
-    Effect, EffectDescription, Facts, MOST_COLUMNS, Memory, Point, Quantity, Unit,
+    Effect, EffectDescription, Facts, MAX_COLUMNS, Memory, Point, Quantity, Unit,
 };
 use crate::error::ExpressionError;
 use crate::signals::Signals;
@@ -96,7 +96,7 @@ impl Compiled {
             });
         }
         let searched = compiled.bounds.len();
-        for (count, most) in [(compiled.linear, MOST_COLUMNS), (searched, 3)] {
+        for (count, most) in [(compiled.linear, MAX_COLUMNS), (searched, 3)] {
             if count > most {
                 return Err(ExpressionError::TooMany {
                     effect: effect(),
@@ -158,7 +158,7 @@ impl Compiled {
             point.temperature + self.reference_temperature,
             point.days * SECONDS_PER_DAY,
         ];
-        let mut values = [0.0; grammar::MOST_NAMES];
+        let mut values = [0.0; grammar::MAX_NAMES];
         for (value, source) in values.iter_mut().zip(&self.sources) {
             *value = match source {
                 Source::Signal(i) => signals[*i],
@@ -297,7 +297,7 @@ impl Effect for Compiled {
         _memory: &mut Memory,
         columns: &mut [f64],
     ) {
-        let mut linear = [0.0; MOST_COLUMNS];
+        let mut linear = [0.0; MAX_COLUMNS];
         for (at, column) in columns.iter_mut().enumerate().take(self.linear) {
             linear[at] = 1.0;
             let value = self.value(shape, &linear[..self.linear], point, extra);

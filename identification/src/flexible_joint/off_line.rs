@@ -6,7 +6,7 @@ use crate::regression::by_blocks;
 /// Stretches of time that are left out in turn for the standard errors.
 const BLOCKS: usize = 20;
 /// Columns that are more alike than this do not tell their parameters apart \[1\].
-const MOST_ALIKE: f64 = 1.0 - 1e-9;
+const MAX_ALIKE: f64 = 1.0 - 1e-9;
 
 /// A parameter found off line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ pub fn off_line(rows: &[Row]) -> Option<[Estimate; 2]> {
     let alike =
         product(&first, &second).powi(2) / (product(&first, &first) * product(&second, &second));
     // Where a column is zero, their likeness is no number.
-    if alike.is_nan() || alike >= MOST_ALIKE {
+    if alike.is_nan() || alike >= MAX_ALIKE {
         return None;
     }
     let measured: Vec<f64> = rows.iter().map(|row| row.measured).collect();

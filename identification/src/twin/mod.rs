@@ -39,7 +39,7 @@ use stream::Stream;
 /// A longer silence \[s\] ends a session: filters and states start anew.
 const GAP: f64 = 0.5;
 /// No more samples than this are kept for an assessment.
-const MOST_KEPT: usize = 600_000;
+const MAX_KEPT: usize = 600_000;
 /// Samples are kept, and dropped when there are too many, by pieces of this length \[s\].
 const SESSION: f64 = 60.0;
 /// Sessions of fewer samples are left out of an assessment.
@@ -479,7 +479,7 @@ impl Twin {
             }
             self.kept_samples += 1;
         }
-        if self.kept_samples > MOST_KEPT && self.kept.len() > 1 {
+        if self.kept_samples > MAX_KEPT && self.kept.len() > 1 {
             self.kept_samples -= self.kept.remove(0).len();
         }
     }

@@ -5,7 +5,7 @@
 //! that a row is ready a fixed time after its sample.
 
 use crate::effects::{
-    Exact, ExactSignal, MOST_COLUMNS, Memory, Point, constant_of, parts_of, with_columns,
+    Exact, ExactSignal, MAX_COLUMNS, Memory, Point, constant_of, parts_of, with_columns,
 };
 use crate::filter::Kernel;
 use crate::setup::{BoundTerm, Setup};
@@ -190,9 +190,9 @@ impl Stream {
         for loads in [true, false] {
             for ((term, places), memory) in with_columns(&self.terms).zip(&mut self.state.memories)
             {
-                let count = places.len().min(MOST_COLUMNS);
+                let count = places.len().min(MAX_COLUMNS);
                 if term.effect.row().is_modelled_load() == loads {
-                    let mut values = [0.0; MOST_COLUMNS];
+                    let mut values = [0.0; MAX_COLUMNS];
                     term.effect.evaluate_with(
                         &term.shape,
                         &point,
@@ -244,7 +244,7 @@ impl Stream {
         let mut phi = Vec::with_capacity(self.state.columns.len());
         for term in &self.terms {
             let exact = term.effect.row().exact;
-            for k in 0..term.effect.columns().min(MOST_COLUMNS) {
+            for k in 0..term.effect.columns().min(MAX_COLUMNS) {
                 phi.push(match exact.get(k) {
                     Some(channel) => self.exact(*channel, at),
                     None => self

@@ -15,7 +15,7 @@ use factor::Factor;
 /// at the slowest: they remember this many samples.
 const ERROR_MEMORY: f64 = 2000.0;
 /// Neighbouring errors more alike than this are as good as one.
-const MOST_CORRELATED: f64 = 0.98;
+const MAX_CORRELATED: f64 = 0.98;
 
 /// What is known of a parameter before the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,8 +239,7 @@ impl RecursiveLeastSquares {
     /// Correlation of neighbouring errors, 0 … 0.98 \[1\].
     #[must_use]
     pub fn error_correlation(&self) -> f64 {
-        (self.error_product / self.error_variance.max(f64::MIN_POSITIVE))
-            .clamp(0.0, MOST_CORRELATED)
+        (self.error_product / self.error_variance.max(f64::MIN_POSITIVE)).clamp(0.0, MAX_CORRELATED)
     }
 
     /// Samples learned from.

@@ -3,7 +3,7 @@
 use crate::InvalidMessage;
 
 /// The most parameters that a message has room for.
-pub const MOST_PARAMETERS: usize = 16;
+pub const MAX_TWIN_PARAMETERS: usize = 16;
 
 /// Refuses a list that is longer than there is room for.
 pub(super) fn fits(field: &'static str, found: usize, room: usize) -> Result<(), InvalidMessage> {

@@ -23,7 +23,7 @@ pub use frame::Frame;
 pub use health::{HealthSample, Level};
 pub use joint::{JointFields, JointSample};
 pub use joint_names::{JointNames, MAX_JOINTS};
-pub use lists::MOST_PARAMETERS;
+pub use lists::MAX_TWIN_PARAMETERS;
 pub use own::*;
 pub use pose::PoseSample;
 pub use robot_description::{LONGEST_DESCRIPTION, RobotDescriptionSample};

@@ -6,7 +6,7 @@
 
 use ferntast_derive::message;
 
-use super::{Flag, Identity, MOST_PARAMETERS, codes::codes};
+use super::{Flag, Identity, MAX_TWIN_PARAMETERS, codes::codes};
 use crate::{InvalidMessage, Text, Time};
 
 /// Which source of hand positions drives the arm, and which was refused last.
@@ -127,13 +127,13 @@ pub struct FrictionStatusSample {
     pub source: FrictionSource,
     /// as in the arm's file: b_0, b_0T, ...
     #[field(section)]
-    pub names: [Text<24>; MOST_PARAMETERS],
+    pub names: [Text<24>; MAX_TWIN_PARAMETERS],
     /// by the arm's file
-    pub configured: [f64; MOST_PARAMETERS],
+    pub configured: [f64; MAX_TWIN_PARAMETERS],
     /// in use now
-    pub values: [f64; MOST_PARAMETERS],
+    pub values: [f64; MAX_TWIN_PARAMETERS],
     /// what the values are, or are on their way to
-    pub targets: [f64; MOST_PARAMETERS],
+    pub targets: [f64; MAX_TWIN_PARAMETERS],
     /// commands on /follower/friction_command dealt with since the start
     #[field(section)]
     pub commands: u64,
@@ -296,15 +296,15 @@ pub struct TwinParametersSample {
     pub joint: Text<16>,
     /// as in the lab: b0, b1, ...
     #[field(section)]
-    pub names: [Text<24>; MOST_PARAMETERS],
+    pub names: [Text<24>; MAX_TWIN_PARAMETERS],
     /// now
-    pub values: [f64; MOST_PARAMETERS],
+    pub values: [f64; MAX_TWIN_PARAMETERS],
     /// as identified from the experiment's recordings
-    pub off_line: [f64; MOST_PARAMETERS],
+    pub off_line: [f64; MAX_TWIN_PARAMETERS],
     /// of the values
-    pub std_errors: [f64; MOST_PARAMETERS],
+    pub std_errors: [f64; MAX_TWIN_PARAMETERS],
     /// 0 where the motion told nothing of it, towards 1 where it told all
-    pub excitation: [f64; MOST_PARAMETERS],
+    pub excitation: [f64; MAX_TWIN_PARAMETERS],
     /// \[Nm\] latest residuals, root mean square
     #[field(section)]
     pub residual_rms: f64,

@@ -1,4 +1,4 @@
-//! Carries topics from one bus to another: gateway, recorder and player are
+//! Forwards topics from one bus to another: gateway, recorder and player are
 //! made of these.
 
 use ferntast_bus::{Bus, CreateError, Depth, Publisher, Subscriber, SubscriberCounts};
@@ -7,9 +7,9 @@ use ferntast_msgs::{
     topics::{self, Row, Topic, Visitor},
 };
 
-/// How a topic is carried.
+/// How a topic is forwarded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Carry {
+pub enum Forwarding {
     /// Not at all.
     Not,
     /// The newest message, at most once in this many nanoseconds.
@@ -25,31 +25,31 @@ pub enum Carry {
 }
 
 /// One topic on its way from a bus to another.
-trait Lane {
-    fn carry(&mut self, now: Time) -> Carried;
+trait Route {
+    fn forward(&mut self, now: Time) -> Forwarded;
     fn topic(&self) -> &'static str;
     fn counts(&self) -> SubscriberCounts;
 }
 
-/// What one round carried.
+/// What one round forwarded.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Carried {
+pub struct Forwarded {
     /// Messages that went over.
     pub messages: u64,
     /// Messages that could not be sent.
     pub failed: u64,
 }
 
-struct TypedLane<M: Message> {
+struct TypedRoute<M: Message> {
     topic: &'static str,
     from: Subscriber<M>,
     to: Publisher<M>,
-    carry: Carry,
+    forwarding: Forwarding,
     due: Time,
     stamp: Stamp,
 }
 
-/// Which time a carried message is published with.
+/// Which time a forwarded message is published with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stamp {
     /// The time of the round.
@@ -58,8 +58,8 @@ pub enum Stamp {
     Received,
 }
 
-impl<M: Message> TypedLane<M> {
-    fn send(&mut self, now: Time, received: ferntast_bus::Received<M>, carried: &mut Carried) {
+impl<M: Message> TypedRoute<M> {
+    fn send(&mut self, now: Time, received: ferntast_bus::Received<M>, forwarded: &mut Forwarded) {
         let mut message = received.message;
         if received.source != 0 {
             // Commands are told apart by their sender.
@@ -70,18 +70,18 @@ impl<M: Message> TypedLane<M> {
             Stamp::Received => received.received,
         };
         match self.to.publish(time, &message) {
-            Ok(()) => carried.messages += 1,
-            Err(_) => carried.failed += 1,
+            Ok(()) => forwarded.messages += 1,
+            Err(_) => forwarded.failed += 1,
         }
     }
 }
 
-impl<M: Message> Lane for TypedLane<M> {
-    fn carry(&mut self, now: Time) -> Carried {
-        let mut carried = Carried::default();
-        match self.carry {
-            Carry::Not => {}
-            Carry::Newest { period_nanos } => {
+impl<M: Message> Route for TypedRoute<M> {
+    fn forward(&mut self, now: Time) -> Forwarded {
+        let mut forwarded = Forwarded::default();
+        match self.forwarding {
+            Forwarding::Not => {}
+            Forwarding::Newest { period_nanos } => {
                 if now >= self.due
                     && let Some(received) = self.from.newest(now)
                 {
@@ -92,16 +92,16 @@ impl<M: Message> Lane for TypedLane<M> {
                     } else {
                         now.plus_nanos(period_nanos)
                     };
-                    self.send(now, received, &mut carried);
+                    self.send(now, received, &mut forwarded);
                 }
             }
-            Carry::Every { .. } => {
+            Forwarding::Every { .. } => {
                 while let Some(received) = self.from.next(now) {
-                    self.send(now, received, &mut carried);
+                    self.send(now, received, &mut forwarded);
                 }
             }
         }
-        carried
+        forwarded
     }
 
     fn topic(&self) -> &'static str {
@@ -115,11 +115,11 @@ impl<M: Message> Lane for TypedLane<M> {
 
 /// Topics on their way from one bus to another.
 #[derive(Default)]
-pub struct Carrier {
-    lanes: Vec<Box<dyn Lane>>,
+pub struct Forwarder {
+    routes: Vec<Box<dyn Route>>,
 }
 
-impl Carrier {
+impl Forwarder {
     /// Adds every topic of the table for which `how` says so.
     ///
     /// # Errors
@@ -130,28 +130,28 @@ impl Carrier {
         from: &Bus,
         to: &Bus,
         stamp: Stamp,
-        how: impl Fn(Row) -> Carry,
+        how: impl Fn(Row) -> Forwarding,
     ) -> Result<(), CreateError> {
         struct Add<'a, F> {
-            carrier: &'a mut Carrier,
+            forwarder: &'a mut Forwarder,
             from: &'a Bus,
             to: &'a Bus,
             stamp: Stamp,
             how: F,
             result: Result<(), CreateError>,
         }
-        impl<F: Fn(Row) -> Carry> Visitor for Add<'_, F> {
+        impl<F: Fn(Row) -> Forwarding> Visitor for Add<'_, F> {
             fn topic<M: Message>(&mut self, topic: Topic<M>) {
-                let carry = (self.how)(topic.row());
-                if carry != Carry::Not && self.result.is_ok() {
+                let forwarding = (self.how)(topic.row());
+                if forwarding != Forwarding::Not && self.result.is_ok() {
                     self.result = self
-                        .carrier
-                        .add(topic, self.from, self.to, self.stamp, carry);
+                        .forwarder
+                        .add(topic, self.from, self.to, self.stamp, forwarding);
                 }
             }
         }
         let mut add = Add {
-            carrier: self,
+            forwarder: self,
             from,
             to,
             stamp,
@@ -173,38 +173,38 @@ impl Carrier {
         from: &Bus,
         to: &Bus,
         stamp: Stamp,
-        carry: Carry,
+        forwarding: Forwarding,
     ) -> Result<(), CreateError> {
-        let depth = match carry {
-            Carry::Every { queue } => Depth::Queue(queue),
-            Carry::Newest { .. } | Carry::Not => Depth::Newest,
+        let depth = match forwarding {
+            Forwarding::Every { queue } => Depth::Queue(queue),
+            Forwarding::Newest { .. } | Forwarding::Not => Depth::Newest,
         };
-        self.lanes.push(Box::new(TypedLane {
+        self.routes.push(Box::new(TypedRoute {
             topic: topic.name,
             from: from.subscriber(topic, depth)?,
             to: to.publisher(topic)?,
-            carry,
+            forwarding,
             due: Time::INVALID,
             stamp,
         }));
         Ok(())
     }
 
-    /// One round: carries what is visible at `now`.
-    pub fn carry(&mut self, now: Time) -> Carried {
-        let mut all = Carried::default();
-        for lane in &mut self.lanes {
-            let carried = lane.carry(now);
-            all.messages += carried.messages;
-            all.failed += carried.failed;
+    /// One round: forwards what is visible at `now`.
+    pub fn forward(&mut self, now: Time) -> Forwarded {
+        let mut all = Forwarded::default();
+        for route in &mut self.routes {
+            let forwarded = route.forward(now);
+            all.messages += forwarded.messages;
+            all.failed += forwarded.failed;
         }
         all
     }
 
-    /// Tells `each` the topic of every lane and what became of its messages.
+    /// Tells `each` the topic of every route and what became of its messages.
     pub fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts)) {
-        for lane in &self.lanes {
-            each(lane.topic(), lane.counts());
+        for route in &self.routes {
+            each(route.topic(), route.counts());
         }
     }
 }

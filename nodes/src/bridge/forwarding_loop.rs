@@ -1,4 +1,4 @@
-//! What gateway, recorder and player are: a carrier whose rounds are told on
+//! What gateway, recorder and player are: a forwarder whose rounds are reported on
 //! `/diagnostics`.
 
 use ferntast_bus::{CreateError, Publisher};
@@ -8,67 +8,67 @@ use ferntast_msgs::{
     topics,
 };
 
-use super::forwarder::Carrier;
+use super::forwarder::Forwarder;
 use crate::{
     node::{HealthMeter, InputWatch, NodeHealth},
     process::{ProcessContext, periodic::Wake},
 };
 
-/// A carrier, and how it is doing.
-pub struct Relay {
-    carrier: Carrier,
+/// A forwarder, and how it is doing.
+pub struct ForwardingLoop {
+    forwarder: Forwarder,
     watch: InputWatch,
     /// Messages that went over.
-    carried: u64,
+    forwarded: u64,
     /// Messages that could not be sent on.
     failed: u64,
     meter: HealthMeter,
     diagnostics: Publisher<HealthSample>,
 }
 
-impl Relay {
-    /// A relay that carries nothing yet.
+impl ForwardingLoop {
+    /// A loop that forwards nothing yet.
     ///
     /// # Errors
     ///
     /// `/diagnostics` cannot be opened.
-    pub fn new(process: &ProcessContext) -> Result<Relay, CreateError> {
-        Ok(Relay {
-            carrier: Carrier::default(),
+    pub fn new(process: &ProcessContext) -> Result<ForwardingLoop, CreateError> {
+        Ok(ForwardingLoop {
+            forwarder: Forwarder::default(),
             watch: InputWatch::default(),
-            carried: 0,
+            forwarded: 0,
             failed: 0,
             meter: process.meter(Faults::default()),
             diagnostics: process.bus.publisher(topics::DIAGNOSTICS)?,
         })
     }
 
-    /// Carries by `carrier` from now on, and counts anew.
-    pub fn begin(&mut self, carrier: Carrier) {
-        self.carrier = carrier;
+    /// Forwards by `forwarder` from now on, and counts from zero.
+    pub fn begin(&mut self, forwarder: Forwarder) {
+        self.forwarder = forwarder;
         self.watch = InputWatch::default();
-        self.carried = 0;
+        self.forwarded = 0;
         self.failed = 0;
     }
 
-    /// Messages that went over since it began to carry what it carries.
-    pub fn carried(&self) -> u64 {
-        self.carried
+    /// Messages that went over since then.
+    pub fn forwarded(&self) -> u64 {
+        self.forwarded
     }
 
-    /// One round: carries what is visible at `at`, and tells how it went.
+    /// One round: forwards what is visible at `at`, and reports how it went.
     /// `judge` may raise faults; it is given the health and the number of
     /// messages that could not be sent on.
     pub fn round(&mut self, at: Time, wake: Wake, judge: impl FnOnce(&mut NodeHealth, u64)) {
-        let carried = self.carrier.carry(at);
-        self.carried += carried.messages;
-        self.failed += carried.failed;
+        let forwarded = self.forwarder.forward(at);
+        self.forwarded += forwarded.messages;
+        self.failed += forwarded.failed;
         let mut health = NodeHealth {
             lost: self.failed,
             ..NodeHealth::default()
         };
         self.watch
-            .note(|each| self.carrier.inputs(each), &mut health);
+            .note(|each| self.forwarder.inputs(each), &mut health);
         judge(&mut health, self.failed);
         let sample = self
             .meter
@@ -79,8 +79,8 @@ impl Relay {
         }
     }
 
-    /// Carries what is visible at `now`, for the last time, and closes both sides.
+    /// Forwards what is visible at `now`, for the last time, and closes both sides.
     pub fn end(mut self, now: Time) {
-        self.carrier.carry(now);
+        self.forwarder.forward(now);
     }
 }

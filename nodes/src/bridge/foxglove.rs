@@ -5,8 +5,8 @@
 use ferntast_bus::{Bus, FoxgloveBus, FoxgloveConfig};
 
 use super::{
-    forwarder::{Carrier, Stamp},
-    forwarding_loop::Relay,
+    forwarder::{Forwarder, Stamp},
+    forwarding_loop::ForwardingLoop,
     gateway::goes_out,
 };
 use crate::process::{NodeError, ProcessContext};
@@ -27,15 +27,15 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         foxglove.address()
     );
     let section = &process.session.loaded.scenario.gateway;
-    let mut relay = Relay::new(process)?;
-    let mut carrier = Carrier::default();
+    let mut forwarding = ForwardingLoop::new(process)?;
+    let mut forwarder = Forwarder::default();
     let to = Bus::Foxglove(foxglove);
-    carrier.add_topics(&process.bus, &to, Stamp::Received, |topic| {
+    forwarder.add_topics(&process.bus, &to, Stamp::Received, |topic| {
         goes_out(topic, section)
     })?;
-    relay.begin(carrier);
+    forwarding.begin(forwarder);
     process.run(|wake| {
-        relay.round(wake.now, wake, |_, _| {});
+        forwarding.round(wake.now, wake, |_, _| {});
     });
     Ok(())
 }

@@ -8,8 +8,8 @@ use ferntast_msgs::topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch};
 
 use super::{
     choice_parameter::ChoiceParameter,
-    forwarder::{Carrier, Carry, Stamp},
-    forwarding_loop::Relay,
+    forwarder::{Forwarder, Forwarding, Stamp},
+    forwarding_loop::ForwardingLoop,
 };
 use crate::{
     config::{GatewaySection, HandSource, Middleware, Scenario},
@@ -50,17 +50,17 @@ pub fn comes_in(authority: Authority, scenario: &Scenario) -> bool {
 }
 
 /// How a topic goes out to those who watch.
-pub fn goes_out(topic: Row, section: &GatewaySection) -> Carry {
+pub fn goes_out(topic: Row, section: &GatewaySection) -> Forwarding {
     match topic.delivery {
-        Delivery::State => Carry::Newest { period_nanos: 0 },
-        Delivery::Event => Carry::Every { queue: EVENT_QUEUE },
+        Delivery::State => Forwarding::Newest { period_nanos: 0 },
+        Delivery::Event => Forwarding::Every { queue: EVENT_QUEUE },
         Delivery::Stream => {
             let rate = if topic.name.starts_with("/leader/") {
                 section.leader_rate
             } else {
                 section.stream_rate
             };
-            Carry::Newest {
+            Forwarding::Newest {
                 period_nanos: (1e9 / rate) as i64,
             }
         }
@@ -76,17 +76,17 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let scenario = &process.session.loaded.scenario;
     let section = &scenario.gateway;
     let ros = open_ros(section)?;
-    let mut carrier = Carrier::default();
-    carrier.add_topics(&process.bus, &ros, Stamp::Round, |topic| {
+    let mut forwarder = Forwarder::default();
+    forwarder.add_topics(&process.bus, &ros, Stamp::Round, |topic| {
         match comes_in(topic.authority, scenario) {
-            true => Carry::Not,
+            true => Forwarding::Not,
             false => goes_out(topic, section),
         }
     })?;
-    carrier.add_topics(&ros, &process.bus, Stamp::Round, |topic| {
+    forwarder.add_topics(&ros, &process.bus, Stamp::Round, |topic| {
         match comes_in(topic.authority, scenario) {
-            true => Carry::Every { queue: EVENT_QUEUE },
-            false => Carry::Not,
+            true => Forwarding::Every { queue: EVENT_QUEUE },
+            false => Forwarding::Not,
         }
     })?;
 
@@ -94,13 +94,13 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         ChoiceParameter::law(process, &ros)?,
         ChoiceParameter::friction(process, &ros)?,
     ];
-    let mut relay = Relay::new(process)?;
-    relay.begin(carrier);
+    let mut forwarding = ForwardingLoop::new(process)?;
+    forwarding.begin(forwarder);
     process.run(|wake| {
         for parameter in &mut parameters {
             parameter.round(wake.now);
         }
-        relay.round(wake.now, wake, |_, _| {})
+        forwarding.round(wake.now, wake, |_, _| {})
     });
     Ok(())
 }

@@ -6,19 +6,19 @@ use ferntast_bus::{Bus, McapBus, mcap};
 use ferntast_msgs::Time;
 
 use super::{
-    forwarder::{Carrier, Carry, Stamp},
-    forwarding_loop::Relay,
+    forwarder::{Forwarder, Forwarding, Stamp},
+    forwarding_loop::ForwardingLoop,
 };
 use crate::process::{NodeError, ProcessContext, periodic};
 
 /// Name of the node.
 pub const NAME: &str = "player";
 
-/// Opens `McapBus` readers on the recording with the lanes to play it.
+/// Opens `McapBus` readers on the recording with the routes to play it.
 fn open(
     process: &ProcessContext,
     path: &std::path::Path,
-) -> Result<(Carrier, Time, Time), NodeError> {
+) -> Result<(Forwarder, Time, Time), NodeError> {
     let bad = |reason: String| NodeError::Bag {
         path: path.to_owned(),
         reason,
@@ -29,16 +29,16 @@ fn open(
     };
     let recording = McapBus::open(path).map_err(|error| bad(error.to_string()))?;
     let except = &process.session.play.except;
-    let mut carrier = Carrier::default();
-    carrier.add_topics(&Bus::Mcap(recording), &process.bus, Stamp::Round, |topic| {
+    let mut forwarder = Forwarder::default();
+    forwarder.add_topics(&Bus::Mcap(recording), &process.bus, Stamp::Round, |topic| {
         let recorded = info.topics.iter().any(|own| own.name == topic.name);
         if recorded && !except.iter().any(|name| name == topic.name) {
-            Carry::Every { queue: 512 }
+            Forwarding::Every { queue: 512 }
         } else {
-            Carry::Not
+            Forwarding::Not
         }
     })?;
-    Ok((carrier, start, end))
+    Ok((forwarder, start, end))
 }
 
 /// Plays until the end of the recording, or until it is told to stop.
@@ -49,10 +49,10 @@ fn open(
 pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let path = process.session.bag.as_deref().ok_or(NodeError::NoBag)?;
     let rate = process.session.play.rate;
-    let mut relay = Relay::new(process)?;
+    let mut forwarding = ForwardingLoop::new(process)?;
     loop {
-        let (carrier, start, end) = open(process, path)?;
-        relay.begin(carrier);
+        let (forwarder, start, end) = open(process, path)?;
+        forwarding.begin(forwarder);
         let begun = process.clock.now();
         let done = AtomicBool::new(false);
         periodic::run_while(
@@ -61,7 +61,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             || !process.stop.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed),
             |wake| {
                 let at = start.plus_seconds(wake.now.seconds_since(begun) * rate);
-                relay.round(at, wake, |_, _| {});
+                forwarding.round(at, wake, |_, _| {});
                 done.store(at > end, Ordering::Relaxed);
             },
         );

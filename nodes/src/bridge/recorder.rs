@@ -16,8 +16,8 @@ use ferntast_msgs::{
 };
 
 use super::{
-    forwarder::{Carrier, Carry, Stamp},
-    forwarding_loop::Relay,
+    forwarder::{Forwarder, Forwarding, Stamp},
+    forwarding_loop::ForwardingLoop,
 };
 use crate::{
     config::Loaded,
@@ -96,17 +96,19 @@ struct Recording {
 
 fn begin(
     process: &ProcessContext,
-    relay: &mut Relay,
+    forwarding: &mut ForwardingLoop,
     folder: PathBuf,
 ) -> Result<Recording, NodeError> {
     let options = bag_options(&process.session.loaded, "session");
     let bag = create(&folder, options)?;
     let to = Bus::Mcap(bag.clone());
-    let mut carrier = Carrier::default();
-    carrier.add_topics(&process.bus, &to, Stamp::Received, |topic| Carry::Every {
-        queue: SharedMemoryBus::max_queue(topic.delivery),
+    let mut forwarder = Forwarder::default();
+    forwarder.add_topics(&process.bus, &to, Stamp::Received, |topic| {
+        Forwarding::Every {
+            queue: SharedMemoryBus::max_queue(topic.delivery),
+        }
     })?;
-    relay.begin(carrier);
+    forwarding.begin(forwarder);
     Ok(Recording { folder, bag })
 }
 
@@ -128,9 +130,13 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let mut commands =
         bus.subscriber(topics::RECORDER_COMMAND, Depth::Queue(topics::EVENT_QUEUE))?;
     let mut statuses = bus.publisher(topics::RECORDER_STATUS)?;
-    let mut relay = Relay::new(process)?;
+    let mut forwarding = ForwardingLoop::new(process)?;
     let mut recording = match &process.session.bag {
-        Some(bag) => Some(begin(process, &mut relay, folder(bag, process.generation))?),
+        Some(bag) => Some(begin(
+            process,
+            &mut forwarding,
+            folder(bag, process.generation),
+        )?),
         None => None,
     };
     let mut status = RecorderStatusSample::initial(process.clock.now());
@@ -143,7 +149,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             let outcome = match command.action {
                 RecorderAction::START if recording.is_none() => {
                     match asked_for(command.label.as_str(), now) {
-                        Some(folder) => begin(process, &mut relay, folder)
+                        Some(folder) => begin(process, &mut forwarding, folder)
                             .map(|begun| recording = Some(begun))
                             .map_err(Text::display),
                         None => Err(Text::new(
@@ -153,7 +159,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
                 }
                 RecorderAction::STOP => match recording.take() {
                     Some(ended) => {
-                        relay.begin(Carrier::default());
+                        forwarding.begin(Forwarder::default());
                         finish(ended).map_err(Text::display)
                     }
                     None => Ok(()),
@@ -163,7 +169,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             trouble = outcome.err().unwrap_or_default();
             due = now;
         }
-        relay.round(now, wake, |health, failed| {
+        forwarding.round(now, wake, |health, failed| {
             if health.lost > 0 {
                 health.raise(Fault::RecordingLost, Level::WARN);
             }
@@ -174,7 +180,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         });
         if let Some(recording) = &recording {
             status.folder = Text::new(&recording.folder.to_string_lossy());
-            status.messages = relay.carried();
+            status.messages = forwarding.forwarded();
         }
         if now >= due {
             due = now.plus_nanos(STATUS_NANOS);
@@ -184,7 +190,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             let _ = statuses.publish(now, &status);
         }
     });
-    relay.end(process.clock.now());
+    forwarding.end(process.clock.now());
     recording.map_or(Ok(()), finish)
 }
 

@@ -8,7 +8,7 @@ use std::{path::PathBuf, sync::Arc};
 use ferntast_console::{
     Listen, Server,
     server::Content,
-    session::{Desk, GripModel, PageHand, SessionPorts},
+    session::{GripModel, PageHand, SessionPorts, SharedSession},
 };
 use ferntast_control::delay::Law;
 use ferntast_emulation::{
@@ -62,10 +62,10 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let options = process.session.console.clone().unwrap_or_default();
     let clock = process.clock;
     let about = about(&process.session.session, &process.session.loaded);
-    let desk = Arc::new(Desk::new(about, Box::new(move || clock.now())));
+    let shared = Arc::new(SharedSession::new(about, Box::new(move || clock.now())));
     let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 2]));
     let hand = PageHand::new(Box::new(grip), REACH, LEASH);
-    let mut ports = SessionPorts::connect(&process.bus, desk.clone(), hand)?;
+    let mut ports = SessionPorts::connect(&process.bus, shared.clone(), hand)?;
     let mut diagnostics = process.bus.publisher(topics::DIAGNOSTICS)?;
     let listen = Listen {
         address: options.listen,
@@ -74,7 +74,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let server = Server::start(
         &listen,
         Content {
-            desk: Some(desk),
+            shared: Some(shared),
             folder: PathBuf::from("."),
         },
     )

@@ -13,7 +13,7 @@ use ferntast_msgs::{
 
 use crate::{
     bridge::{
-        forwarder::{Carrier, Carry, Stamp},
+        forwarder::{Forwarder, Forwarding, Stamp},
         recorder::bag_options,
     },
     graph::Graph,
@@ -81,13 +81,13 @@ impl LockstepSession {
             Some(folder) => {
                 let recording = McapBus::create_with(folder, bag_options(loaded, "lockstep"))
                     .map_err(|error| RunError::Recording(error.to_string()))?;
-                let mut carrier = Carrier::default();
+                let mut forwarder = Forwarder::default();
                 let to = Bus::Mcap(recording.clone());
-                carrier.add_topics(time.bus(), &to, Stamp::Received, |_| Carry::Every {
+                forwarder.add_topics(time.bus(), &to, Stamp::Received, |_| Forwarding::Every {
                     queue: 64,
                 })?;
                 time.add(move |now| {
-                    carrier.carry(now);
+                    forwarder.forward(now);
                 });
                 Some(recording)
             }

@@ -76,9 +76,9 @@ pub fn run(
         .collect();
 
     let mut time = VirtualTime::new(recorded.start).map_err(RunError::from)?;
-    let mut carrier = recorded.inputs(&rows, time.bus())?;
+    let mut forwarder = recorded.inputs(&rows, time.bus())?;
     time.add(move |now| {
-        carrier.carry(now);
+        forwarder.forward(now);
     });
     time.add_nodes(rows.iter().copied(), &session)?;
     let mut checks = check::checks(recorded.outputs(&rows), &recorded.bus, time.bus())?;

@@ -8,11 +8,11 @@ use ferntast_bus::{
 };
 use ferntast_emulation::channel::LinkConfig;
 use ferntast_lab::experiment::RECORD;
-use ferntast_msgs::Time;
+use ferntast_msgs::{Time, topics::EVENT_QUEUE};
 
 use super::ReplayError;
 use crate::{
-    bridge::forwarder::{Carrier, Carry, Stamp},
+    bridge::forwarder::{Forwarder, Forwarding, Stamp},
     config::Loaded,
     graph::NodeRow,
 };
@@ -90,23 +90,23 @@ impl Recorded {
         counted.is_some_and(|own| own.messages > 0)
     }
 
-    /// Carries what the nodes of `rows` take and none of them publishes.
+    /// Forwards what the nodes of `rows` take and none of them publishes.
     ///
     /// # Errors
     ///
     /// A topic that cannot be opened.
-    pub fn inputs(&self, rows: &[&NodeRow], to: &Bus) -> Result<Carrier, CreateError> {
-        let mut carrier = Carrier::default();
-        carrier.add_topics(&self.bus, to, Stamp::Received, |topic| {
+    pub fn inputs(&self, rows: &[&NodeRow], to: &Bus) -> Result<Forwarder, CreateError> {
+        let mut forwarder = Forwarder::default();
+        forwarder.add_topics(&self.bus, to, Stamp::Received, |topic| {
             let name = topic.name;
             let taken = rows.iter().any(|row| row.inputs().contains(&name));
             let published = rows.iter().any(|row| row.outputs().contains(&name));
             match taken && !published && self.has(name) {
-                true => Carry::Every { queue: 64 },
-                false => Carry::Not,
+                true => Forwarding::Every { queue: EVENT_QUEUE },
+                false => Forwarding::Not,
             }
         })?;
-        Ok(carrier)
+        Ok(forwarder)
     }
 
     /// Topics of which what the nodes of `rows` publish is compared. Recordings

@@ -7,7 +7,7 @@ use ferntast_msgs::{
     Text, Time,
     sample::{
         FrictionCommand, FrictionCommandSample, FrictionSource, FrictionStatusSample, JointNames,
-        MOST_PARAMETERS, TwinParametersSample,
+        MAX_TWIN_PARAMETERS, TwinParametersSample,
     },
 };
 
@@ -32,17 +32,17 @@ pub(super) enum Refusal {
 
 /// Follows commands to the feed-forward, and tells of it.
 #[derive(Debug)]
-pub(super) struct FrictionKeeper {
+pub(super) struct FrictionCommands {
     joints: JointNames,
     commands: u64,
     refused: Option<Refusal>,
     due: Time,
 }
 
-impl FrictionKeeper {
+impl FrictionCommands {
     /// Of an arm of those joints.
-    pub(super) fn new(joints: JointNames) -> FrictionKeeper {
-        FrictionKeeper {
+    pub(super) fn new(joints: JointNames) -> FrictionCommands {
+        FrictionCommands {
             joints,
             commands: 0,
             refused: None,
@@ -100,7 +100,7 @@ impl FrictionKeeper {
             joint: Text::new(joint),
             ..FrictionStatusSample::initial(now)
         };
-        for (i, parameter) in own.parameters().take(MOST_PARAMETERS).enumerate() {
+        for (i, parameter) in own.parameters().take(MAX_TWIN_PARAMETERS).enumerate() {
             sample.names[i] = Text::new(parameter.name);
             sample.configured[i] = parameter.configured;
             sample.values[i] = parameter.value;
@@ -128,7 +128,7 @@ fn take_over(
         std_error: f64::NAN,
         excitation: 0.0,
     };
-    let mut found = [nothing; MOST_PARAMETERS];
+    let mut found = [nothing; MAX_TWIN_PARAMETERS];
     for (i, place) in found.iter_mut().enumerate().take(twin.len()) {
         *place = FoundParameter {
             name: twin.names[i].as_str(),
@@ -142,17 +142,17 @@ fn take_over(
     let own = joint.and_then(|joint| servo.feed_forward_mut(joint));
     let own = own.ok_or(Refusal::NoJoint)?;
     let taken = own.take_over(found.get(..twin.len()).unwrap_or_default())?;
-    Ok(Text::display(Words { name, taken, own }))
+    Ok(Text::display(Description { name, taken, own }))
 }
 
 /// A take-over in words.
-struct Words<'a> {
+struct Description<'a> {
     name: &'a str,
     taken: TakenOver<'a>,
     own: &'a FeedForward,
 }
 
-impl fmt::Display for Words<'_> {
+impl fmt::Display for Description<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} takes {} of the twin's", self.name, self.taken.count)?;
         if let Some((name, why)) = self.taken.left_out {

@@ -24,7 +24,7 @@ use ferntast_msgs::{
     },
 };
 
-use friction::FrictionKeeper;
+use friction::FrictionCommands;
 
 use crate::{
     config::joint_names,
@@ -78,7 +78,7 @@ pub struct ServoNode {
     joints: JointNames,
     servo: Servo,
     states: StatePublisher,
-    friction: FrictionKeeper,
+    friction: FrictionCommands,
     message: Text<96>,
     commands_due: Time,
     refusal: Text<96>,
@@ -95,7 +95,7 @@ impl ServoNode {
             joints: joint_names(model),
             servo: Servo::new(&model.arm, &model.joint, config)?,
             states: StatePublisher::default(),
-            friction: FrictionKeeper::new(joint_names(model)),
+            friction: FrictionCommands::new(joint_names(model)),
             message: Text::EMPTY,
             commands_due: Time::INVALID,
             refusal: Text::EMPTY,

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use ferntast_msgs::{Time, sample::JointSample};
 
 /// Positions that may wait for a motor torque.
-const MOST_WAITING: usize = 64;
+const MAX_WAITING: usize = 64;
 /// A position that is this much later than the motor torque \[ns\] is of another time.
 const JUMP_NANOS: i64 = 500_000_000;
 
@@ -37,7 +37,7 @@ impl Alignment {
     pub(super) fn new(joint: usize) -> Self {
         Self {
             joint,
-            waiting: VecDeque::with_capacity(MOST_WAITING + 1),
+            waiting: VecDeque::with_capacity(MAX_WAITING + 1),
             last: None,
             dropped: 0,
         }
@@ -51,7 +51,7 @@ impl Alignment {
     /// Takes `/follower/measured_js`.
     pub(super) fn measured(&mut self, sample: &JointSample) {
         self.waiting.push_back(*sample);
-        if self.waiting.len() > MOST_WAITING {
+        if self.waiting.len() > MAX_WAITING {
             self.waiting.pop_front();
             self.dropped += 1;
         }

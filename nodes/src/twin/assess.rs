@@ -10,7 +10,7 @@ const EVERY: f64 = 60.0;
 /// Where the residual left its band since, sooner: after this much \[s\].
 const WHERE_OUT_OF_BAND: f64 = 20.0;
 /// Rows further apart than this are no motion in between \[s\].
-const MOST_BETWEEN_ROWS: f64 = 0.5;
+const MAX_BETWEEN_ROWS: f64 = 0.5;
 
 /// Where the lab's work is done: it takes seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +91,7 @@ impl Assessor {
     /// Counts the motion of a row at `time` \[s\].
     pub(super) fn note(&mut self, time: f64, slides: bool) {
         let passed = self.last_row.replace(time).map_or(0.0, |last| time - last);
-        if slides && (0.0..MOST_BETWEEN_ROWS).contains(&passed) {
+        if slides && (0.0..MAX_BETWEEN_ROWS).contains(&passed) {
             self.motion += passed;
         }
     }

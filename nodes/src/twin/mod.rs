@@ -45,7 +45,7 @@ const MEASUREMENT_WATCHDOG: f64 = 0.1;
 /// Between two messages on `/twin/parameters`, of the samples' own time \[s\].
 const PARAMETERS_EVERY: f64 = 0.1;
 /// Rows that may wait to be published: a step publishes one.
-const MOST_READY: usize = 256;
+const MAX_READY: usize = 256;
 
 ports! {
     /// The twin's topics.
@@ -146,7 +146,7 @@ impl TwinNode {
                 self.goes_with.note(&row);
             }
             self.ready.push_back(row);
-            if self.ready.len() > MOST_READY {
+            if self.ready.len() > MAX_READY {
                 self.ready.pop_front();
                 self.lost += 1;
             }

@@ -9,7 +9,7 @@ use ferntast_lab::{
 };
 use ferntast_model::JOINTS;
 use ferntast_msgs::{
-    sample::{JointNames, MOST_PARAMETERS},
+    sample::{JointNames, MAX_TWIN_PARAMETERS},
     topics,
 };
 
@@ -71,7 +71,7 @@ pub enum TwinOpenError {
     },
     /// The message has no room for so many parameters.
     #[error(
-        "{path}: the model has {found} parameters, a twin at most {MOST_PARAMETERS}; leave some effects out"
+        "{path}: the model has {found} parameters, a twin at most {MAX_TWIN_PARAMETERS}; leave some effects out"
     )]
     TooMany {
         /// The experiment file.
@@ -102,7 +102,7 @@ pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
         }
     })?;
     let found = twin.parameters().len();
-    if found > MOST_PARAMETERS {
+    if found > MAX_TWIN_PARAMETERS {
         let path = path.to_owned();
         return Err(TwinOpenError::TooMany { path, found });
     }

@@ -5,7 +5,7 @@ use std::fmt;
 use ferntast_identification::twin::{Change, ChangeKind, Twin, TwinParameter};
 use ferntast_msgs::{
     Text, Time,
-    sample::{MOST_PARAMETERS, TwinParametersSample, TwinVerdict},
+    sample::{MAX_TWIN_PARAMETERS, TwinParametersSample, TwinVerdict},
 };
 use serde::Serialize;
 
@@ -36,8 +36,8 @@ pub(super) fn of(
         ..TwinParametersSample::initial(stamp)
     };
     let parameters = twin.parameters();
-    sample.count = parameters.len().min(MOST_PARAMETERS) as u32;
-    for (i, parameter) in parameters.iter().take(MOST_PARAMETERS).enumerate() {
+    sample.count = parameters.len().min(MAX_TWIN_PARAMETERS) as u32;
+    for (i, parameter) in parameters.iter().take(MAX_TWIN_PARAMETERS).enumerate() {
         sample.names[i] = Text::new(&parameter.name);
         sample.values[i] = parameter.value;
         sample.off_line[i] = parameter.off_line;
@@ -58,7 +58,7 @@ pub(super) fn of(
         let own = parameters.iter().find(|own| own.name == change.parameter);
         unit = own.map_or("", |own| own.unit.as_str());
     }
-    let words = Words {
+    let words = Description {
         sample: &sample,
         change: change.as_ref(),
         unit,
@@ -68,14 +68,14 @@ pub(super) fn of(
     (sample, words)
 }
 
-struct Words<'a> {
+struct Description<'a> {
     sample: &'a TwinParametersSample,
     change: Option<&'a Change>,
     unit: &'a str,
     at_bound: Option<&'a TwinParameter>,
 }
 
-impl fmt::Display for Words<'_> {
+impl fmt::Display for Description<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let sample = self.sample;
         if let Some(own) = self.at_bound {

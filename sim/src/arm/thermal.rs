@@ -1,5 +1,5 @@
 //! A joint's temperature: one heat capacity, warmed by friction, sun and
-//! heater, cooled by its surroundings.
+//! heater, cooled by its ambient.
 //!
 //! C Ṫ = P_friction + P_sun(t) + P_heater(T) − G (T − T_shade)
 
@@ -26,7 +26,7 @@ parameters! {
         pub heater_off: f64 [-150.0..=150.0, "degC"],
         /// Heat capacity \[J/K\].
         pub capacity: f64 [1.0..=1e6, "J/K"],
-        /// Conductance to the surroundings \[W/K\].
+        /// Conductance to the ambient \[W/K\].
         pub conductance: f64 [0.0..=1e3, "W/K"],
         /// Standard deviation of the sensors' fixed offsets \[K\].
         pub sensor_offset: f64 [0.0..=20.0, "K"],
@@ -44,9 +44,9 @@ impl ThermalParameters {
     }
 }
 
-/// How the surroundings keep a joint.
+/// How the ambient keep a joint.
 #[derive(Clone, Copy, Debug)]
-enum Surroundings {
+enum Ambient {
     /// At a temperature \[degC\].
     Held(f64),
     /// With sun and heater, `seconds` after the start of the mission.
@@ -57,7 +57,7 @@ enum Surroundings {
 #[derive(Clone, Debug)]
 pub(super) struct Thermal {
     parameters: ThermalParameters,
-    surroundings: Surroundings,
+    ambient: Ambient,
     temperature: f64,
     offsets: [f64; TEMPERATURE_SENSORS],
     reading: f64,
@@ -81,10 +81,10 @@ impl Thermal {
         let held = environment
             .temperature
             .and_then(|both| both.get(joint).copied());
-        let (surroundings, temperature) = match held {
-            Some(temperature) => (Surroundings::Held(temperature), temperature),
+        let (ambient, temperature) = match held {
+            Some(temperature) => (Ambient::Held(temperature), temperature),
             None => {
-                let outside = Surroundings::Outside {
+                let outside = Ambient::Outside {
                     sun: environment.sun,
                     seconds: environment.day * SECONDS_PER_DAY - SOAK,
                     heats: false,
@@ -94,7 +94,7 @@ impl Thermal {
         };
         let mut thermal = Self {
             parameters: *parameters,
-            surroundings,
+            ambient,
             temperature,
             offsets,
             reading: 0.0,
@@ -116,9 +116,9 @@ impl Thermal {
     /// Takes in `heat` \[J\] and moves on by `dt` \[s\].
     pub(super) fn advance(&mut self, heat: f64, dt: f64) {
         let p = &self.parameters;
-        let (around, power) = match &mut self.surroundings {
-            Surroundings::Held(temperature) => (*temperature, 0.0),
-            Surroundings::Outside {
+        let (around, power) = match &mut self.ambient {
+            Ambient::Held(temperature) => (*temperature, 0.0),
+            Ambient::Outside {
                 sun,
                 seconds,
                 heats,

@@ -18,7 +18,7 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_nodes::{
-    bridge::forwarder::{Carrier, Carry, Stamp},
+    bridge::forwarder::{Forwarder, Forwarding, Stamp},
     config::{Loaded, joint_names},
     graph::STEP_NANOS,
     lockstep::{RunError, VirtualTime},
@@ -107,8 +107,8 @@ impl Commander {
 }
 
 /// Which topics are recorded, and how often: measurements every 12 ms.
-fn carry(topic: &str, contact: bool) -> Carry {
-    let sampled = Carry::Newest {
+fn carry(topic: &str, contact: bool) -> Forwarding {
+    let sampled = Forwarding::Newest {
         period_nanos: SAMPLE_NANOS,
     };
     let always = [
@@ -130,9 +130,9 @@ fn carry(topic: &str, contact: bool) -> Carry {
     if always.contains(&topic) || (contact && in_contact.contains(&topic)) {
         sampled
     } else if events.contains(&topic) {
-        Carry::Every { queue: 16 }
+        Forwarding::Every { queue: 16 }
     } else {
-        Carry::Not
+        Forwarding::Not
     }
 }
 
@@ -205,16 +205,16 @@ impl Bench {
 
         let recording = McapBus::create_with(folder, self.options())
             .map_err(|error| recording_error(error.to_string()))?;
-        let mut carrier = Carrier::default();
+        let mut forwarder = Forwarder::default();
         let contact = self.contact;
-        carrier.add_topics(
+        forwarder.add_topics(
             time.bus(),
             &Bus::Mcap(recording.clone()),
             Stamp::Received,
             |topic| carry(topic.name, contact),
         )?;
         time.add(move |now| {
-            carrier.carry(now);
+            forwarder.carry(now);
         });
 
         let operating_state = topics::FOLLOWER_OPERATING_STATE;

@@ -5,7 +5,7 @@ use std::{sync::Arc, thread, time::Duration};
 use ferntast_bus::frames::{LinkDirection, LinkEndpoint, ZenohLink, ZenohLinkConfig};
 use ferntast_control::{
     delay::Packet,
-    frame::{self, FRAME_LENGTH, Frame},
+    frame::{self, FRAME_LENGTH, LinkFrame},
     operating::OperatingState,
 };
 use ferntast_msgs::{Time, topics};
@@ -31,8 +31,8 @@ fn identity(name: &str) -> u16 {
 }
 
 /// Far away, so that it would be seen if it were acted on.
-fn frame(session: u16, sent: Time) -> Frame {
-    Frame {
+fn frame(session: u16, sent: Time) -> LinkFrame {
+    LinkFrame {
         session,
         sequence: 0,
         sent_ns: sent.nanos(),
@@ -49,7 +49,7 @@ fn frame(session: u16, sent: Time) -> Frame {
     }
 }
 
-fn bytes(frame: &Frame) -> Vec<u8> {
+fn bytes(frame: &LinkFrame) -> Vec<u8> {
     let mut bytes = [0; FRAME_LENGTH];
     frame::encode(frame, &mut bytes);
     bytes.to_vec()

@@ -12,13 +12,13 @@ use serde::Serialize;
 pub const BEAT_LIFE: f64 = 0.25;
 /// Time without a touch after which the hand is let go \[s\].
 pub const TOUCH_LIFE: f64 = 20.0;
-/// Silence after which the seat is free \[s\].
-pub const SEAT_LIFE: f64 = 3.0;
+/// Silence after which the lock is free \[s\].
+pub const LOCK_LIFE: f64 = 3.0;
 
 /// Why the hand was let go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum LetGo {
+pub enum Release {
     /// The operator wanted it.
     Wanted,
     /// The page was silent: hidden, frozen, closed.
@@ -32,35 +32,35 @@ pub enum LetGo {
 #[error("another page operates this session; this one watches until that one gives it up")]
 pub struct Taken;
 
-/// The operator's seat.
+/// The operator's lock.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Seat {
+pub struct OperatorLock {
     operator: Option<u64>,
     beat: Time,
     touch: Time,
     /// Where the operator wants the hand, leader base frame \[m\]; `None` while
     /// the hand is not held.
     target: Option<[f64; 2]>,
-    let_go: Option<LetGo>,
+    let_go: Option<Release>,
 }
 
-impl Seat {
+impl OperatorLock {
     /// Page `page` wants to operate.
     ///
     /// # Errors
     ///
     /// [`Taken`].
-    pub fn sit(&mut self, page: u64, now: Time) -> Result<(), Taken> {
+    pub fn take(&mut self, page: u64, now: Time) -> Result<(), Taken> {
         self.age(now);
         match self.operator {
             Some(other) if other != page => Err(Taken),
             Some(_) => Ok(()),
             None => {
-                *self = Seat {
+                *self = OperatorLock {
                     operator: Some(page),
                     beat: now,
                     touch: now,
-                    ..Seat::default()
+                    ..OperatorLock::default()
                 };
                 Ok(())
             }
@@ -70,9 +70,9 @@ impl Seat {
     /// Page `page` operates no longer, if it did.
     pub fn leave(&mut self, page: u64) {
         if self.operator == Some(page) {
-            *self = Seat {
-                let_go: self.target.map(|_| LetGo::Wanted).or(self.let_go),
-                ..Seat::default()
+            *self = OperatorLock {
+                let_go: self.target.map(|_| Release::Wanted).or(self.let_go),
+                ..OperatorLock::default()
             };
         }
     }
@@ -116,7 +116,7 @@ impl Seat {
     /// The operator's hand lets go.
     pub fn let_go(&mut self, page: u64) {
         if self.is(page) && self.target.take().is_some() {
-            self.let_go = Some(LetGo::Wanted);
+            self.let_go = Some(Release::Wanted);
         }
     }
 
@@ -127,16 +127,16 @@ impl Seat {
         }
         let silence = now.seconds_since(self.beat);
         let reason = if silence > BEAT_LIFE {
-            Some(LetGo::Silent)
+            Some(Release::Silent)
         } else if now.seconds_since(self.touch) > TOUCH_LIFE {
-            Some(LetGo::Idle)
+            Some(Release::Idle)
         } else {
             None
         };
         if reason.is_some() && self.target.take().is_some() {
             self.let_go = reason;
         }
-        if silence > SEAT_LIFE {
+        if silence > LOCK_LIFE {
             self.operator = None;
         }
     }
@@ -147,7 +147,7 @@ impl Seat {
     }
 
     /// Why it was let go the last time; `None` while it is held.
-    pub fn reason(&self) -> Option<LetGo> {
+    pub fn reason(&self) -> Option<Release> {
         self.let_go
     }
 }
@@ -162,59 +162,62 @@ mod tests {
 
     #[test]
     fn one_page_operates() {
-        let mut seat = Seat::default();
-        seat.sit(1, at(0.0)).unwrap();
-        assert_eq!(seat.sit(2, at(0.1)), Err(Taken));
-        seat.hold(2, at(0.1), [0.01, 0.0]);
-        assert_eq!(seat.target(), None, "a watcher moves nothing");
-        seat.leave(2);
-        assert!(seat.is(1));
-        seat.leave(1);
-        seat.sit(2, at(0.2)).unwrap();
-        assert!(seat.is(2));
+        let mut lock = OperatorLock::default();
+        lock.take(1, at(0.0)).unwrap();
+        assert_eq!(lock.take(2, at(0.1)), Err(Taken));
+        lock.hold(2, at(0.1), [0.01, 0.0]);
+        assert_eq!(lock.target(), None, "a watcher moves nothing");
+        lock.leave(2);
+        assert!(lock.is(1));
+        lock.leave(1);
+        lock.take(2, at(0.2)).unwrap();
+        assert!(lock.is(2));
     }
 
     #[test]
-    fn a_page_that_is_silent_lets_go_and_then_loses_the_seat() {
-        let mut seat = Seat::default();
-        seat.sit(1, at(0.0)).unwrap();
-        seat.hold(1, at(0.0), [0.01, 0.02]);
+    fn a_page_that_is_silent_lets_go_and_then_loses_the_lock() {
+        let mut lock = OperatorLock::default();
+        lock.take(1, at(0.0)).unwrap();
+        lock.hold(1, at(0.0), [0.01, 0.02]);
         for step in 1..=20 {
-            seat.beat(1, at(f64::from(step) * 0.1));
-            seat.age(at(f64::from(step) * 0.1 + 0.09));
+            lock.beat(1, at(f64::from(step) * 0.1));
+            lock.age(at(f64::from(step) * 0.1 + 0.09));
         }
-        assert_eq!(seat.target(), Some([0.01, 0.02]));
-        seat.age(at(2.0 + BEAT_LIFE + 0.01));
-        assert_eq!((seat.target(), seat.reason()), (None, Some(LetGo::Silent)));
-        assert_eq!(seat.sit(2, at(2.5)), Err(Taken));
-        seat.sit(2, at(2.0 + SEAT_LIFE + 0.01)).unwrap();
+        assert_eq!(lock.target(), Some([0.01, 0.02]));
+        lock.age(at(2.0 + BEAT_LIFE + 0.01));
+        assert_eq!(
+            (lock.target(), lock.reason()),
+            (None, Some(Release::Silent))
+        );
+        assert_eq!(lock.take(2, at(2.5)), Err(Taken));
+        lock.take(2, at(2.0 + LOCK_LIFE + 0.01)).unwrap();
     }
 
     #[test]
     fn a_page_that_nobody_touches_lets_go() {
-        let mut seat = Seat::default();
-        seat.sit(1, at(0.0)).unwrap();
-        seat.hold(1, at(0.0), [0.0; 2]);
+        let mut lock = OperatorLock::default();
+        lock.take(1, at(0.0)).unwrap();
+        lock.hold(1, at(0.0), [0.0; 2]);
         let mut last = 0.0;
         for step in 1..=300 {
             let now = f64::from(step) * 0.1;
-            seat.beat(1, at(now));
-            seat.age(at(now));
-            if seat.target().is_some() {
+            lock.beat(1, at(now));
+            lock.age(at(now));
+            if lock.target().is_some() {
                 last = now;
             }
         }
         assert!((last - TOUCH_LIFE).abs() < 0.11, "{last}");
-        assert_eq!(seat.reason(), Some(LetGo::Idle));
-        assert!(seat.is(1), "it may take the hand again");
+        assert_eq!(lock.reason(), Some(Release::Idle));
+        assert!(lock.is(1), "it may take the hand again");
     }
 
     #[test]
     fn what_is_no_number_moves_nothing() {
-        let mut seat = Seat::default();
-        seat.sit(1, at(0.0)).unwrap();
-        seat.hold(1, at(0.0), [f64::NAN, 0.0]);
-        seat.hold(1, at(0.0), [0.0, f64::INFINITY]);
-        assert_eq!(seat.target(), None);
+        let mut lock = OperatorLock::default();
+        lock.take(1, at(0.0)).unwrap();
+        lock.hold(1, at(0.0), [f64::NAN, 0.0]);
+        lock.hold(1, at(0.0), [0.0, f64::INFINITY]);
+        assert_eq!(lock.target(), None);
     }
 }

@@ -13,7 +13,7 @@ use super::Energy;
 
 /// Energy in hand. In hand units.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Store {
+pub(super) struct EnergyTank {
     /// May be spent; negative: overdrawn, paid back first [J].
     level: f64,
     /// Promised to the other end since the start [J].
@@ -25,7 +25,7 @@ pub(super) struct Store {
     dissipated: f64,
 }
 
-impl Store {
+impl EnergyTank {
     /// Books what went through the port (sums since the start).
     pub fn port(&mut self, port: Energy, share: f64) {
         let entered = port.entered - self.port.entered;
@@ -86,10 +86,10 @@ mod tests {
             steps in proptest::collection::vec((0.0..1.0f64, 0.0..1.0f64, any::<bool>(), any::<bool>()), 1..200),
             share in 0.0..1.0f64,
         ) {
-            let mut stores = [Store::default(); 2];
+            let mut stores = [EnergyTank::default(); 2];
             let mut ports = [Energy::default(); 2];
-            for store in &mut stores {
-                store.promise(0.0);
+            for tank in &mut stores {
+                tank.promise(0.0);
             }
             for (entered, left, which, heard) in steps {
                 let own = usize::from(which);
@@ -109,32 +109,32 @@ mod tests {
 
     #[test]
     fn a_debt_is_paid_before_anything_is_promised() {
-        let mut store = Store::default();
-        store.port(
+        let mut tank = EnergyTank::default();
+        tank.port(
             Energy {
                 entered: 0.0,
                 left: 2.0,
             },
             1.0,
         );
-        store.port(
+        tank.port(
             Energy {
                 entered: 1.5,
                 left: 2.0,
             },
             1.0,
         );
-        assert_eq!((store.level(), store.promised()), (-0.5, 0.0));
-        store.port(
+        assert_eq!((tank.level(), tank.promised()), (-0.5, 0.0));
+        tank.port(
             Energy {
                 entered: 3.0,
                 left: 2.0,
             },
             1.0,
         );
-        assert_eq!((store.level(), store.promised()), (0.0, 1.0));
-        store.add(0.3);
-        store.limit(0.1);
-        assert!((store.dissipated() - 0.2).abs() < 1e-12);
+        assert_eq!((tank.level(), tank.promised()), (0.0, 1.0));
+        tank.add(0.3);
+        tank.limit(0.1);
+        assert!((tank.dissipated() - 0.2).abs() < 1e-12);
     }
 }

@@ -45,7 +45,7 @@ pub struct WakeUps {
 }
 
 /// The machine as the doctor sees it. Errors are the operating system's.
-pub trait Surroundings {
+pub trait Host {
     /// An environment variable; `None` when it is not set.
     fn variable(&self, name: &str) -> Option<String>;
     /// The text of a file, invalid UTF-8 replaced.

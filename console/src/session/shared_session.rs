@@ -1,0 +1,215 @@
+//! What pages and the session's loop share: the operator, wishes, snapshots.
+
+use std::{
+    collections::VecDeque,
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, AtomicUsize, Ordering},
+    },
+};
+
+use axum::extract::ws::Utf8Bytes;
+use ferntast_msgs::Time;
+use tokio::sync::watch;
+
+use super::{
+    message::{Request, StateRequest},
+    operator_lock::{OperatorLock, Taken},
+};
+
+/// Wishes that wait at most; a page cannot fill the memory.
+const MAX_WISHES: usize = 64;
+
+/// Gives the time, as the session's clock has it.
+pub type Now = Box<dyn Fn() -> Time + Send + Sync>;
+
+/// Why a request of a page is refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RequestRefusal {
+    /// Another page operates.
+    #[error(transparent)]
+    Taken(#[from] Taken),
+    /// This page only watches.
+    #[error("this page watches; take the controls first")]
+    Watcher,
+    /// Too much is asked at once.
+    #[error("too many requests wait: try again")]
+    Full,
+}
+
+/// What pages and the session's loop share.
+pub struct SharedSession {
+    now: Now,
+    operator: Mutex<OperatorLock>,
+    wishes: Mutex<VecDeque<Request>>,
+    snapshot: watch::Sender<Utf8Bytes>,
+    pages: AtomicUsize,
+    next_page: AtomicU64,
+    /// What the session is made of, for the page.
+    pub about: serde_json::Value,
+}
+
+impl SharedSession {
+    /// With nobody who operates.
+    pub fn new(about: serde_json::Value, now: Now) -> SharedSession {
+        SharedSession {
+            now,
+            operator: Mutex::default(),
+            wishes: Mutex::default(),
+            snapshot: watch::Sender::new(Utf8Bytes::default()),
+            pages: AtomicUsize::new(0),
+            next_page: AtomicU64::new(1),
+            about,
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, OperatorLock> {
+        self.operator.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A page that came; its number.
+    pub fn enter(&self) -> u64 {
+        self.pages.fetch_add(1, Ordering::Relaxed);
+        self.next_page.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// A page that went.
+    pub fn leave(&self, page: u64) {
+        self.lock().leave(page);
+        self.pages.fetch_sub(1, Ordering::Relaxed);
+    }
+
+    /// Pages that are open.
+    pub fn pages(&self) -> usize {
+        self.pages.load(Ordering::Relaxed)
+    }
+
+    /// Snapshots as they come; the newest wins.
+    pub fn snapshots(&self) -> watch::Receiver<Utf8Bytes> {
+        self.snapshot.subscribe()
+    }
+
+    /// Shows a snapshot to all pages.
+    pub fn show(&self, snapshot: String) {
+        self.snapshot.send_replace(snapshot.into());
+    }
+
+    /// Who operates now.
+    pub fn look(&self) -> OperatorLock {
+        let mut lock = self.lock();
+        lock.age((self.now)());
+        *lock
+    }
+
+    /// Wishes since the last call, in their order.
+    pub fn wishes(&self) -> VecDeque<Request> {
+        let mut wishes = self.wishes.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut *wishes)
+    }
+
+    /// Page `page` asks for something.
+    ///
+    /// # Errors
+    ///
+    /// [`RequestRefusal`].
+    pub fn ask(&self, page: u64, request: Request) -> Result<(), RequestRefusal> {
+        let now = (self.now)();
+        let mut lock = self.lock();
+        match request {
+            Request::Operate => return Ok(lock.take(page, now)?),
+            Request::Watch => lock.leave(page),
+            Request::Beat => lock.beat(page, now),
+            Request::Hand { x, y } => lock.hold(page, now, [x, y]),
+            Request::LetGo => lock.let_go(page),
+            wish => {
+                // Whoever sees danger may stop.
+                let stop = wish
+                    == Request::State {
+                        word: StateRequest::Stop,
+                    };
+                if !stop && !lock.is(page) {
+                    return Err(RequestRefusal::Watcher);
+                }
+                if stop {
+                    if let Some(page) = lock.operator() {
+                        lock.let_go(page);
+                    }
+                } else {
+                    lock.touched(page, now);
+                }
+                let mut wishes = self.wishes.lock().unwrap_or_else(PoisonError::into_inner);
+                if wishes.len() >= MAX_WISHES && !stop {
+                    return Err(RequestRefusal::Full);
+                }
+                wishes.push_back(wish);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shared() -> SharedSession {
+        SharedSession::new(
+            serde_json::Value::Null,
+            Box::new(|| Time::from_nanos(1_000_000_000)),
+        )
+    }
+
+    #[test]
+    fn watchers_may_stop_and_nothing_else() {
+        let shared = shared();
+        let (operator, watcher) = (shared.enter(), shared.enter());
+        shared.ask(operator, Request::Operate).unwrap();
+        assert_eq!(shared.ask(watcher, Request::Operate), Err(Taken.into()));
+        for word in [StateRequest::Arm, StateRequest::Hold, StateRequest::Rearm] {
+            let refused = shared.ask(watcher, Request::State { word });
+            assert_eq!(refused, Err(RequestRefusal::Watcher));
+        }
+        let mark = Request::Mark { label: "x".into() };
+        assert_eq!(shared.ask(watcher, mark), Err(RequestRefusal::Watcher));
+        shared
+            .ask(operator, Request::Hand { x: 0.01, y: 0.0 })
+            .unwrap();
+        assert!(shared.look().target().is_some());
+        shared
+            .ask(
+                watcher,
+                Request::State {
+                    word: StateRequest::Stop,
+                },
+            )
+            .unwrap();
+        assert_eq!(shared.look().target(), None, "a stop takes the hand off");
+        assert_eq!(
+            shared.wishes(),
+            [Request::State {
+                word: StateRequest::Stop
+            }]
+        );
+    }
+
+    #[test]
+    fn a_page_cannot_fill_the_memory_and_a_stop_always_gets_through() {
+        let shared = shared();
+        let page = shared.enter();
+        shared.ask(page, Request::Operate).unwrap();
+        let mark = || Request::Mark { label: "x".into() };
+        let taken = (0..1000)
+            .filter(|_| shared.ask(page, mark()).is_ok())
+            .count();
+        assert_eq!(taken, MAX_WISHES);
+        shared
+            .ask(
+                page,
+                Request::State {
+                    word: StateRequest::Stop,
+                },
+            )
+            .unwrap();
+        assert_eq!(shared.wishes().len(), MAX_WISHES + 1);
+    }
+}
