@@ -83,7 +83,7 @@ enum Command {
     Link(link::Arguments),
     /// Use what the twin of a joint found: in the servo's friction feed-forward, or in the lab.
     Twin(twin::Arguments),
-    /// Say what this machine offers and lacks, and how to mend it.
+    /// Say what this machine offers and lacks, and how to correct it.
     Doctor(doctor::Arguments),
     /// List the topics' interfaces: type, RIHS01 hash, schema.
     Interfaces(interfaces::Arguments),

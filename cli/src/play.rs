@@ -34,7 +34,7 @@ pub struct Arguments {
     #[arg(long = "loop")]
     repeat: bool,
 
-    /// Play into a live estimator: its forces are computed anew.
+    /// Play into a live estimator: its forces are computed again.
     #[arg(long)]
     estimate: bool,
 

@@ -63,7 +63,7 @@ impl ScenarioOptions {
     ///
     /// # Errors
     ///
-    /// What is wrong with it, where, and how to mend it.
+    /// What is wrong with it, where, and how to correct it.
     pub fn load(&self) -> Result<Loaded, Failure> {
         let mut loaded =
             config::load_scenario(&self.scenario, simulated::load_arm).map_err(Failure::refused)?;
@@ -115,7 +115,7 @@ impl ScenarioOptions {
 ///
 /// # Errors
 ///
-/// What is wrong with it, where, and how to mend it.
+/// What is wrong with it, where, and how to correct it.
 pub fn check_twin(experiment: Option<&Path>) -> Result<(), Failure> {
     match experiment {
         None => Ok(()),

@@ -85,7 +85,7 @@ impl PlayOut {
         if let Some((sequence, sent_ns)) = self.last {
             let older = !behind(sequence, frame.sequence);
             if older && frame.sent_ns > sent_ns {
-                // The sender began anew.
+                // The sender started over.
                 self.clear();
                 self.base_ns = None;
             } else if frame.sequence == sequence {

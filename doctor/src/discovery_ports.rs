@@ -12,7 +12,7 @@ pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let Some((domain, ports)) = domain.and_then(|id| Some((id, DomainPorts::of(id)?))) else {
         return empty.fail(
             "none without a valid ROS domain",
-            "mend the ROS domain first",
+            "correct the ROS domain first",
         );
     };
     let shared = ports.discovery_multicast();

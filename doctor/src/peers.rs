@@ -63,7 +63,7 @@ pub(super) fn check(
         Err(error) => {
             let mend = match options.middleware {
                 RosMiddleware::Dds => {
-                    "mend what is wrong with ports, domain or multicast (above) first"
+                    "correct what is wrong with ports, domain or multicast (above) first"
                 }
                 RosMiddleware::Zenoh => {
                     "start a router (`ros2 run rmw_zenoh_cpp rmw_zenohd`, or a session), or correct its endpoint"
@@ -93,7 +93,7 @@ pub(super) fn check(
     if peers.is_empty() {
         return check.warn(
             &format!("none seen over {middleware} in {seconds} s"),
-            "nothing to mend if none runs; else compare its ROS_DOMAIN_ID and RMW_IMPLEMENTATION with this shell's, and see ports and multicast above",
+            "nothing to correct if none runs; else compare its ROS_DOMAIN_ID and RMW_IMPLEMENTATION with this shell's, and see ports and multicast above",
         );
     }
     let line = |what, names: &[String]| format!("{what}: {}", shortened(names));

@@ -51,7 +51,7 @@ impl Check {
         self
     }
 
-    /// Adds a finding and how to mend it; the worst finding gives the status.
+    /// Adds a finding and how to correct it; the worst finding gives the status.
     pub(super) fn add(&mut self, status: Status, found: &str, mend: impl AsRef<str>) {
         self.status = self.status.max(status);
         append(&mut self.found, found);

@@ -19,7 +19,7 @@ fn main() {
     report("all nodes", || run(None));
     report("all nodes, recorded", || {
         let factor = run(Some(&folder));
-        // Made anew by the next run.
+        // Made again by the next run.
         let _ = std::fs::remove_dir_all(&folder);
         factor
     });

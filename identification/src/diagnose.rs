@@ -312,7 +312,7 @@ fn describe(
     trial: &Trial,
 ) -> NamedCandidate {
     let term = BoundTerm::new(candidate.effect.clone(), candidate.shape.clone());
-    // Before and after are told on the rows that a model with it is fitted to.
+    // Before and after are reported on the rows that a model with it is fitted to.
     let extended = match candidate.effect.row().shows_at_turns {
         true => setup.with_reversals().extended(term),
         false => setup.extended(term),

@@ -58,7 +58,7 @@ pub enum PrepareError {
     },
     /// The joint, or the tip, never moved.
     #[error(
-        "the {} is constant in every session: nothing can be told from what is at rest; record motion",
+        "the {} is constant in every session: nothing can be learned from what is at rest; record motion",
         .0.signal("position")
     )]
     ConstantPosition(JointType),

@@ -93,7 +93,7 @@ pub fn settle(setup: &Setup, passing: &mut Vec<Candidate>, tried: &[Candidate]) 
         false => (gap, bristles),
     };
     let undecided = family::as_good(&design, &best, &other);
-    // What is told of them is told on the same rows as of all others, but that
+    // What is said of them is reported on the same rows as of all others, but that
     // they are there is proven by all rows.
     let told = |held: &Candidate| {
         let mut own = tried.iter().find(|c| c.id() == held.id()).cloned()?;

@@ -40,7 +40,7 @@ pub fn settle(setup: &Setup, design: &Design, passing: &mut Vec<Candidate>) {
     if !is_there || there.gain <= rival {
         return;
     }
-    // What is told of it is told on the same rows as of all others, but that it
+    // What is said of it is reported on the same rows as of all others, but that it
     // is there is proven by all rows. Away from turns there may be nothing of it.
     let (mut own, grams) = score(setup, design, &effect, &shape);
     own.gain = own.gain.max(0.0);

@@ -46,7 +46,7 @@ impl JointParameters {
         Err(ParameterError::Inconsistent {
             key: "position_lower".into(),
             reason: format!(
-                "{} rad is not below position_upper = {} rad; swap or mend them",
+                "{} rad is not below position_upper = {} rad; swap or correct them",
                 self.position_lower, self.position_upper
             ),
         })

@@ -24,7 +24,7 @@ pub enum ParameterError {
     Inconsistent {
         /// Path of the key in the configuration.
         key: String,
-        /// What does not fit, with the values, and how to mend it.
+        /// What does not fit, with the values, and how to correct it.
         reason: String,
     },
     /// A name that nothing goes by.

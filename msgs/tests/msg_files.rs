@@ -1,6 +1,6 @@
 //! The `.msg` files of the ROS 2 package, which are written from the
 //! declarations in `src/sample/own.rs`: `WRITE_MSG_FILES=1 cargo test -p
-//! ferntast-msgs --test msg_files` writes them anew.
+//! ferntast-msgs --test msg_files` writes them again.
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 

@@ -300,7 +300,7 @@ fn flags_of(form: Form) {
     assert!(estimate.saturated && !estimate.valid);
     assert!(estimator.step(TICK, &bent).saturated);
     assert!(settle(&mut estimator, &bent).valid);
-    // A gap of measurements: it starts anew and settles.
+    // A gap of measurements: it starts over and settles.
     let estimate = estimator.step(0.2, &bent);
     assert!(!estimate.valid && !estimate.input_invalid);
     assert!(settle(&mut estimator, &bent).valid);

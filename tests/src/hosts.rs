@@ -80,7 +80,7 @@ impl TwoHosts {
                 .status();
             if !found.is_ok_and(|status| status.success()) {
                 return Err(format!(
-                    "no program {tool}: 'apt-get install util-linux iproute2 nftables' mends that"
+                    "no program {tool}: 'apt-get install util-linux iproute2 nftables' fixes that"
                 ));
             }
         }

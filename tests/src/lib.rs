@@ -3,7 +3,7 @@
 //!
 //! A test opens a [`Session`], starts [`Process`]es in it, and drops both.
 //! What is missing (program, data, Python environment) panics with a text that
-//! says how to mend it: a test that cannot run has failed. Tests of bounds in
+//! says how to correct it: a test that cannot run has failed. Tests of bounds in
 //! milliseconds hold the [`Machine`], which measures when it stalled.
 
 mod browser;

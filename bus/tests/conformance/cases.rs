@@ -30,7 +30,7 @@ fn samples(numbers: std::ops::Range<i32>) -> Vec<JointSample> {
     numbers.map(sample).collect()
 }
 
-/// Values are equal, in order, each once; the source is told.
+/// Values are equal, in order, each once; the source is reported.
 pub fn delivery(world: &World) {
     let topic = world.topic("events", Delivery::Event);
     let mut reader = world.reader(topic, Depth::Queue(64)).unwrap();
@@ -124,7 +124,7 @@ pub fn late_joiner_of_a_state(world: &World) {
     assert!(reader.is_quiet(), "the last one comes once");
 }
 
-/// A reader goes on with a publisher that was started anew.
+/// A reader goes on with a publisher that was started again.
 pub fn publisher_restart(world: &World) {
     let topic = world.topic("events", Delivery::Event);
     let mut reader = world.reader(topic, Depth::Queue(64)).unwrap();

@@ -1,4 +1,4 @@
-//! Buses that cannot be opened say why, and how to mend it.
+//! Buses that cannot be opened say why, and how to correct it.
 
 use std::net::TcpListener;
 

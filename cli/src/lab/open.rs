@@ -31,7 +31,7 @@ fn tell_notes(opened: &Opened) {
     }
 }
 
-/// A bar for work whose share done is told.
+/// A bar for work whose share done is reported.
 pub fn bar(label: &str) -> ProgressBar {
     let bar = ProgressBar::new(1000);
     let template = format!("{label} {{bar:30}} {{percent}} %, {{eta}} left");

@@ -106,7 +106,7 @@ async function diagnose() {
 
 async function add(effect, bounds = []) {
   sections.trouble.hidden = true;
-  const done = await long(`Adding ${effect} and fitting anew …`, "/api/lab/add", { path: state.path, effect, bounds });
+  const done = await long(`Adding ${effect} and fitting again …`, "/api/lab/add", { path: state.path, effect, bounds });
   if (!done) return false;
   const { held_out_before: before, held_out_after: after } = done.added;
   toast(`${done.added.effect}: error on data held out ${after < before ? "falls" : "rises"} by ${Math.abs((1 - after / before) * 100).toFixed(1)} %`);

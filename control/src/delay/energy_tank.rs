@@ -38,7 +38,7 @@ impl EnergyTank {
 
     /// Books what the other end has promised since its start.
     pub fn promise(&mut self, promised: f64) {
-        // Less than before: the other end began anew.
+        // Less than before: the other end started over.
         let before = self.received.unwrap_or(promised);
         self.level += (promised - before).max(0.0);
         self.received = Some(promised);

@@ -29,7 +29,7 @@ impl DerivativeFilter {
         }
     }
 
-    /// Starts anew, at rest at `input`.
+    /// Starts again, at rest at `input`.
     pub fn reset(&mut self, input: f64) {
         *self = Self {
             omega: self.omega,

@@ -68,7 +68,7 @@ impl TorqueOfContact {
         self.delay
     }
 
-    /// Starts anew, at rest at link positions `position` \[rad\] under `torque` \[Nm\].
+    /// Starts again, at rest at link positions `position` \[rad\] under `torque` \[Nm\].
     pub(super) fn reset(&mut self, arm: &Arm, position: &Vector2<f64>, torque: &Vector2<f64>) {
         for joint in 0..JOINTS {
             self.positions[joint].reset(position[joint]);

@@ -43,7 +43,7 @@ impl MomentumObserver {
         }
     }
 
-    /// Starts anew, at rest: the contact bears what joint torques and gravity leave over.
+    /// Starts again, at rest: the contact bears what joint torques and gravity leave over.
     pub(super) fn reset(&mut self, arm: &Arm, position: &Vector2<f64>, torque: &Vector2<f64>) {
         self.velocity = Vector2::zeros();
         self.position = *position;

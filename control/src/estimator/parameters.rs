@@ -27,7 +27,7 @@ parameters! {
         pub singularity: f64 [1e-3..=0.99, "-"],
         /// Memory of the coefficient of equation (6) \[s of sliding\].
         pub friction_memory: f64 [0.01..=1e5, "s"],
-        /// Longest time between measurements; after a longer one it starts anew \[s\].
+        /// Longest time between measurements; after a longer one it starts over \[s\].
         pub longest_gap: f64 [1e-3..=10.0, "s"],
     }
 }

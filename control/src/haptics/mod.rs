@@ -260,7 +260,7 @@ impl Master {
             return Err(HandRefusal::NotEnabled { state });
         }
         self.authority.may(now_ns, command.source)?;
-        // The hand of another source starts anew.
+        // The hand of another source starts over.
         let last = self
             .hand
             .filter(|_| self.authority.holder() == Some(command.source));

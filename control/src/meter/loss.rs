@@ -63,7 +63,7 @@ impl LossWindow {
         }
     }
 
-    /// The sender counts from anew; what was counted as lost stays so.
+    /// The sender counts from zero again; what was counted as lost stays so.
     pub fn restart(&mut self) {
         self.newest = None;
         self.remembered = 0;

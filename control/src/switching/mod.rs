@@ -12,7 +12,7 @@
 //! frames of a law left before are older than the newest one, and are dropped
 //! as late.
 //!
-//! A law starts anew with each switch, its energies at zero. What a law claims
+//! A law starts over with each switch, its energies at zero. What a law claims
 //! about passivity it claims from the end of the switch on: for
 //! [`SWITCH_TIME`] the force in the hand is that of neither law.
 

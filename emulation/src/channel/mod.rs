@@ -87,7 +87,7 @@ pub struct Channel {
     counts: ChannelCounts,
 }
 
-/// Seconds that the delay changes in a second after it was set anew. A delay
+/// Seconds that the delay changes in a second after it was set again. A delay
 /// that grew at once would leave a silence as long as its growth, which is an
 /// outage and no longer way.
 const DELAY_RATE: f64 = 0.5;

@@ -16,7 +16,7 @@ impl Twin {
         let mut outputs = Vec::new();
         let mut largest = self.band * self.band;
         for session in &dataset.sessions {
-            // Filters start anew; the average goes on.
+            // Filters start over; the average goes on.
             own.last = None;
             for sample in samples(session) {
                 own.push(&sample, &mut outputs);

@@ -36,7 +36,7 @@ use change::ChangeLog;
 use sensors::Sensors;
 use stream::Stream;
 
-/// A longer silence \[s\] ends a session: filters and states start anew.
+/// A longer silence \[s\] ends a session: filters and states start over.
 const GAP: f64 = 0.5;
 /// No more samples than this are kept for an assessment.
 const MAX_KEPT: usize = 600_000;
@@ -120,7 +120,7 @@ pub enum Flag {
     NotFinite,
     /// Time did not advance; the sample is left out.
     TimeBackwards,
-    /// Time jumped; filters and states started anew.
+    /// Time jumped; filters and states started again.
     Gap,
     /// The position has not changed by a bit while the motor torque did.
     PositionStuck,

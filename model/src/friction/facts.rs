@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// What was recorded: it decides the catalogue of effects, and the names and
-/// units in which results are told.
+/// units in which results are reported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointType {

@@ -84,7 +84,7 @@ pub enum Update {
     /// It holds a number that is not finite or whose square is not, or is of
     /// another length: nothing changed.
     Refused,
-    /// The covariance had become unusable and starts anew from the priors;
+    /// The covariance had become unusable and starts over from the priors;
     /// the estimate is kept.
     Restarted,
 }

@@ -62,7 +62,7 @@ impl<M: Message> TypedRoute<M> {
     fn send(&mut self, now: Time, received: ferntast_bus::Received<M>, forwarded: &mut Forwarded) {
         let mut message = received.message;
         if received.source != 0 {
-            // Commands are told apart by their sender.
+            // Commands are distinguished by their sender.
             message.set_source(received.source);
         }
         let time = match self.stamp {

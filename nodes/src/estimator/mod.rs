@@ -128,7 +128,7 @@ impl Node for EstimatorNode {
             }
         }
         publish(stamp, &estimate, output);
-        // By the stamps too, that played back it is the same; a jump back begins anew.
+        // By the stamps too, that played back it is the same; a jump back starts over.
         let due = self.transforms_due;
         if stamp >= due || due.seconds_since(stamp) > 1e-9 * TRANSFORMS_PERIOD_NANOS as f64 {
             self.transforms_due = stamp.plus_nanos(TRANSFORMS_PERIOD_NANOS);
@@ -152,7 +152,7 @@ fn transforms(stamp: Time, position: [f64; 2], lengths: [f64; 2]) -> TransformsS
     }
 }
 
-/// What makes an estimate unusable, with a reason for people; the last one that holds is told.
+/// What makes an estimate unusable, with a reason for people; the last one that holds is reported.
 fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
     [
         (
@@ -163,7 +163,7 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
         (
             estimate.singular,
             Fault::Singular,
-            "the elbow is stretched or folded: no force can be told; bend it",
+            "the elbow is stretched or folded: no force can be estimated; bend it",
         ),
         (
             estimate.stuck[0],

@@ -37,7 +37,7 @@ pub struct NodeRow {
     pub in_session: When,
     /// Whether the playback of a recording runs it.
     pub in_playback: When,
-    /// Whether a replay feeds it the recording anew and compares what it publishes.
+    /// Whether a replay feeds it the recording again and compares what it publishes.
     pub in_replay: When,
     /// What makes it.
     pub make: Make,

@@ -1,4 +1,4 @@
-//! What is near is told, and only that.
+//! What is near is reported, and only that.
 
 use std::{cell::RefCell, rc::Rc};
 

@@ -96,7 +96,7 @@ impl LinkTransport {
         })
     }
 
-    /// Sets the channel anew; what is out of bounds changes nothing.
+    /// Sets the channel again; what is out of bounds changes nothing.
     fn obey(&mut self, command: &LinkCommandSample) {
         let way = command.round_trip / 2.0;
         let _ = self.channel.retune(way, command.jitter, command.loss);

@@ -1,4 +1,4 @@
-//! The servo's friction feed-forward: what it is told, and what it says of it.
+//! The servo's friction feed-forward: what is asked of it, and what it reports.
 
 use std::fmt;
 

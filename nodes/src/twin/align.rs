@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn what_never_meets_a_torque_is_dropped_and_counted() {
-        // Before the first torque; then time begins anew.
+        // Before the first torque; then time starts over.
         let (out, dropped) = run(&[('p', 0), ('m', 4), ('p', 9000), ('p', 10), ('m', 10)]);
         assert_eq!(out, [(10, 10.0)]);
         assert_eq!(dropped, 1);

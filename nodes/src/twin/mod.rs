@@ -267,7 +267,7 @@ impl TwinNode {
         let (fault, words) = match flag {
             None => return,
             Some(Flag::Gap) => {
-                health.message = Text::new("time jumped: the twin's filters start anew");
+                health.message = Text::new("time jumped: the twin's filters start over");
                 return;
             }
             Some(Flag::NotFinite) => (

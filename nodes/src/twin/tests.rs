@@ -55,7 +55,7 @@ fn model() -> TwinModel {
 }
 
 /// A twin with those effects, fitted to a joint with that motor torque at the
-/// time \[s\] and in the motion that it is told.
+/// time \[s\] and in the motion that it is given.
 fn model_of(
     effects: &[&str],
     inertia: Inertia,

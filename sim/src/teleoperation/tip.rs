@@ -1,5 +1,5 @@
 //! The arm behind its servo, as the tip shows it: a mass that a spring and a
-//! damper pull to where it is told, the same along both axes.
+//! damper pull to where it is commanded, the same along both axes.
 
 use super::environment::{Environment, Surface};
 use ferntast_model::parameters;

@@ -178,7 +178,7 @@ fn spoiled(spoil: &str, fault: Fault, words: &str) {
     let told = told
         .iter()
         .find(|own| own.message.faults.has(fault))
-        .unwrap_or_else(|| panic!("{spoil} is not told on /diagnostics"));
+        .unwrap_or_else(|| panic!("{spoil} is not reported on /diagnostics"));
     let message = told.message.message;
     assert!(message.as_str().contains(words), "{spoil}: {message}");
     for own in messages(&path, topics::LEADER_SETPOINT_CP) {

@@ -1,4 +1,4 @@
-//! Bad input: one message that names what, where and how to mend it; nothing moves.
+//! Bad input: one message that names what, where and how to correct it; nothing moves.
 
 use std::{fs, net::TcpListener};
 

@@ -10,7 +10,7 @@
 
 use nalgebra::Vector3;
 
-/// Softest and stiffest surface that is told apart [N/m]: a packet holds no
+/// Softest and stiffest surface that is distinguished [N/m]: a packet holds no
 /// larger number.
 pub(super) const SOFTEST: f64 = 10.0;
 const STIFFEST: f64 = 10_000.0;
