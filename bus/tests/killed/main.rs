@@ -25,18 +25,59 @@ const STREAM: Topic<JointSample> = Topic::new("/killed/stream", Delivery::Stream
 const STATE: Topic<JointSample> = Topic::new("/killed/state", Delivery::State);
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// The tests, as the harness that this file goes without would run them.
+const TESTS: [(&str, fn()); 2] = [
+    (
+        "a_killed_publisher_is_replaced",
+        a_killed_publisher_is_replaced,
+    ),
+    (
+        "a_killed_session_is_cleaned_up",
+        a_killed_session_is_cleaned_up,
+    ),
+];
+
 fn main() {
-    let arguments: Vec<String> = env::args().collect();
-    match arguments.get(1).map(String::as_str) {
-        Some("publish") => publish(&arguments[2], arguments[3].parse().unwrap()),
-        // `cargo test -- --list` and filters of other tests come here as well.
-        Some("--list") => println!("killed: test"),
-        _ => {
-            a_killed_publisher_is_replaced();
-            a_killed_session_is_cleaned_up();
-            println!("test result: ok. 2 passed");
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    match arguments.first().map(String::as_str) {
+        Some("publish") => publish(&arguments[1], arguments[2].parse().unwrap()),
+        Some("--list") => TESTS.iter().for_each(|(name, _)| println!("{name}: test")),
+        _ => run(&wanted(&arguments)),
+    }
+}
+
+/// Tests whose names contain one of the arguments, of all if there is none, and
+/// nothing that is to be skipped.
+fn wanted(arguments: &[String]) -> Vec<(&'static str, fn())> {
+    let (mut names, mut skipped) = (Vec::new(), Vec::new());
+    let mut each = arguments.iter();
+    while let Some(argument) = each.next() {
+        match argument.as_str() {
+            "--skip" => skipped.extend(each.next()),
+            "--test-threads" => drop(each.next()),
+            option if option.starts_with("--") => {}
+            _ => names.push(argument),
         }
     }
+    let holds = |list: &[&String], name: &str| list.iter().any(|own| name.contains(own.as_str()));
+    let mut tests = TESTS.to_vec();
+    tests.retain(|(name, _)| (names.is_empty() || holds(&names, name)) && !holds(&skipped, name));
+    tests
+}
+
+/// A test that fails panics, and says no result.
+fn run(tests: &[(&'static str, fn())]) {
+    let begun = Instant::now();
+    for (name, test) in tests {
+        test();
+        println!("test {name} ... ok");
+    }
+    println!(
+        "test result: ok. {} passed; 0 failed; 0 ignored; 0 measured; {} filtered out; finished in {:.2}s",
+        tests.len(),
+        TESTS.len() - tests.len(),
+        begun.elapsed().as_secs_f64()
+    );
 }
 
 fn join(session: &str) -> SharedMemoryBus {
