@@ -5,7 +5,7 @@ use ferntast_control::delay::{
     FollowerEnd, FollowerInput, Law, LeaderEnd, LeaderInput, Motion, Packet, PositionForce,
     Received,
 };
-use ferntast_control::frame::{self, FRAME_LENGTH, Frame};
+use ferntast_control::frame::{self, FRAME_LENGTH, LinkFrame};
 use ferntast_control::haptics::{HandCommand, Master, MasterConfig};
 use ferntast_control::meter::{Arrival, LinkMeasurement, LinkMeter};
 use ferntast_control::operating::{OperatingState, StateCommand};
@@ -58,7 +58,7 @@ impl End {
     }
 
     fn send(&mut self, now: i64, state: OperatingState, packet: Packet) {
-        let frame = Frame {
+        let frame = LinkFrame {
             session: 1,
             sequence: self.sequence,
             sent_ns: now,
