@@ -12,11 +12,13 @@ pub mod contact;
 pub mod contour;
 pub mod friction;
 pub mod joint;
+pub mod joints;
 pub mod kinematics;
 mod parameter;
 pub mod recursive_least_squares;
 pub mod section;
 
+pub use joints::{JointCount, Joints, MAX_JOINTS};
 pub use nalgebra::{Matrix2, Vector2};
 pub use parameter::{ParameterError, check};
 pub use section::{Bounded, Section};
