@@ -4,7 +4,8 @@ use std::{thread, time::Duration};
 
 use ferntast_bus::mcap;
 use ferntast_tests::{
-    PATIENCE, Session, await_enabled, node, recording, run, signal, start, wait_until,
+    PATIENCE, Session, await_enabled, node, rearmed, recording, run, signal, start, state,
+    state_of_follower, wait_until,
 };
 
 #[test]
@@ -46,6 +47,28 @@ fn every_node_that_dies_is_started_again() {
         summary["recorder"]["parts"].as_array().map(Vec::len),
         Some(1)
     );
+}
+
+/// A pause lasts until an operator says otherwise, whatever is started again.
+#[test]
+fn a_crash_of_the_operators_end_leaves_a_paused_arm_paused() {
+    let session = Session::new();
+    let mut process = start(&session, &[]);
+    await_enabled(&session, &mut process);
+    // So that the operator's end has words to lose.
+    state(&session, "follower", "pause").success();
+    rearmed(&session);
+    state(&session, "follower", "pause").success();
+    for _ in 0..3 {
+        let before = node(&session, "link_leader");
+        signal(before, libc::SIGKILL);
+        assert!(wait_until(PATIENCE, || node(&session, "link_leader") != before));
+        thread::sleep(Duration::from_secs(3));
+        assert_eq!(state_of_follower(&session), "PAUSED");
+    }
+    rearmed(&session);
+    process.interrupt();
+    process.wait(PATIENCE).success();
 }
 
 #[test]
