@@ -1,7 +1,7 @@
 //! What a session does by choice, as parameters on ROS 2:
 //! `ros2 param set /link law wave`, `ros2 param set /servo friction twin`.
 
-use ferntast_bus::{Bus, Choice, Depth, ParameterNode};
+use ferntast_bus::{Bus, Choice, CreateError, Depth, ParameterNode};
 use ferntast_control::delay::Law;
 use ferntast_msgs::{
     Text, Time,
@@ -16,18 +16,18 @@ use crate::process::{NodeError, ProcessContext};
 const PATIENCE: f64 = 5.0;
 
 /// A value of a parameter.
-type Choice = Text<24>;
+type Value = Text<24>;
 
 /// Passes wishes on to a node, and tells what that node does.
 pub struct ChoiceParameter {
     node: Option<ParameterNode>,
-    pass_on: Box<dyn FnMut(Time, Choice)>,
+    pass_on: Box<dyn FnMut(Time, Value)>,
     /// What the node said since the last call.
-    heard: Box<dyn FnMut(Time) -> Option<Choice>>,
+    heard: Box<dyn FnMut(Time) -> Option<Value>>,
     /// The node's last word.
-    does: Choice,
+    does: Value,
     /// A wish, and when it was passed on.
-    wished: Option<(Choice, Time)>,
+    wished: Option<(Value, Time)>,
 }
 
 impl ChoiceParameter {
@@ -72,12 +72,12 @@ impl ChoiceParameter {
         };
         let bus = &process.bus;
         let mut command = bus.publisher(topics::FOLLOWER_FRICTION_COMMAND)?;
-        let mut joints = [
-            bus.subscriber(topics::FOLLOWER_JOINT_1_FRICTION, Depth::Newest)?,
-            bus.subscriber(topics::FOLLOWER_JOINT_2_FRICTION, Depth::Newest)?,
-        ];
-        let mut sources = [None; 2];
-        let pass_on = move |now, source: Choice| {
+        let friction = topics::FOLLOWER_JOINT_FRICTION.of_joints(&process.session.joints());
+        let mut joints = Vec::new();
+        for topic in friction.map_err(CreateError::from)? {
+            joints.push((bus.subscriber(topic, Depth::Newest)?, None));
+        }
+        let pass_on = move |now, source: Value| {
             let wish = match FrictionSource::from_name(source.as_str()) {
                 Some(FrictionSource::TWIN) => FrictionCommand::TAKE_OVER,
                 _ => FrictionCommand::GIVE_BACK,
@@ -85,13 +85,14 @@ impl ChoiceParameter {
             let _ = command.publish(now, &FrictionCommandSample::new(now, wish));
         };
         let heard = move |now| {
-            for (source, joint) in sources.iter_mut().zip(&mut joints) {
+            for (joint, source) in &mut joints {
                 if let Some(received) = joint.newest(now) {
                     *source = Some(received.message.source);
                 }
             }
             // One joint that goes by the twin is enough.
-            let source = sources.iter().flatten().max_by_key(|source| source.0)?;
+            let sources = joints.iter().filter_map(|(_, source)| *source);
+            let source = sources.max_by_key(|source| source.0)?;
             source.name().map(Text::new)
         };
         Self::open(ros, choice, Box::new(pass_on), Box::new(heard))
@@ -100,8 +101,8 @@ impl ChoiceParameter {
     fn open(
         ros: &Bus,
         choice: Choice,
-        pass_on: Box<dyn FnMut(Time, Choice)>,
-        heard: Box<dyn FnMut(Time) -> Option<Choice>>,
+        pass_on: Box<dyn FnMut(Time, Value)>,
+        heard: Box<dyn FnMut(Time) -> Option<Value>>,
     ) -> Result<ChoiceParameter, NodeError> {
         Ok(ChoiceParameter {
             does: Text::new(&choice.value),

@@ -15,7 +15,7 @@ use ferntast_msgs::{
 use crate::{
     config::joint_names,
     graph::Build,
-    node::{Node, Ticking, ports},
+    node::{Node, NodeHealth, Ticking, ports},
     process::NodeError,
 };
 
@@ -47,7 +47,7 @@ ports! {
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let arm = &build.session.loaded.arm;
     let node = EstimatorNode::new(&arm.model, &arm.estimator)?;
-    let ports = EstimatorPorts::connect(build.bus)?;
+    let ports = EstimatorPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
 
@@ -120,13 +120,7 @@ impl Node for EstimatorNode {
                 },
             },
         );
-        let health = &mut output.health;
-        for (active, fault, reason) in reasons(&estimate) {
-            if active {
-                health.raise(fault, Level::WARN);
-                health.message = Text::new(reason);
-            }
-        }
+        self.judge(&estimate, &mut output.health);
         publish(stamp, &estimate, output);
         // By the stamps too, that played back it is the same; a jump back starts over.
         let due = self.transforms_due;
@@ -152,8 +146,34 @@ fn transforms(stamp: Time, position: [f64; 2], lengths: [f64; 2]) -> TransformsS
     }
 }
 
-/// What makes an estimate unusable, with a reason for people; the last one that holds is reported.
-fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
+impl EstimatorNode {
+    /// Reports what makes an estimate unusable, with a reason for people: the
+    /// last one that holds.
+    fn judge(&self, estimate: &ContactEstimate, health: &mut NodeHealth) {
+        let [corner, singular, saturated, invalid] = reasons(estimate);
+        let tell = |health: &mut NodeHealth, (active, fault, reason)| {
+            if active {
+                health.raise(fault, Level::WARN);
+                health.message = Text::new(reason);
+            }
+        };
+        tell(health, corner);
+        tell(health, singular);
+        for (joint, stuck) in self.joints.iter().zip(estimate.stuck) {
+            if stuck {
+                health.raise(Fault::TorqueStuck, Level::WARN);
+                health.message = Text::display(format_args!(
+                    "{joint} turns, but its torque stays the same: check its torque sensor"
+                ));
+            }
+        }
+        tell(health, saturated);
+        tell(health, invalid);
+    }
+}
+
+/// What makes an estimate unusable, of whatever joint.
+fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 4] {
     [
         (
             estimate.corner,
@@ -164,16 +184,6 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
             estimate.singular,
             Fault::Singular,
             "the elbow is stretched or folded: no force can be estimated; bend it",
-        ),
-        (
-            estimate.stuck[0],
-            Fault::TorqueStuck,
-            "joint_1 turns, but its torque stays the same: check its torque sensor",
-        ),
-        (
-            estimate.stuck[1],
-            Fault::TorqueStuck,
-            "joint_2 turns, but its torque stays the same: check its torque sensor",
         ),
         (
             estimate.saturated,
