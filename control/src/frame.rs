@@ -60,8 +60,7 @@ pub struct LinkFrame {
     pub hold: bool,
     /// Operating state of the sender's device.
     pub state: OperatingState,
-    /// 0 … 15, one more each time the operator arms again; survives loss,
-    /// unlike an event. See [`ArmingWatch`].
+    /// Count of the operator's words to arm again, see [`crate::arming`].
     pub arming: u8,
     /// Code of the law that made the packet, 0 … [`LAST_LAW_CODE`]: while the
     /// laws are being switched, frames of both are on their way, and a packet
@@ -258,22 +257,6 @@ fn numbers<const N: usize>(
     Ok(values)
 }
 
-/// Tells when the operator armed again, from the counter in each frame.
-/// Loss, repetition and a restart of this end trigger nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ArmingWatch {
-    last: Option<u8>,
-}
-
-impl ArmingWatch {
-    /// Whether `arming` of the newest frame differs from the one before.
-    pub fn observe(&mut self, arming: u8) -> bool {
-        let changed = self.last.is_some_and(|last| last != arming);
-        self.last = Some(arming);
-        changed
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -391,13 +374,6 @@ mod tests {
                 Err(FrameError::Value { .. })
             ));
         }
-    }
-
-    #[test]
-    fn arming_triggers_once_and_not_at_first_sight() {
-        let mut watch = ArmingWatch::default();
-        let seen = [5, 5, 6, 6, 5].map(|arming| watch.observe(arming));
-        assert_eq!(seen, [false, false, true, false, true]);
     }
 
     proptest! {

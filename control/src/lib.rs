@@ -5,6 +5,7 @@
 //! limited is a value in the output. Stamps are `i64` nanoseconds since the
 //! UNIX epoch (zero is invalid), durations `f64` seconds.
 
+pub mod arming;
 pub mod delay;
 pub mod estimator;
 pub mod frame;

@@ -3,8 +3,9 @@
 use super::end::End;
 use super::velocity::VelocityFilter;
 use super::{LinkState, StampedPosition};
+use crate::arming::ArmingWatch;
 use crate::delay::Motion;
-use crate::frame::{ArmingWatch, FRAME_LENGTH};
+use crate::frame::FRAME_LENGTH;
 use crate::operating::OperatingState;
 use crate::switching::{FollowerSwitch, Laws};
 

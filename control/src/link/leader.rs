@@ -3,6 +3,7 @@
 use super::end::End;
 use super::velocity::VelocityFilter;
 use super::{LinkState, StampedPosition};
+use crate::arming::ArmingCount;
 use crate::frame::FRAME_LENGTH;
 use crate::operating::OperatingState;
 use crate::switching::{Laws, LeaderSwitch};
@@ -35,8 +36,7 @@ pub struct LeaderLink {
     end: End,
     law: LeaderSwitch,
     velocity: VelocityFilter,
-    /// Counts the operator's wishes to re-arm.
-    arming: u8,
+    arming: ArmingCount,
 }
 
 impl LeaderLink {
@@ -47,13 +47,13 @@ impl LeaderLink {
             end: End::new(session, buffer),
             law: LeaderSwitch::new(laws),
             velocity: VelocityFilter::default(),
-            arming: 0,
+            arming: ArmingCount::default(),
         }
     }
 
     /// The operator wishes to re-arm: says so in every frame from now on.
     pub fn rearm(&mut self) {
-        self.arming = self.arming.wrapping_add(1);
+        self.arming.add();
     }
 
     /// Asks for the law of that code; `false` if there is none.
@@ -77,7 +77,7 @@ impl LeaderLink {
             force: step.force,
             frame: self
                 .end
-                .send(now_ns, readings.state, self.arming, step.outgoing),
+                .send(now_ns, readings.state, self.arming.get(), step.outgoing),
         }
     }
 

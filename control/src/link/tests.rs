@@ -285,3 +285,41 @@ proptest! {
         prop_assert_eq!(rig.counts().total() + rig.received(), sent);
     }
 }
+
+/// Both ends for `steps` ticks; how often the arm's end was told to arm again.
+fn words(leader: &mut LeaderLink, rig: &mut Rig, steps: usize) -> usize {
+    let mut words = 0;
+    for _ in 0..steps {
+        let hand = LeaderReadings {
+            hand: None,
+            state: OperatingState::Enabled,
+        };
+        if let Some(frame) = leader.step(rig.now_ns, &hand).frame {
+            rig.link.arrived(&frame, rig.now_ns);
+        }
+        let arm = FollowerReadings {
+            tip: None,
+            contact_force: None,
+            state: OperatingState::Paused,
+        };
+        words += usize::from(rig.link.step(rig.now_ns, &arm).rearm);
+        rig.now_ns += TICK_NS;
+    }
+    words
+}
+
+/// A crash of the operator's end must not arm a paused arm again.
+#[test]
+fn an_operators_end_that_is_started_again_does_not_arm() {
+    let begin = || LeaderLink::new(Laws::new(Law::default()), SESSION, 0.0);
+    let (mut leader, mut rig) = (begin(), Rig::new());
+    assert_eq!(words(&mut leader, &mut rig, 100), 0);
+    for _ in 0..3 {
+        leader.rearm();
+        assert_eq!(words(&mut leader, &mut rig, 100), 1);
+    }
+    leader = begin();
+    assert_eq!(words(&mut leader, &mut rig, 3000), 0, "after a restart");
+    leader.rearm();
+    assert_eq!(words(&mut leader, &mut rig, 100), 1, "the operator's word");
+}

@@ -3,7 +3,7 @@
 use ferntast_control::estimator::{
     ContactEstimate, ContactEstimator, EstimatorParameters, JointMeasurement,
 };
-use ferntast_model::{ArmModel, ParameterError, contour::Surface};
+use ferntast_model::{ArmModel, Joints, ParameterError, contour::Surface, kinematics::LINKS};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -56,7 +56,7 @@ pub struct EstimatorNode {
     joints: JointNames,
     estimator: ContactEstimator,
     last: Option<Time>,
-    link_lengths: [f64; 2],
+    link_lengths: [f64; LINKS],
     transforms_due: Time,
 }
 
@@ -106,17 +106,18 @@ impl Node for EstimatorNode {
             return;
         };
         let needed = JointFields::POSITION.with(JointFields::EFFORT);
+        let joints = self.estimator.joints();
         let estimate = self.estimator.step(
             dt,
             &match measured.in_order_of(&self.joints) {
                 Some(measured) if measured.fields.has(needed) => JointMeasurement {
-                    motor_position: measured.position(),
-                    joint_torque: measured.effort(),
+                    motor_position: Joints::from_places(joints, measured.position),
+                    joint_torque: Joints::from_places(joints, measured.effort),
                 },
                 // The estimator takes it for what it is: no measurement.
                 _ => JointMeasurement {
-                    motor_position: [f64::NAN; 2],
-                    joint_torque: [f64::NAN; 2],
+                    motor_position: Joints::filled(joints, f64::NAN),
+                    joint_torque: Joints::filled(joints, f64::NAN),
                 },
             },
         );
@@ -126,7 +127,7 @@ impl Node for EstimatorNode {
         let due = self.transforms_due;
         if stamp >= due || due.seconds_since(stamp) > 1e-9 * TRANSFORMS_PERIOD_NANOS as f64 {
             self.transforms_due = stamp.plus_nanos(TRANSFORMS_PERIOD_NANOS);
-            output.transforms = Some(transforms(stamp, estimate.position, self.link_lengths));
+            output.transforms = Some(transforms(stamp, &estimate.position, self.link_lengths));
         }
     }
 }
@@ -138,11 +139,13 @@ fn about_z(angle: f64) -> [f64; 4] {
 
 /// The arm's frames at the link-side joint positions \[rad\], for links of
 /// those lengths \[m\].
-fn transforms(stamp: Time, position: [f64; 2], lengths: [f64; 2]) -> TransformsSample {
+fn transforms(stamp: Time, position: &[f64], lengths: [f64; LINKS]) -> TransformsSample {
+    // The tip does not turn against its link.
+    let angle = |frame: usize| position.get(frame).copied().unwrap_or(0.0);
     TransformsSample {
         stamp,
         translations: [[0.0; 3], [lengths[0], 0.0, 0.0], [lengths[1], 0.0, 0.0]],
-        rotations: [about_z(position[0]), about_z(position[1]), about_z(0.0)],
+        rotations: std::array::from_fn(|frame| about_z(angle(frame))),
     }
 }
 
@@ -201,7 +204,7 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 4] {
 fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput) {
     let [x, y] = estimate.tip;
     output.measured_cp = Some(PoseSample {
-        orientation: about_z(estimate.position[0] + estimate.position[1]),
+        orientation: about_z(estimate.position.iter().sum()),
         ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, [x, y, 0.0])
     });
     let [fx, fy] = estimate.force;
