@@ -23,11 +23,11 @@ use ferntast_bus::{
 use ferntast_msgs::{
     Time,
     sample::{JointNames, JointSample},
-    topics::{Delivery, Topic},
+    topics::{Delivery, Topic, TopicName},
 };
 use zenoh::Wait;
 
-const TOPIC: Topic<JointSample> = Topic::new("/bench/hop", Delivery::Stream);
+const TOPIC: Topic<JointSample> = Topic::new(TopicName::constant("/bench/hop"), Delivery::Stream);
 const HOPS: usize = 5_000;
 const PERIOD: Duration = Duration::from_micros(500);
 

@@ -79,7 +79,7 @@ impl Bus {
             Bus::Mcap(bus) => Subscriber::Mcap(bus.subscriber(topic, depth)?),
             Bus::Foxglove(_) => {
                 return Err(CreateError::OneWay {
-                    topic: topic.name.to_owned(),
+                    topic: topic.name.into(),
                 });
             }
         })

@@ -1,6 +1,9 @@
 //! What can go wrong: one enum an operation.
 
-use ferntast_msgs::InvalidMessage;
+use ferntast_msgs::{
+    InvalidMessage,
+    topics::{JointNameError, TopicName},
+};
 
 /// Why a bus cannot be opened.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -142,6 +145,9 @@ pub enum CreateError {
         /// The topic.
         topic: String,
     },
+    /// A joint whose name cannot be part of a topic's.
+    #[error(transparent)]
+    Joint(#[from] JointNameError),
     /// No permission to use the topic's shared memory.
     #[error(
         "no permission for the shared memory of {topic} ({reason}); run as the user who started the session"
@@ -183,7 +189,7 @@ pub enum PublishError {
     #[error("{topic}: {source}")]
     Encode {
         /// The topic.
-        topic: &'static str,
+        topic: TopicName,
         /// What is wrong.
         source: EncodeError,
     },
@@ -191,7 +197,7 @@ pub enum PublishError {
     #[error("{topic}: no free place in shared memory: {reason}")]
     NoPlace {
         /// The topic.
-        topic: &'static str,
+        topic: TopicName,
         /// What the library said.
         reason: String,
     },
@@ -199,7 +205,7 @@ pub enum PublishError {
     #[error("{topic} cannot be recorded: {reason}")]
     Recording {
         /// The topic.
-        topic: &'static str,
+        topic: TopicName,
         /// What the system said.
         reason: String,
     },
@@ -209,7 +215,7 @@ pub enum PublishError {
         /// Which way across.
         transport: &'static str,
         /// The topic.
-        topic: &'static str,
+        topic: TopicName,
         /// What the library said.
         reason: String,
     },

@@ -161,7 +161,7 @@ fn a_publisher_that_comes_back_continues_the_topic() {
 fn the_wrong_type_side_and_depth_are_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("run");
-    let poses = Topic::<PoseSample>::new("/follower/measured_js", Delivery::Stream);
+    let poses = Topic::<PoseSample>::new(FOLLOWER_MEASURED_JS.name, Delivery::Stream);
     let writing = McapBus::create(&path).unwrap();
     let mut publisher = writing.publisher(FOLLOWER_MEASURED_JS).unwrap();
     let error = writing.publisher(poses).unwrap_err();

@@ -12,7 +12,7 @@ use ferntast_bus::mcap::{
 };
 use ferntast_msgs::{
     Message, RosMessage, Time, interface,
-    sample::{JointSample, PoseSample},
+    sample::{JointNames, JointSample, PoseSample},
     topics::{self, Delivery, FOLLOWER_MEASURED_JS, LEADER_MEASURED_CP, Topic, Visitor},
 };
 use mcap_samples::{
@@ -27,7 +27,7 @@ struct Compare<'a> {
 impl Visitor for Compare<'_> {
     fn topic<M: Message>(&mut self, topic: Topic<M>) {
         self.topics += 1;
-        let messages: Vec<_> = self.reader.messages::<M>(topic.name).unwrap().collect();
+        let messages: Vec<_> = self.reader.messages::<M>(&topic.name).unwrap().collect();
         assert_eq!(messages.len(), 30, "{}", topic.name);
         for (k, read) in (0..).zip(messages) {
             let read = read.unwrap();
@@ -39,7 +39,7 @@ impl Visitor for Compare<'_> {
         let described = self
             .reader
             .topics()
-            .find(|found| found.name == topic.name)
+            .find(|found| topic.name == *found.name)
             .unwrap();
         let interface = M::Ros::INTERFACE;
         assert_eq!(described.schema_name, interface);
@@ -74,7 +74,7 @@ fn every_topic_of_the_table_comes_back() {
         reader: &reader,
         topics: 0,
     };
-    topics::visit(&mut compare);
+    topics::visit(&JointNames::numbered(2), &mut compare).unwrap();
     assert!(compare.topics >= 24);
     assert_eq!(summary.messages, 30 * compare.topics as u64);
     assert_eq!(reader.raw().count() as u64, summary.messages);
@@ -184,7 +184,7 @@ fn what_does_not_fit_is_refused_and_the_recording_goes_on() {
     let poses = writer.topic(LEADER_MEASURED_CP).unwrap();
     assert_eq!(writer.topic(FOLLOWER_MEASURED_JS).unwrap(), joints);
 
-    let stolen = Topic::<PoseSample>::new("/follower/measured_js", Delivery::Stream);
+    let stolen = Topic::<PoseSample>::new(FOLLOWER_MEASURED_JS.name, Delivery::Stream);
     let error = writer.topic(stolen).unwrap_err();
     assert!(matches!(error, WriteBagError::WrongType { .. }), "{error}");
     let message = joint(0.0, START);

@@ -2,17 +2,23 @@
 
 use std::process::ExitCode;
 
+use ferntast_drivers::simulated;
 use ferntast_msgs::{
     Message, RosMessage, interface,
     topics::{self, Authority, Topic, Visitor},
 };
+use ferntast_nodes::config::joint_names;
 use serde::Serialize;
 
 use super::{Failure, output::print_json};
 
 /// List the topics with their types and whether peers on ROS 2 may publish them, and the types with hash and schema.
 #[derive(Debug, clap::Args)]
-pub struct Arguments {}
+pub struct Arguments {
+    /// Arm whose joints there are topics of: a shipped one (rokviss) or a file.
+    #[arg(long, default_value = "rokviss", value_name = "NAME|FILE")]
+    arm: String,
+}
 
 #[derive(Debug, Serialize)]
 struct Listing {
@@ -22,7 +28,7 @@ struct Listing {
 
 #[derive(Debug, Serialize)]
 struct TopicLine {
-    name: &'static str,
+    name: String,
     r#type: &'static str,
     delivery: String,
     publishers: &'static [&'static str],
@@ -50,7 +56,7 @@ struct List(Vec<TopicLine>);
 impl Visitor for List {
     fn topic<M: Message>(&mut self, topic: Topic<M>) {
         self.0.push(TopicLine {
-            name: topic.name,
+            name: topic.name.into(),
             r#type: M::Ros::INTERFACE,
             delivery: format!("{:?}", topic.delivery).to_lowercase(),
             publishers: topic.publishers,
@@ -60,9 +66,10 @@ impl Visitor for List {
 }
 
 /// Runs it.
-pub fn run(_: Arguments, json: bool) -> Result<ExitCode, Failure> {
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let arm = simulated::load_arm(&arguments.arm).map_err(Failure::refused)?;
     let mut list = List(Vec::new());
-    topics::visit(&mut list);
+    topics::visit(&joint_names(&arm.model), &mut list).map_err(Failure::refused)?;
     let mut interfaces = Vec::new();
     for name in interface::names() {
         interfaces.push(InterfaceLine {

@@ -64,15 +64,16 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     let info = ferntast_bus::mcap::info(&arguments.recording).map_err(Failure::refused)?;
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
-    context.bag = Some(arguments.recording);
     context.play = PlayOptions {
         rate: arguments.rate,
         repeat: arguments.repeat,
         estimate: arguments.estimate,
         except: Vec::new(),
+        joints: session::recorded_joints(&arguments.recording),
     };
+    context.bag = Some(arguments.recording);
     context.foxglove = arguments.foxglove.address()?;
-    check_twin(arguments.twin.as_deref())?;
+    check_twin(arguments.twin.as_deref(), context.joints())?;
     context.twin = arguments.twin;
     let stop = stop_on_signals().map_err(Failure::failed)?;
     let played =

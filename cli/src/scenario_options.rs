@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use ferntast_drivers::simulated;
+use ferntast_msgs::sample::JointNames;
 use ferntast_nodes::{
     config::{self, HandSource, Loaded, Middleware},
     twin,
@@ -111,15 +112,16 @@ impl ScenarioOptions {
     }
 }
 
-/// Refuses an experiment that a twin cannot follow, before any node is started.
+/// Refuses an experiment that a twin of an arm of those joints cannot follow,
+/// before any node is started.
 ///
 /// # Errors
 ///
 /// What is wrong with it, where, and how to correct it.
-pub fn check_twin(experiment: Option<&Path>) -> Result<(), Failure> {
+pub fn check_twin(experiment: Option<&Path>, joints: JointNames) -> Result<(), Failure> {
     match experiment {
         None => Ok(()),
-        Some(path) => twin::open(path).map(drop).map_err(Failure::refused),
+        Some(path) => twin::open(path, joints).map(drop).map_err(Failure::refused),
     }
 }
 

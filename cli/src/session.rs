@@ -78,7 +78,7 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     let page = arguments.page.console()?;
     context.console = (!arguments.no_console).then_some(page);
     context.foxglove = arguments.foxglove.address()?;
-    check_twin(arguments.twin.as_deref())?;
+    check_twin(arguments.twin.as_deref(), context.joints())?;
     context.twin = arguments.twin;
     let stop = stop_on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {

@@ -3,6 +3,7 @@
 //! * [`message_path`]: which number of a message is a signal,
 //! * [`schema`]: numbers out of messages of whatever type a recording carries,
 //! * [`csv`]: the same out of columns,
+//! * [`joints`]: which joints a recording is about,
 //! * [`recording`]: signals put on one time base and cut into sessions,
 //! * [`experiment`]: the file that names recordings, signals and model, and
 //!   how one came out of another,
@@ -13,6 +14,7 @@
 
 pub mod csv;
 pub mod experiment;
+pub mod joints;
 pub mod message_path;
 mod numbers;
 pub mod recording;

@@ -14,14 +14,20 @@ impl<const N: usize> Text<N> {
     pub const EMPTY: Text<N> = Text([0; N]);
 
     /// The first at most `N` bytes of `text`, up to a zero byte if there is one.
-    pub fn new(text: &str) -> Text<N> {
-        let zero = text.bytes().position(|byte| byte == 0);
-        let mut end = zero.unwrap_or(text.len()).min(N);
+    pub const fn new(text: &str) -> Text<N> {
+        let source = text.as_bytes();
+        let mut end = 0;
+        while end < N && end < source.len() && source[end] != 0 {
+            end += 1;
+        }
         while !text.is_char_boundary(end) {
             end -= 1;
         }
         let mut bytes = [0; N];
-        bytes[..end].copy_from_slice(&text.as_bytes()[..end]);
+        bytes
+            .split_at_mut(end)
+            .0
+            .copy_from_slice(source.split_at(end).0);
         Text(bytes)
     }
 

@@ -413,25 +413,28 @@ fn every_fault_has_a_bit_and_a_name_of_its_own() {
 
 #[test]
 fn every_topic_is_named_once_and_carries_a_known_interface() {
-    struct Names(Vec<(&'static str, &'static str)>);
+    struct Names(Vec<(String, &'static str)>);
     impl Visitor for Names {
         fn topic<M: Message>(&mut self, topic: Topic<M>) {
             use ferntast_msgs::RosMessage;
-            self.0.push((topic.name, M::Ros::INTERFACE));
+            self.0.push((topic.name.into(), M::Ros::INTERFACE));
         }
     }
     let mut names = Names(Vec::new());
-    topics::visit(&mut names);
+    let joints = JointNames::new(["joint_1", "elbow"]).unwrap();
+    topics::visit(&joints, &mut names).unwrap();
     for (index, (name, interface)) in names.0.iter().enumerate() {
         assert!(name.starts_with('/'));
         assert!(names.0[..index].iter().all(|(other, _)| other != name));
         assert!(ferntast_msgs::interface::definition(interface).is_some());
     }
-    assert!(
-        names
-            .0
-            .contains(&("/link/status", "ferntast_msgs/msg/LinkStatus"))
-    );
+    let has = |name: &str, interface: &str| {
+        let mut names = names.0.iter();
+        names.any(|own| own.0 == name && own.1 == interface)
+    };
+    assert!(has("/link/status", "ferntast_msgs/msg/LinkStatus"));
+    let temperature = "sensor_msgs/msg/Temperature";
+    assert!(has("/follower/elbow/temperature", temperature));
 }
 
 #[test]

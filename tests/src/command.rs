@@ -69,7 +69,7 @@ pub fn number(json: &Value, path: &str) -> f64 {
 pub fn messages<M: Message>(path: &Path, topic: Topic<M>) -> Vec<Received<M>> {
     let reader = BagReader::open(path).unwrap_or_else(|error| panic!("{error}"));
     let messages = reader
-        .messages::<M>(topic.name)
+        .messages::<M>(&topic.name)
         .unwrap_or_else(|error| panic!("{error}"));
     messages
         .map(|message| {

@@ -158,10 +158,10 @@ fn create_topic<M: Message>(
     qos: &ros2_client::QosProfile,
     what: &'static str,
 ) -> Result<rustdds::Topic, CreateError> {
-    let name = Name::parse(topic.name)
-        .map_err(|error| middleware(topic.name, what, format!("{error:?}")))?;
+    let name = Name::parse(&topic.name)
+        .map_err(|error| middleware(&topic.name, what, format!("{error:?}")))?;
     node.create_topic(&name, type_name::<M>(), qos)
-        .map_err(|error| middleware(topic.name, what, error.to_string()))
+        .map_err(|error| middleware(&topic.name, what, error.to_string()))
 }
 
 /// The topic's ROS 2 type, as DDS names it.

@@ -25,7 +25,7 @@ impl<M: Message> DdsPublisher<M> {
         let ros_topic = create_topic(&node, topic, &qos(topic.delivery), "publisher")?;
         let writer = node
             .create_publisher(&ros_topic, None)
-            .map_err(|error| middleware(topic.name, "publisher", error.to_string()))?;
+            .map_err(|error| middleware(&topic.name, "publisher", error.to_string()))?;
         Ok(DdsPublisher {
             topic,
             writer,

@@ -47,7 +47,7 @@ impl<M: Message> DdsSubscriber<M> {
         let ros_topic = create_topic(&node, topic, &asked, "subscriber")?;
         let reader = node
             .create_subscription(&ros_topic, Some(asked))
-            .map_err(|error| middleware(topic.name, "subscriber", error.to_string()))?;
+            .map_err(|error| middleware(&topic.name, "subscriber", error.to_string()))?;
         Ok(DdsSubscriber {
             topic,
             reader,

@@ -29,7 +29,7 @@ impl<M: Message> FoxglovePublisher<M> {
     ) -> Result<FoxglovePublisher<M>, CreateError> {
         let failed = |reason: String| CreateError::Middleware {
             transport: "a WebSocket for Foxglove",
-            topic: topic.name.to_owned(),
+            topic: topic.name.into(),
             what: "publisher",
             reason,
         };

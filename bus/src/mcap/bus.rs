@@ -160,7 +160,7 @@ impl McapBus {
     /// [`CreateError::WrongType`], [`CreateError::Recording`].
     pub fn publisher<M: Message>(&self, topic: Topic<M>) -> Result<McapPublisher<M>, CreateError> {
         let refused = |reason: String| CreateError::Recording {
-            topic: topic.name.to_owned(),
+            topic: topic.name.into(),
             reason,
         };
         let Side::Writing(shared) = &self.side else {
@@ -174,7 +174,7 @@ impl McapBus {
         };
         let channel = writer.topic(topic).map_err(|error| match error {
             WriteBagError::WrongType { found, .. } => CreateError::WrongType {
-                topic: topic.name.to_owned(),
+                topic: topic.name.into(),
                 wanted: type_name::<M>(),
                 found,
             },
@@ -196,12 +196,12 @@ impl McapBus {
         depth: Depth,
     ) -> Result<McapSubscriber<M>, CreateError> {
         let refused = |reason: String| CreateError::Recording {
-            topic: topic.name.to_owned(),
+            topic: topic.name.into(),
             reason,
         };
         if !(1..=MAX_QUEUE).contains(&depth.places()) {
             return Err(CreateError::BadDepth {
-                topic: topic.name.to_owned(),
+                topic: topic.name.into(),
                 depth: depth.places(),
                 limit: MAX_QUEUE,
             });
@@ -213,7 +213,7 @@ impl McapBus {
         };
         McapSubscriber::new(reading.clone(), topic, depth).map_err(|error| match error {
             SelectTopicError::WrongType { found, .. } => CreateError::WrongType {
-                topic: topic.name.to_owned(),
+                topic: topic.name.into(),
                 wanted: type_name::<M>(),
                 found,
             },

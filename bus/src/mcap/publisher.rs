@@ -2,7 +2,10 @@
 
 use std::marker::PhantomData;
 
-use ferntast_msgs::{Message, Time, topics::Topic};
+use ferntast_msgs::{
+    Message, Time,
+    topics::{Topic, TopicName},
+};
 
 use super::{bus::SharedWriter, error::WriteBagError, writer::ChannelId};
 use crate::error::PublishError;
@@ -11,7 +14,7 @@ use crate::error::PublishError;
 #[derive(Debug)]
 pub struct McapPublisher<M: Message> {
     writer: SharedWriter,
-    topic: &'static str,
+    topic: TopicName,
     channel: ChannelId,
     message: PhantomData<fn(M)>,
 }

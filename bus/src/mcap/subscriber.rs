@@ -40,7 +40,7 @@ impl<M: Message> McapSubscriber<M> {
             Delivery::State => Time::from_nanos(0),
             Delivery::Stream | Delivery::Event => joined,
         };
-        let messages = reading.reader.typed_raw::<M>(topic.name, from)?;
+        let messages = reading.reader.typed_raw::<M>(&topic.name, from)?;
         let mut subscriber = McapSubscriber {
             reading,
             messages,

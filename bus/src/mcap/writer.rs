@@ -9,7 +9,7 @@ use std::{
 use ferntast_msgs::{
     Message, RosMessage, Time,
     interface::{self, InterfaceError},
-    topics::Topic,
+    topics::{Topic, TopicName},
 };
 use mcap::records::{MessageHeader, Metadata};
 
@@ -27,7 +27,7 @@ use crate::cdr;
 pub struct ChannelId(pub(super) u16);
 
 struct Channel {
-    topic: &'static str,
+    topic: TopicName,
     interface: &'static str,
     type_hash: String,
     qos: QosProfile,
@@ -138,7 +138,7 @@ impl BagWriter {
             ("topic_type_hash".to_owned(), type_hash.clone()),
         ]);
         let schema = self.file.schema(interface, "ros2msg", schema.as_bytes())?;
-        let id = self.file.channel(schema, topic.name, "cdr", &metadata)?;
+        let id = self.file.channel(schema, &topic.name, "cdr", &metadata)?;
         self.channels.push(Channel {
             topic: topic.name,
             interface,
@@ -171,12 +171,12 @@ impl BagWriter {
         let header = MessageHeader {
             channel_id: channel.id,
             sequence: channel.sequence,
-            log_time: nanos(channel.topic, "log time", log_time)?,
-            publish_time: nanos(channel.topic, "publish time", publish_time)?,
+            log_time: nanos(&channel.topic, "log time", log_time)?,
+            publish_time: nanos(&channel.topic, "publish time", publish_time)?,
         };
         cdr::encode(&message.to_ros(), &mut self.buffer).map_err(|source| {
             WriteBagError::Encode {
-                topic: channel.topic.to_owned(),
+                topic: channel.topic.into(),
                 source,
             }
         })?;
@@ -244,7 +244,7 @@ impl BagWriter {
                 .channels
                 .iter()
                 .map(|channel| TopicEntry {
-                    name: channel.topic.to_owned(),
+                    name: channel.topic.into(),
                     schema_name: channel.interface.to_owned(),
                     message_encoding: "cdr".to_owned(),
                     qos: vec![channel.qos.clone()],
@@ -261,7 +261,7 @@ impl BagWriter {
         match self.channels.get(index) {
             Some(channel) if channel.interface != M::Ros::INTERFACE => {
                 Err(WriteBagError::WrongType {
-                    topic: channel.topic.to_owned(),
+                    topic: channel.topic.into(),
                     wanted: M::Ros::INTERFACE.to_owned(),
                     found: channel.interface.to_owned(),
                 })

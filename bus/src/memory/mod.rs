@@ -16,7 +16,7 @@ use std::{
 
 use ferntast_msgs::{
     Message, Time,
-    topics::{Delivery, Topic},
+    topics::{Delivery, Topic, TopicName},
 };
 
 use crate::{
@@ -31,7 +31,7 @@ pub const MAX_QUEUE: usize = 1 << 20;
 /// The bus in memory. A clone is another handle to the same topics.
 #[derive(Clone, Default)]
 pub struct MemoryBus {
-    topics: Arc<Mutex<HashMap<&'static str, Entry>>>,
+    topics: Arc<Mutex<HashMap<TopicName, Entry>>>,
 }
 
 /// A topic by name; the channel is an `Arc<Mutex<Ring<M>>>` of the type named.

@@ -1,12 +1,12 @@
 use ferntast_msgs::{
     sample::{JointNames, JointSample},
-    topics::Topic,
+    topics::{Topic, TopicName},
 };
 
 use super::*;
 
-const STREAM: Topic<JointSample> = Topic::new("/stream", Delivery::Stream);
-const STATE: Topic<JointSample> = Topic::new("/state", Delivery::State);
+const STREAM: Topic<JointSample> = Topic::new(TopicName::constant("/stream"), Delivery::Stream);
+const STATE: Topic<JointSample> = Topic::new(TopicName::constant("/state"), Delivery::State);
 
 fn at(nanos: i64) -> Time {
     Time::from_nanos(nanos)

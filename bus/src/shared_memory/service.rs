@@ -43,7 +43,7 @@ pub(super) fn open<M: Message>(
         what,
         reason,
     };
-    let name = ServiceName::new(topic.name).map_err(|error| middleware(format!("{error:?}")))?;
+    let name = ServiceName::new(&topic.name).map_err(|error| middleware(format!("{error:?}")))?;
     let mut tries = 0;
     loop {
         tries += 1;

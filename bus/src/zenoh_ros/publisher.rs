@@ -28,11 +28,11 @@ impl<M: Message> ZenohPublisher<M> {
         bus: &ZenohBus,
         topic: Topic<M>,
     ) -> Result<ZenohPublisher<M>, CreateError> {
-        let failed = |reason: String| middleware(topic.name, "publisher", reason);
+        let failed = |reason: String| middleware(&topic.name, "publisher", reason);
         let type_info = type_info::<M>().map_err(failed)?;
         let port = bus
             .node
-            .create_pub_impl::<Raw>(topic.name, Some(type_info))
+            .create_pub_impl::<Raw>(&topic.name, Some(type_info))
             .with_qos(qos(topic.delivery, places(topic.delivery)))
             .build()
             .map_err(|error| failed(error.to_string()))?;

@@ -2,7 +2,10 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use ferntast_msgs::{Message, Time, topics::Topic};
+use ferntast_msgs::{
+    Message, Time,
+    topics::{Topic, TopicName},
+};
 use hiroz::{BufferGroup, Builder, attachment::Attachment, msg::SerdeCdrSerdes, pubsub::ZSub};
 use zenoh::sample::Sample;
 
@@ -43,11 +46,11 @@ impl<M: Message> ZenohSubscriber<M> {
                 limit: MAX_QUEUE,
             });
         }
-        let failed = |reason: String| middleware(topic.name, "subscriber", reason);
+        let failed = |reason: String| middleware(&topic.name, "subscriber", reason);
         let type_info = type_info::<M>().map_err(failed)?;
         let port = bus
             .node
-            .create_sub_impl::<Raw>(topic.name, Some(type_info))
+            .create_sub_impl::<Raw>(&topic.name, Some(type_info))
             .with_qos(qos(topic.delivery, depth.places()))
             // For types with unbounded byte arrays; ours have none.
             .with_buffer_group(BufferGroup::Off)
@@ -90,7 +93,7 @@ impl<M: Message> ZenohSubscriber<M> {
     }
 
     /// The topic's full name.
-    pub fn topic(&self) -> &'static str {
+    pub fn topic(&self) -> TopicName {
         self.topic.name
     }
 

@@ -112,7 +112,7 @@ fn shared_memory(world: &World) {
         .signal_handling_mode(SignalHandlingMode::Disabled)
         .create::<iceoryx2::prelude::ipc_threadsafe::Service>()
         .unwrap();
-    let name = topic.name.try_into().unwrap();
+    let name = topic.name.as_str().try_into().unwrap();
 
     let same_size = node
         .service_builder(&name)
@@ -169,7 +169,7 @@ fn dds(world: &World) {
         .history(History::KeepLast { depth: 64 });
     let raw_topic = node
         .create_topic(
-            &Name::parse(topic.name).unwrap(),
+            &Name::parse(&topic.name).unwrap(),
             MessageTypeName::new("sensor_msgs", "JointState"),
             &qos,
         )
@@ -205,7 +205,7 @@ fn dds(world: &World) {
     // The right bytes under another type's name.
     let other_topic = node
         .create_topic(
-            &Name::parse(topic.name).unwrap(),
+            &Name::parse(&topic.name).unwrap(),
             MessageTypeName::new("sensor_msgs", "JointStateOfSomebodyElse"),
             &qos,
         )

@@ -18,7 +18,7 @@ use ferntast_bus::{
 use ferntast_msgs::{
     Message, Time,
     sample::{JointNames, JointSample},
-    topics::{Delivery, Topic},
+    topics::{Delivery, Topic, TopicName},
 };
 use tempfile::TempDir;
 use zenoh::Wait;
@@ -104,7 +104,7 @@ impl World {
 
     pub fn topic<M: Message>(&self, name: &str, delivery: Delivery) -> Topic<M> {
         let name = format!("/{}/{name}", self.name);
-        Topic::new(Box::leak(name.into_boxed_str()), delivery)
+        Topic::new(TopicName::new(&name).unwrap(), delivery)
     }
 
     /// A Zenoh client of its own at the world's endpoint, as any program may be.

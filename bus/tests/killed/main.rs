@@ -18,11 +18,12 @@ use ferntast_bus::{Depth, SharedMemoryBus, SharedMemoryConfig};
 use ferntast_msgs::{
     Time,
     sample::{JointNames, JointSample},
-    topics::{Delivery, Topic},
+    topics::{Delivery, Topic, TopicName},
 };
 
-const STREAM: Topic<JointSample> = Topic::new("/killed/stream", Delivery::Stream);
-const STATE: Topic<JointSample> = Topic::new("/killed/state", Delivery::State);
+const STREAM: Topic<JointSample> =
+    Topic::new(TopicName::constant("/killed/stream"), Delivery::Stream);
+const STATE: Topic<JointSample> = Topic::new(TopicName::constant("/killed/state"), Delivery::State);
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// The tests, as the harness that this file goes without would run them.

@@ -18,6 +18,11 @@ use ferntast_msgs::{
 /// When the sample recordings begin: 2025-01-01 00:00:00 UTC.
 pub const START: Time = Time::from_nanos(1_735_689_600_000_000_000);
 
+/// The arm's joints.
+fn joints() -> JointNames {
+    JointNames::numbered(2)
+}
+
 /// Number of topics, and so of messages in one round.
 pub fn topic_count() -> usize {
     struct Count(usize);
@@ -27,7 +32,7 @@ pub fn topic_count() -> usize {
         }
     }
     let mut count = Count(0);
-    topics::visit(&mut count);
+    topics::visit(&joints(), &mut count).expect("numbered joints");
     count.0
 }
 
@@ -75,7 +80,7 @@ fn pick<M: Message, T: Message>(value: T) -> Option<M> {
 }
 
 pub fn joint(x: f64, stamp: Time) -> JointSample {
-    JointSample::empty(JointNames::numbered(2), stamp)
+    JointSample::empty(joints(), stamp)
         .with_position([0.25 + x, -0.5 - x])
         .with_velocity([1.5 + x, -2.5 - x])
         .with_effort([10.5 + x, -20.25 - x])
@@ -225,7 +230,7 @@ pub fn record(
             k,
             failed: None,
         };
-        topics::visit(&mut visitor);
+        topics::visit(&joints(), &mut visitor)?;
         if let Some(error) = visitor.failed {
             return Err(error);
         }

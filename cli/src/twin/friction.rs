@@ -4,7 +4,8 @@ use std::{process::ExitCode, thread, time::Duration};
 
 use ferntast_bus::{Bus, Depth, SharedMemoryBus, SharedMemoryConfig};
 use ferntast_msgs::{
-    sample::{FrictionCommand, FrictionCommandSample, FrictionStatusSample},
+    Time,
+    sample::{FrictionCommand, FrictionCommandSample, FrictionStatusSample, JointNames},
     topics,
 };
 use ferntast_nodes::{process::Clock, servo::FrictionSummary};
@@ -21,8 +22,8 @@ pub struct Arguments {
 /// How long an answer is waited for \[s\]: the servo tells every second.
 const PATIENCE: f64 = 2.5;
 
-/// What the servo says of both joints.
-type Told = [FrictionStatusSample; 2];
+/// What the servo says of its joints.
+type Told = Vec<FrictionStatusSample>;
 
 /// Gives the command, if there is one, and tells what is fed forward.
 pub fn run(
@@ -50,7 +51,7 @@ pub fn run(
     if let (Some(_), Some(one)) = (command, told.iter().find(|one| !one.refused.is_empty())) {
         return Err(Failure::refused(format!("refused: {}", one.refused)));
     }
-    let summaries = told.each_ref().map(FrictionSummary::of);
+    let summaries: Vec<FrictionSummary> = told.iter().map(FrictionSummary::of).collect();
     if json {
         print_json(&summaries)?;
     } else {
@@ -59,34 +60,30 @@ pub fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The first word of both joints, or the first after the command was dealt with.
+/// The first word of all joints, or the first after the command was dealt with.
 fn ask(bus: &Bus, command: Option<FrictionCommand>) -> Result<Option<Told>, Failure> {
     let clock = Clock::start();
     let mut publisher = bus
         .publisher(topics::FOLLOWER_FRICTION_COMMAND)
         .map_err(Failure::failed)?;
-    let open = |topic| {
-        bus.subscriber(topic, Depth::Newest)
-            .map_err(Failure::failed)
+    let Some(names) = joints(bus, clock)? else {
+        return Ok(None);
     };
-    let mut joints = [
-        open(topics::FOLLOWER_JOINT_1_FRICTION)?,
-        open(topics::FOLLOWER_JOINT_2_FRICTION)?,
-    ];
+    let friction = topics::FOLLOWER_JOINT_FRICTION.of_joints(&names);
+    let mut joints = Vec::new();
+    for topic in friction.map_err(Failure::failed)? {
+        let joint = bus.subscriber(topic, Depth::Newest);
+        joints.push(joint.map_err(Failure::failed)?);
+    }
     let mut listen = |enough: &dyn Fn(&FrictionStatusSample) -> bool| {
-        let begun = clock.now();
-        let mut told: [Option<FrictionStatusSample>; 2] = [None; 2];
-        while clock.now().seconds_since(begun) < PATIENCE {
+        let mut told: Vec<Option<FrictionStatusSample>> = vec![None; joints.len()];
+        wait(clock, |now| {
             for (place, joint) in told.iter_mut().zip(&mut joints) {
-                let heard = joint.newest(clock.now()).map(|received| received.message);
+                let heard = joint.newest(now).map(|received| received.message);
                 *place = heard.filter(|own| enough(own)).or(*place);
             }
-            if let [Some(first), Some(second)] = told {
-                return Some([first, second]);
-            }
-            thread::sleep(Duration::from_millis(5));
-        }
-        None
+            told.iter().copied().collect::<Option<Told>>()
+        })
     };
     let Some(before) = listen(&|_| true) else {
         return Ok(None);
@@ -98,6 +95,30 @@ fn ask(bus: &Bus, command: Option<FrictionCommand>) -> Result<Option<Told>, Fail
     publisher
         .publish(now, &FrictionCommandSample::new(now, command))
         .map_err(Failure::failed)?;
-    let dealt_with = before[0].commands;
-    Ok(listen(&|own| own.commands > dealt_with))
+    let dealt_with = before.iter().map(|own| own.commands).max();
+    Ok(listen(&|own| {
+        dealt_with.is_none_or(|before| own.commands > before)
+    }))
+}
+
+/// The joints of the servo: it names them in every message.
+fn joints(bus: &Bus, clock: Clock) -> Result<Option<JointNames>, Failure> {
+    let mut servo = bus
+        .subscriber(topics::FOLLOWER_SETPOINT_JS, Depth::Newest)
+        .map_err(Failure::failed)?;
+    Ok(wait(clock, |now| {
+        servo.newest(now).map(|received| received.message.joints)
+    }))
+}
+
+/// What `look` finds, asked for as long as an answer is waited for.
+fn wait<T>(clock: Clock, mut look: impl FnMut(Time) -> Option<T>) -> Option<T> {
+    let begun = clock.now();
+    while clock.now().seconds_since(begun) < PATIENCE {
+        if let Some(found) = look(clock.now()) {
+            return Some(found);
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    None
 }

@@ -125,8 +125,8 @@ pub struct Snapshot {
     pub authority: AuthorityView,
     /// Who operates.
     pub seat: OperatorView,
-    /// Temperatures \[degC\].
-    pub temperatures: [Option<f32>; 2],
+    /// Temperatures, joint by joint \[degC\].
+    pub temperatures: Vec<Option<f32>>,
     /// The recorder.
     pub recorder: RecorderView,
     /// The nodes, a few times a second.

@@ -6,10 +6,10 @@ use ferntast_bus::{Bus, CreateError, Depth, Publisher, Subscriber, SubscriberCou
 use ferntast_msgs::{
     Message, Text, Time,
     sample::{
-        AuthoritySample, ContactStateSample, Frame, HealthSample, JointSample, LawCommandSample,
-        LinkCommandSample, LinkStatusSample, OperatingState, OperatingStateSample, PoseSample,
-        RecorderAction, RecorderCommandSample, RecorderStatusSample, StateCommand,
-        StateCommandSample, TemperatureSample, WrenchSample,
+        AuthoritySample, ContactStateSample, Frame, HealthSample, JointNames, JointSample,
+        LawCommandSample, LinkCommandSample, LinkStatusSample, OperatingState,
+        OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
+        RecorderStatusSample, StateCommand, StateCommandSample, TemperatureSample, WrenchSample,
     },
     topics,
 };
@@ -68,7 +68,7 @@ pub struct SessionPorts {
     links: [Newest<LinkStatusSample>; 2],
     states: [(&'static str, Newest<OperatingStateSample>); 2],
     authority: Newest<AuthoritySample>,
-    temperatures: [Newest<TemperatureSample>; 2],
+    temperatures: Vec<Newest<TemperatureSample>>,
     recorder: Newest<RecorderStatusSample>,
     diagnostics: Subscriber<HealthSample>,
     nodes: Vec<HealthSample>,
@@ -85,13 +85,14 @@ pub struct SessionPorts {
 }
 
 impl SessionPorts {
-    /// Opens the topics on `bus`.
+    /// Opens the topics on `bus`, of an arm of those joints.
     ///
     /// # Errors
     ///
     /// A topic that cannot be opened.
     pub fn connect(
         bus: &Bus,
+        joints: &JointNames,
         shared: Arc<SharedSession>,
         hand: PageHand,
     ) -> Result<Self, CreateError> {
@@ -117,10 +118,11 @@ impl SessionPorts {
                 ("leader", Newest::open(bus, topics::LEADER_OPERATING_STATE)?),
             ],
             authority: Newest::open(bus, topics::LEADER_AUTHORITY)?,
-            temperatures: [
-                Newest::open(bus, topics::FOLLOWER_JOINT_1_TEMPERATURE)?,
-                Newest::open(bus, topics::FOLLOWER_JOINT_2_TEMPERATURE)?,
-            ],
+            temperatures: topics::FOLLOWER_JOINT_TEMPERATURE
+                .of_joints(joints)?
+                .into_iter()
+                .map(|topic| Newest::open(bus, topic))
+                .collect::<Result<_, _>>()?,
             recorder: Newest::open(bus, topics::RECORDER_STATUS)?,
             diagnostics: bus.subscriber(topics::DIAGNOSTICS, Depth::Queue(topics::EVENT_QUEUE))?,
             nodes: Vec::new(),
@@ -157,8 +159,8 @@ impl SessionPorts {
     }
 
     /// Tells `each` the topic of every queue and what became of its messages.
-    pub fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts)) {
-        each(topics::DIAGNOSTICS.name, self.diagnostics.counts());
+    pub fn inputs(&self, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+        each(&topics::DIAGNOSTICS.name, self.diagnostics.counts());
     }
 
     fn carry_out(&mut self, now: Time, wish: Request) {
@@ -298,8 +300,9 @@ impl SessionPorts {
             },
             temperatures: self
                 .temperatures
-                .each_mut()
-                .map(|each| each.take(now).map(|sample| sample.temperature as f32)),
+                .iter_mut()
+                .map(|each| each.take(now).map(|sample| sample.temperature as f32))
+                .collect(),
             recorder: self.recorder.take(now).map(recorder).unwrap_or_default(),
             nodes,
         };

@@ -13,7 +13,7 @@ use ferntast_msgs::{
 use ferntast_nodes::{
     config::joint_names,
     graph::{Build, NodeRow},
-    node::{Node, Ticking, ports},
+    node::{Node, PerJoint, Ticking, ports},
     process::NodeError,
 };
 use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
@@ -35,8 +35,7 @@ ports! {
     output ArmOutput {
         measured_js: JointSample = FOLLOWER_MEASURED_JS,
         motor_js: JointSample = FOLLOWER_MOTOR_JS,
-        temperature_1: TemperatureSample = FOLLOWER_JOINT_1_TEMPERATURE,
-        temperature_2: TemperatureSample = FOLLOWER_JOINT_2_TEMPERATURE,
+        temperature: PerJoint<TemperatureSample> = FOLLOWER_JOINT_TEMPERATURE,
         description: RobotDescriptionSample = ROBOT_DESCRIPTION,
     }
 }
@@ -53,7 +52,7 @@ pub const fn row() -> NodeRow {
 fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let node = ArmNode::new(&loaded.arm.whole()?, loaded.scenario.seed).map_err(NodeError::own)?;
-    let ports = ArmPorts::connect(build.bus)?;
+    let ports = ArmPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
 
@@ -148,9 +147,9 @@ impl ArmNode {
         });
         if now >= self.temperature_due {
             self.temperature_due = now.plus_nanos(TEMPERATURE_PERIOD_NANOS);
-            let [first, second] = measured.temperature;
-            output.temperature_1 = Some(TemperatureSample::new(now, first));
-            output.temperature_2 = Some(TemperatureSample::new(now, second));
+            for (place, temperature) in output.temperature.iter_mut().zip(measured.temperature) {
+                *place = Some(TemperatureSample::new(now, temperature));
+            }
         }
     }
 }

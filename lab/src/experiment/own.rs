@@ -5,10 +5,13 @@ use std::path::Path;
 use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{Inertia, JointType, ModelSpec, Term};
 use ferntast_model::{friction, joint::JointParameters};
-use ferntast_msgs::topics;
+use ferntast_msgs::{
+    sample::{JointNames, MAX_JOINTS},
+    topics,
+};
 
 use super::{Experiment, ExperimentError, Signals};
-use crate::numbers::numbers_of;
+use crate::{joints::recorded_joints, numbers::numbers_of};
 
 /// Name of the metadata record that a recording of ours carries: what it was
 /// made of.
@@ -42,19 +45,24 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
     if joints.is_empty() {
         return Err(refuse("its arm has no joints".to_owned()));
     }
-    let temperatures = [
-        topics::FOLLOWER_JOINT_1_TEMPERATURE.name,
-        topics::FOLLOWER_JOINT_2_TEMPERATURE.name,
-    ];
-    let experiments = joints.iter().enumerate().map(|(index, joint)| {
+    if joints.len() > MAX_JOINTS {
+        let found = joints.len();
+        return Err(refuse(format!(
+            "its arm has {found} joints, not 1 to {MAX_JOINTS}"
+        )));
+    }
+    let names = recorded_joints(&bag).filter(|names| names.len() == joints.len());
+    let names = names.unwrap_or_else(|| JointNames::numbered(joints.len()));
+    let experiments = joints.iter().zip(names.iter()).enumerate();
+    let experiments = experiments.map(|(index, (joint, name))| {
         let measured = topics::FOLLOWER_MEASURED_JS.name;
         let motor = topics::FOLLOWER_MOTOR_JS.name;
-        let temperature = temperatures
-            .get(index)
-            .filter(|name| bag.topics().any(|topic| topic.name == **name));
+        let temperature = bag
+            .topics()
+            .find(|topic| topics::FOLLOWER_JOINT_TEMPERATURE.joint_of(&topic.name) == Some(name));
         Experiment {
             path: None,
-            title: format!("joint_{}", index + 1),
+            title: name.to_owned(),
             recordings: vec![path.to_owned()],
             held_out: Vec::new(),
             unloaded: Vec::new(),
@@ -65,7 +73,7 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
                 position: format!("{measured}.position[{index}]"),
                 motor_torque: format!("{motor}.effort[{index}]"),
                 joint_torque: Some(format!("{measured}.effort[{index}]")),
-                temperature: temperature.map(|topic| format!("{topic}.temperature")),
+                temperature: temperature.map(|topic| format!("{}.temperature", topic.name)),
                 ..Signals::default()
             },
             model: ModelSpec {

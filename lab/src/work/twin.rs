@@ -49,11 +49,11 @@ fn last_word(path: &Path) -> Result<(TwinParametersSample, usize, f64), WorkErro
     let none = || WorkError::NoTwin {
         path: path.to_owned(),
     };
-    if !has(topics::TWIN_PARAMETERS.name) || !has(topics::TWIN_RESIDUAL_JS.name) {
+    if !has(&topics::TWIN_PARAMETERS.name) || !has(&topics::TWIN_RESIDUAL_JS.name) {
         return Err(none());
     }
     let words = bag
-        .messages::<TwinParametersSample>(topics::TWIN_PARAMETERS.name)
+        .messages::<TwinParametersSample>(&topics::TWIN_PARAMETERS.name)
         .map_err(|error| twin(error.to_string()))?;
     let mut last = None;
     for word in words {
@@ -61,7 +61,7 @@ fn last_word(path: &Path) -> Result<(TwinParametersSample, usize, f64), WorkErro
     }
     let last: TwinParametersSample = last.ok_or_else(none)?;
     let residuals = bag
-        .messages::<JointSample>(topics::TWIN_RESIDUAL_JS.name)
+        .messages::<JointSample>(&topics::TWIN_RESIDUAL_JS.name)
         .map_err(|error| twin(error.to_string()))?;
     let mut joint = None;
     let (mut squares, mut count) = (0.0, 0_u64);

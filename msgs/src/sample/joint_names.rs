@@ -2,14 +2,18 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::Plain;
 use crate::{InvalidMessage, Text};
 
 /// The most joints that a message has room for.
 pub const MAX_JOINTS: usize = 8;
 
-/// Up to [`MAX_JOINTS`] joints by name, each once, in an order.
-#[derive(Clone, Copy, PartialEq, Eq)]
+/// Up to [`MAX_JOINTS`] joints by name, each once, in an order. In a file a
+/// list of names.
+#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<String>", into = "Vec<String>")]
 #[repr(C)]
 pub struct JointNames {
     names: [Text<16>; MAX_JOINTS],
@@ -100,6 +104,20 @@ impl JointNames {
             !name.is_empty() && self.iter().take(place).all(|other| other != name)
         };
         (1..=MAX_JOINTS as u64).contains(&self.count) && self.iter().enumerate().all(different)
+    }
+}
+
+impl TryFrom<Vec<String>> for JointNames {
+    type Error = InvalidMessage;
+
+    fn try_from(names: Vec<String>) -> Result<JointNames, InvalidMessage> {
+        JointNames::new(names.iter().map(String::as_str))
+    }
+}
+
+impl From<JointNames> for Vec<String> {
+    fn from(joints: JointNames) -> Vec<String> {
+        joints.iter().map(str::to_owned).collect()
     }
 }
 

@@ -11,6 +11,7 @@ use ferntast_msgs::{
         builtin_interfaces, crtk_msgs, diagnostic_msgs, geometry_msgs, sensor_msgs, std_msgs,
         tf2_msgs,
     },
+    sample::JointNames,
     topics::{self, Topic, Visitor},
 };
 
@@ -91,7 +92,7 @@ fn every_struct_has_the_fields_of_its_definition() {
         crtk_msgs::StringStamped,
     );
     let mut own = Own(&library, Vec::new());
-    topics::visit(&mut own);
+    topics::visit(&JointNames::numbered(1), &mut own).unwrap();
     seen.append(&mut own.1);
     seen.sort_unstable();
     seen.dedup();

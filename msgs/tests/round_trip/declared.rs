@@ -4,7 +4,7 @@
 
 use ferntast_msgs::{
     InvalidMessage, Message, Sample,
-    sample::{Field, Rule},
+    sample::{Field, JointNames, Rule},
     topics::{self, Topic, Visitor},
 };
 use proptest::{prelude::*, test_runner::TestRunner};
@@ -26,7 +26,7 @@ macro_rules! for_each_message {
                 }
             }
             let mut each = Each(0);
-            topics::visit(&mut each);
+            topics::visit(&JointNames::numbered(2), &mut each).unwrap();
             assert!(each.0 > 13);
         })*
     };

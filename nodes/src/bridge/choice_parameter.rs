@@ -1,7 +1,7 @@
 //! What a session does by choice, as parameters on ROS 2:
 //! `ros2 param set /link law wave`, `ros2 param set /servo friction twin`.
 
-use ferntast_bus::{Bus, Choice, Depth, ParameterNode};
+use ferntast_bus::{Bus, Choice, CreateError, Depth, ParameterNode};
 use ferntast_control::delay::Law;
 use ferntast_msgs::{
     Text, Time,
@@ -72,11 +72,11 @@ impl ChoiceParameter {
         };
         let bus = &process.bus;
         let mut command = bus.publisher(topics::FOLLOWER_FRICTION_COMMAND)?;
-        let mut joints = [
-            bus.subscriber(topics::FOLLOWER_JOINT_1_FRICTION, Depth::Newest)?,
-            bus.subscriber(topics::FOLLOWER_JOINT_2_FRICTION, Depth::Newest)?,
-        ];
-        let mut sources = [None; 2];
+        let friction = topics::FOLLOWER_JOINT_FRICTION.of_joints(&process.session.joints());
+        let mut joints = Vec::new();
+        for topic in friction.map_err(CreateError::from)? {
+            joints.push((bus.subscriber(topic, Depth::Newest)?, None));
+        }
         let pass_on = move |now, source: Value| {
             let wish = match FrictionSource::from_name(source.as_str()) {
                 Some(FrictionSource::TWIN) => FrictionCommand::TAKE_OVER,
@@ -85,13 +85,14 @@ impl ChoiceParameter {
             let _ = command.publish(now, &FrictionCommandSample::new(now, wish));
         };
         let heard = move |now| {
-            for (source, joint) in sources.iter_mut().zip(&mut joints) {
+            for (joint, source) in &mut joints {
                 if let Some(received) = joint.newest(now) {
                     *source = Some(received.message.source);
                 }
             }
             // One joint that goes by the twin is enough.
-            let source = sources.iter().flatten().max_by_key(|source| source.0)?;
+            let sources = joints.iter().filter_map(|(_, source)| *source);
+            let source = sources.max_by_key(|source| source.0)?;
             source.name().map(Text::new)
         };
         Self::open(ros, choice, Box::new(pass_on), Box::new(heard))

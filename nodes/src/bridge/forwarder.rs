@@ -4,7 +4,8 @@
 use ferntast_bus::{Bus, CreateError, Depth, Publisher, Subscriber, SubscriberCounts};
 use ferntast_msgs::{
     Message, Time,
-    topics::{self, Row, Topic, Visitor},
+    sample::JointNames,
+    topics::{self, Row, Topic, TopicName, Visitor},
 };
 
 /// How a topic is forwarded.
@@ -27,7 +28,7 @@ pub enum Forwarding {
 /// One topic on its way from a bus to another.
 trait Route {
     fn forward(&mut self, now: Time) -> Forwarded;
-    fn topic(&self) -> &'static str;
+    fn topic(&self) -> &str;
     fn counts(&self) -> SubscriberCounts;
 }
 
@@ -41,7 +42,7 @@ pub struct Forwarded {
 }
 
 struct TypedRoute<M: Message> {
-    topic: &'static str,
+    topic: TopicName,
     from: Subscriber<M>,
     to: Publisher<M>,
     forwarding: Forwarding,
@@ -104,8 +105,8 @@ impl<M: Message> Route for TypedRoute<M> {
         forwarded
     }
 
-    fn topic(&self) -> &'static str {
-        self.topic
+    fn topic(&self) -> &str {
+        &self.topic
     }
 
     fn counts(&self) -> SubscriberCounts {
@@ -120,7 +121,8 @@ pub struct Forwarder {
 }
 
 impl Forwarder {
-    /// Adds every topic of the table for which `how` says so.
+    /// Adds every topic of the table for which `how` says so, for an arm of
+    /// those joints.
     ///
     /// # Errors
     ///
@@ -130,6 +132,7 @@ impl Forwarder {
         from: &Bus,
         to: &Bus,
         stamp: Stamp,
+        joints: &JointNames,
         how: impl Fn(Row) -> Forwarding,
     ) -> Result<(), CreateError> {
         struct Add<'a, F> {
@@ -158,7 +161,7 @@ impl Forwarder {
             how,
             result: Ok(()),
         };
-        topics::visit(&mut add);
+        topics::visit(joints, &mut add)?;
         add.result
     }
 
@@ -202,7 +205,7 @@ impl Forwarder {
     }
 
     /// Tells `each` the topic of every route and what became of its messages.
-    pub fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts)) {
+    pub fn inputs(&self, each: &mut dyn FnMut(&str, SubscriberCounts)) {
         for route in &self.routes {
             each(route.topic(), route.counts());
         }

@@ -30,7 +30,8 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let mut forwarding = ForwardingLoop::new(process)?;
     let mut forwarder = Forwarder::default();
     let to = Bus::Foxglove(foxglove);
-    forwarder.add_topics(&process.bus, &to, Stamp::Received, |topic| {
+    let joints = process.session.joints();
+    forwarder.add_topics(&process.bus, &to, Stamp::Received, &joints, |topic| {
         goes_out(topic, section)
     })?;
     forwarding.begin(forwarder);

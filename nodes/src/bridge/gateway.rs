@@ -77,18 +77,27 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let section = &scenario.gateway;
     let ros = open_ros(section)?;
     let mut forwarder = Forwarder::default();
-    forwarder.add_topics(&process.bus, &ros, Stamp::Round, |topic| {
-        match comes_in(topic.authority, scenario) {
+    let joints = process.session.joints();
+    forwarder.add_topics(
+        &process.bus,
+        &ros,
+        Stamp::Round,
+        &joints,
+        |topic| match comes_in(topic.authority, scenario) {
             true => Forwarding::Not,
             false => goes_out(topic, section),
-        }
-    })?;
-    forwarder.add_topics(&ros, &process.bus, Stamp::Round, |topic| {
-        match comes_in(topic.authority, scenario) {
+        },
+    )?;
+    forwarder.add_topics(
+        &ros,
+        &process.bus,
+        Stamp::Round,
+        &joints,
+        |topic| match comes_in(topic.authority, scenario) {
             true => Forwarding::Every { queue: EVENT_QUEUE },
             false => Forwarding::Not,
-        }
-    })?;
+        },
+    )?;
 
     let mut parameters = [
         ChoiceParameter::law(process, &ros)?,
@@ -109,12 +118,13 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
 mod tests {
     use ferntast_msgs::{
         Message,
-        topics::{self, Topic, Visitor},
+        sample::JointNames,
+        topics::{self, Topic, TopicName, Visitor},
     };
 
     use super::*;
 
-    struct ComesIn<'a>(&'a Scenario, Vec<&'static str>);
+    struct ComesIn<'a>(&'a Scenario, Vec<TopicName>);
 
     impl Visitor for ComesIn<'_> {
         fn topic<M: Message>(&mut self, topic: Topic<M>) {
@@ -124,9 +134,9 @@ mod tests {
         }
     }
 
-    fn incoming(scenario: &Scenario) -> Vec<&'static str> {
+    fn incoming(scenario: &Scenario) -> Vec<TopicName> {
         let mut visitor = ComesIn(scenario, Vec::new());
-        topics::visit(&mut visitor);
+        topics::visit(&JointNames::numbered(2), &mut visitor).unwrap();
         visitor.1
     }
 

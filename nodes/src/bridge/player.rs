@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ferntast_bus::{Bus, McapBus, mcap};
+use ferntast_lab::joints::recorded_joints;
 use ferntast_msgs::Time;
 
 use super::{
@@ -29,10 +30,13 @@ fn open(
     };
     let recording = McapBus::open(path).map_err(|error| bad(error.to_string()))?;
     let except = &process.session.play.except;
+    let joints = recording.reader().and_then(recorded_joints);
+    let joints = joints.unwrap_or_else(|| process.session.joints());
+    let recording = Bus::Mcap(recording);
     let mut forwarder = Forwarder::default();
-    forwarder.add_topics(&Bus::Mcap(recording), &process.bus, Stamp::Round, |topic| {
-        let recorded = info.topics.iter().any(|own| own.name == topic.name);
-        if recorded && !except.iter().any(|name| name == topic.name) {
+    forwarder.add_topics(&recording, &process.bus, Stamp::Round, &joints, |topic| {
+        let recorded = info.topics.iter().any(|own| topic.name == *own.name);
+        if recorded && !except.iter().any(|name| topic.name == **name) {
             Forwarding::Every { queue: 512 }
         } else {
             Forwarding::Not

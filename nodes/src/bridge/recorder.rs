@@ -103,7 +103,8 @@ fn begin(
     let bag = create(&folder, options)?;
     let to = Bus::Mcap(bag.clone());
     let mut forwarder = Forwarder::default();
-    forwarder.add_topics(&process.bus, &to, Stamp::Received, |topic| {
+    let joints = process.session.joints();
+    forwarder.add_topics(&process.bus, &to, Stamp::Received, &joints, |topic| {
         Forwarding::Every {
             queue: SharedMemoryBus::max_queue(topic.delivery),
         }

@@ -65,7 +65,12 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let shared = Arc::new(SharedSession::new(about, Box::new(move || clock.now())));
     let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 2]));
     let hand = PageHand::new(Box::new(grip), REACH, LEASH);
-    let mut ports = SessionPorts::connect(&process.bus, shared.clone(), hand)?;
+    let mut ports = SessionPorts::connect(
+        &process.bus,
+        &process.session.joints(),
+        shared.clone(),
+        hand,
+    )?;
     let mut diagnostics = process.bus.publisher(topics::DIAGNOSTICS)?;
     let listen = Listen {
         address: options.listen,

@@ -47,7 +47,7 @@ ports! {
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let arm = &build.session.loaded.arm;
     let node = EstimatorNode::new(&arm.model, &arm.estimator)?;
-    let ports = EstimatorPorts::connect(build.bus)?;
+    let ports = EstimatorPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
 

@@ -6,7 +6,7 @@ pub mod process;
 mod row;
 
 pub use build::{Build, OpenLink};
-pub use row::{Make, NodeRow, STEP_NANOS, When, always, never};
+pub use row::{Make, NodeRow, STEP_NANOS, TopicNames, When, always, never};
 
 /// The nodes that there are, in the order in which a session stops them.
 #[derive(Clone, Debug)]

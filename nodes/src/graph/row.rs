@@ -1,5 +1,10 @@
 //! A row of the graph: all that the program has to know of a node.
 
+use ferntast_msgs::{
+    sample::JointNames,
+    topics::{JointNameError, TopicName},
+};
+
 use super::Build;
 use crate::{
     node::{Ports, Ticking},
@@ -43,15 +48,18 @@ pub struct NodeRow {
     pub make: Make,
 }
 
+/// Names of topics, for an arm of those joints.
+pub type TopicNames = fn(&JointNames) -> Result<Vec<TopicName>, JointNameError>;
+
 /// What makes a node.
 #[derive(Clone, Copy, Debug)]
 pub enum Make {
     /// Something that is stepped: in a process of its own or in virtual time.
     Step {
         /// Topics that it takes.
-        inputs: &'static [&'static str],
+        inputs: TopicNames,
         /// Topics that it publishes, beside `/diagnostics`.
-        outputs: &'static [&'static str],
+        outputs: TopicNames,
         /// Makes it.
         make: fn(Build) -> Result<Box<dyn Ticking>, NodeError>,
     },
@@ -75,8 +83,8 @@ impl NodeRow {
             in_playback: never,
             in_replay: never,
             make: Make::Step {
-                inputs: P::INPUTS,
-                outputs: P::OUTPUTS,
+                inputs: P::inputs,
+                outputs: P::outputs,
                 make,
             },
         }
@@ -100,19 +108,28 @@ impl NodeRow {
         }
     }
 
-    /// Topics that it takes; none of a service, which goes by the table of topics.
-    pub fn inputs(&self) -> &'static [&'static str] {
+    /// Topics that it takes of an arm of those joints; none of a service, which
+    /// goes by the table of topics.
+    ///
+    /// # Errors
+    ///
+    /// A joint's name that cannot be part of a topic's.
+    pub fn inputs(&self, joints: &JointNames) -> Result<Vec<TopicName>, JointNameError> {
         match self.make {
-            Make::Step { inputs, .. } => inputs,
-            Make::Service(_) => &[],
+            Make::Step { inputs, .. } => inputs(joints),
+            Make::Service(_) => Ok(Vec::new()),
         }
     }
 
     /// Topics that it publishes beside `/diagnostics`; none of a service.
-    pub fn outputs(&self) -> &'static [&'static str] {
+    ///
+    /// # Errors
+    ///
+    /// As [`NodeRow::inputs`].
+    pub fn outputs(&self, joints: &JointNames) -> Result<Vec<TopicName>, JointNameError> {
         match self.make {
-            Make::Step { outputs, .. } => outputs,
-            Make::Service(_) => &[],
+            Make::Step { outputs, .. } => outputs(joints),
+            Make::Service(_) => Ok(Vec::new()),
         }
     }
 }

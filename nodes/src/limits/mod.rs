@@ -17,7 +17,7 @@ use ferntast_msgs::{
 use crate::{
     config::{LimitsSection, joint_names},
     graph::Build,
-    node::{Node, Ticking, ports},
+    node::{Newest, Node, Ticking, ports},
     process::NodeError,
 };
 
@@ -30,8 +30,7 @@ ports! {
     /// What it takes.
     input LimitsInput {
         measured_js: Newest<JointSample> = FOLLOWER_MEASURED_JS,
-        temperature_1: Newest<TemperatureSample> = FOLLOWER_JOINT_1_TEMPERATURE,
-        temperature_2: Newest<TemperatureSample> = FOLLOWER_JOINT_2_TEMPERATURE,
+        temperature: PerJoint<Newest<TemperatureSample>> = FOLLOWER_JOINT_TEMPERATURE,
     }
     /// What it publishes: its health alone.
     output LimitsOutput {}
@@ -47,7 +46,7 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     // Run by hand it may have no section of the scenario.
     let section = loaded.scenario.limits.unwrap_or_default();
     let node = LimitsNode::new(&loaded.arm.model, section);
-    let ports = LimitsPorts::connect(build.bus)?;
+    let ports = LimitsPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
 
@@ -122,9 +121,8 @@ impl Node for LimitsNode {
             .as_ref()
             .filter(|_| silence <= MEASUREMENT_LIFE)
             .and_then(|own| own.in_order_of(&self.names));
-        let temperatures = [&input.temperature_1, &input.temperature_2];
         for (index, name) in self.names.iter().enumerate() {
-            let temperature = temperatures.get(index).and_then(|own| own.message);
+            let temperature = input.temperature.get(index).and_then(|own| own.message);
             let temperature = temperature.map(|own| own.temperature);
             for words in self
                 .near(index, name, sample.as_ref(), temperature)

@@ -10,7 +10,7 @@ use crate::{
     config::{Loaded, joint_names, load_model_only},
     graph::NodeRow,
     lockstep::VirtualTime,
-    node::{Newest, Output},
+    node::{Newest, Output, PerJoint},
     process::SessionContext,
 };
 
@@ -37,6 +37,13 @@ fn newest<M>(message: M) -> Newest<M> {
     }
 }
 
+/// The joint at that place has that temperature \[degC\].
+fn warm(joint: usize, temperature: f64) -> PerJoint<Newest<TemperatureSample>> {
+    let mut all = PerJoint::default();
+    all[joint] = newest(TemperatureSample::new(START, temperature));
+    all
+}
+
 /// Severity and message of a step on that input.
 fn told(input: &LimitsInput) -> (Level, String) {
     let mut node = LimitsNode::new(&model(), LimitsSection::default());
@@ -50,8 +57,7 @@ fn told(input: &LimitsInput) -> (Level, String) {
 fn an_arm_in_the_middle_is_well() {
     let input = LimitsInput {
         measured_js: newest(middle(START)),
-        temperature_1: newest(TemperatureSample::new(START, 20.0)),
-        ..LimitsInput::default()
+        temperature: warm(0, 20.0),
     };
     assert_eq!(told(&input), (Level::OK, String::new()));
     assert_eq!(told(&LimitsInput::default()), (Level::OK, String::new()));
@@ -82,7 +88,7 @@ fn what_is_near_is_told_with_its_margin() {
     assert!(words.starts_with("joint_1 bears"), "{words}");
 
     let input = LimitsInput {
-        temperature_2: newest(TemperatureSample::new(START, 75.0)),
+        temperature: warm(1, 75.0),
         ..LimitsInput::default()
     };
     assert_eq!(

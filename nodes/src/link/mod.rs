@@ -34,7 +34,10 @@ pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let (sender, receiver) = (build.open_link)(LinkDirection::Forward)?;
     let seed = loaded.scenario.seed.wrapping_add(2);
     let transport = LinkTransport::new(sender, receiver, loaded.link.down.clone(), seed)?;
-    let ports = LinkPorts::new(LeaderLinkPorts::connect(build.bus)?, transport);
+    let ports = LinkPorts::new(
+        LeaderLinkPorts::connect(build.bus, &build.session.joints())?,
+        transport,
+    );
     build.join(node, ports)
 }
 
@@ -50,7 +53,10 @@ pub fn make_follower(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let (sender, receiver) = (build.open_link)(LinkDirection::Back)?;
     let seed = loaded.scenario.seed.wrapping_add(1);
     let transport = LinkTransport::new(sender, receiver, loaded.link.up.clone(), seed)?;
-    let ports = LinkPorts::new(FollowerLinkPorts::connect(build.bus)?, transport);
+    let ports = LinkPorts::new(
+        FollowerLinkPorts::connect(build.bus, &build.session.joints())?,
+        transport,
+    );
     build.join(node, ports)
 }
 

@@ -7,7 +7,11 @@ use ferntast_bus::{
 use ferntast_control::frame::FRAME_LENGTH;
 use ferntast_emulation::channel::{Channel, ChannelConfig};
 use ferntast_model::ParameterError;
-use ferntast_msgs::{Time, sample::LinkCommandSample};
+use ferntast_msgs::{
+    Time,
+    sample::{JointNames, LinkCommandSample},
+    topics::{JointNameError, TopicName},
+};
 
 use crate::node::{Node, Output, Ports};
 
@@ -146,8 +150,13 @@ where
 {
     type Node = P::Node;
 
-    const INPUTS: &'static [&'static str] = P::INPUTS;
-    const OUTPUTS: &'static [&'static str] = P::OUTPUTS;
+    fn inputs(joints: &JointNames) -> Result<Vec<TopicName>, JointNameError> {
+        P::inputs(joints)
+    }
+
+    fn outputs(joints: &JointNames) -> Result<Vec<TopicName>, JointNameError> {
+        P::outputs(joints)
+    }
 
     fn read(&mut self, now: Time, input: &mut <P::Node as Node>::Input) {
         self.topics.read(now, input);
@@ -161,7 +170,7 @@ where
         self.topics.write(now, output) + self.transport.write(now, P::Node::frame(output))
     }
 
-    fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts)) {
-        self.topics.inputs(each);
+    fn counts(&self, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+        self.topics.counts(each);
     }
 }

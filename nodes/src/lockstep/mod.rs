@@ -59,6 +59,7 @@ impl LockstepSession {
     /// Configuration that cannot be used, a recording that cannot be made.
     pub fn new(graph: &Graph, session: &SessionContext) -> Result<Self, RunError> {
         let loaded = &session.loaded;
+        let joints = session.joints();
         let start = Time::from_nanos(loaded.scenario.start.saturating_mul(1_000_000_000));
         let mut time = VirtualTime::new(start)?;
         let rows = graph.rows().filter(|row| (row.in_session)(session));
@@ -83,8 +84,8 @@ impl LockstepSession {
                     .map_err(|error| RunError::Recording(error.to_string()))?;
                 let mut forwarder = Forwarder::default();
                 let to = Bus::Mcap(recording.clone());
-                forwarder.add_topics(time.bus(), &to, Stamp::Received, |_| Forwarding::Every {
-                    queue: 64,
+                forwarder.add_topics(time.bus(), &to, Stamp::Received, &joints, |_| {
+                    Forwarding::Every { queue: 64 }
                 })?;
                 time.add(move |now| {
                     forwarder.forward(now);
@@ -92,7 +93,7 @@ impl LockstepSession {
                 Some(recording)
             }
         };
-        let monitor = Monitor::new(time.bus())?;
+        let monitor = Monitor::new(time.bus(), &joints)?;
         Ok(LockstepSession {
             time,
             recording,

@@ -55,7 +55,7 @@ ports! {
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let node = MasterNode::new(&loaded.scenario.master, loaded.hand()?)?;
-    let ports = MasterPorts::connect(build.bus)?;
+    let ports = MasterPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
 

@@ -34,7 +34,7 @@ impl InputWatch {
     /// last call. What the node itself has to say goes before.
     pub fn note(
         &mut self,
-        inputs: impl FnOnce(&mut dyn FnMut(&'static str, SubscriberCounts)),
+        inputs: impl FnOnce(&mut dyn FnMut(&str, SubscriberCounts)),
         health: &mut NodeHealth,
     ) {
         let mut index = 0;

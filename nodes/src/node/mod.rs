@@ -1,18 +1,24 @@
 //! What a node is: a pure step, its ports, and the runner that joins them.
 
+mod fields;
 mod health;
 mod input;
 mod input_watch;
 mod operating_state;
+mod per_joint;
 mod ports;
 mod runner;
+#[cfg(test)]
+mod tests;
 
-pub use crate::ports;
+pub use crate::{ports, topic_names};
+pub use fields::{Incoming, InputPort, Outgoing};
 pub use health::{HealthMeter, NodeHealth};
 pub use input::{BATCH, Batch, Newest};
 pub use input_watch::InputWatch;
 pub use operating_state::{StatePublisher, to_law};
-pub use ports::{Ports, Receiver, Sender, receiver};
+pub use per_joint::PerJoint;
+pub use ports::Ports;
 pub use runner::{Runner, Ticking};
 
 use ferntast_msgs::Time;

@@ -1,19 +1,32 @@
 //! How a node's input and output meet the topics of a bus.
 
-use ferntast_bus::{Bus, CreateError, Depth, Publisher, Subscriber, SubscriberCounts};
-use ferntast_msgs::{Message, Time, topics::Topic};
+use ferntast_bus::SubscriberCounts;
+use ferntast_msgs::{
+    Time,
+    sample::JointNames,
+    topics::{JointNameError, TopicName},
+};
 
-use super::{Batch, Newest, Node, input::BATCH};
+use super::Node;
 
 /// The ports of a node: reads its input from a bus, writes its output to it.
 pub trait Ports {
     /// The node that they belong to.
     type Node: Node;
 
-    /// Topics that it takes.
-    const INPUTS: &'static [&'static str];
+    /// Topics that it takes of an arm of those joints.
+    ///
+    /// # Errors
+    ///
+    /// A joint's name that cannot be part of a topic's.
+    fn inputs(joints: &JointNames) -> Result<Vec<TopicName>, JointNameError>;
+
     /// Topics that it publishes, beside `/diagnostics`.
-    const OUTPUTS: &'static [&'static str];
+    ///
+    /// # Errors
+    ///
+    /// As [`Ports::inputs`].
+    fn outputs(joints: &JointNames) -> Result<Vec<TopicName>, JointNameError>;
 
     /// Fills `input` with what is visible at `now`.
     fn read(&mut self, now: Time, input: &mut <Self::Node as Node>::Input);
@@ -22,87 +35,16 @@ pub trait Ports {
     fn write(&mut self, now: Time, output: &<Self::Node as Node>::Output) -> u64;
 
     /// Tells `each` the topic of every input and what became of its messages.
-    fn inputs(&self, each: &mut dyn FnMut(&'static str, SubscriberCounts));
-}
-
-/// Something that fills a field of an input.
-pub trait Receiver<Field> {
-    /// Fills `field` with what is visible at `now`.
-    fn fill(&mut self, now: Time, field: &mut Field);
-}
-
-impl<M: Message> Receiver<Newest<M>> for Subscriber<M> {
-    fn fill(&mut self, now: Time, field: &mut Newest<M>) {
-        field.fresh = false;
-        if let Some(received) = self.newest(now) {
-            *field = Newest {
-                message: Some(received.message),
-                received: received.received,
-                fresh: true,
-            };
-        }
-    }
-}
-
-impl<M: Message> Receiver<Batch<M>> for Subscriber<M> {
-    fn fill(&mut self, now: Time, field: &mut Batch<M>) {
-        field.clear();
-        while !field.is_full() {
-            match self.next(now) {
-                Some(received) => field.push(received.message),
-                None => break,
-            }
-        }
-    }
-}
-
-/// A field of an input that knows how many messages it wants kept for it.
-pub trait Field<M: Message> {
-    /// How many.
-    const DEPTH: Depth;
-}
-
-impl<M: Message> Field<M> for Newest<M> {
-    const DEPTH: Depth = Depth::Newest;
-}
-
-impl<M: Message> Field<M> for Batch<M> {
-    const DEPTH: Depth = Depth::Queue(BATCH * 4);
-}
-
-/// Opens the subscriber that fills a field of type `F`.
-///
-/// # Errors
-///
-/// As [`Bus::subscriber`].
-pub fn receiver<M: Message, F: Field<M>>(
-    bus: &Bus,
-    topic: Topic<M>,
-) -> Result<Subscriber<M>, CreateError> {
-    bus.subscriber(topic, F::DEPTH)
-}
-
-/// Something that sends a field of an output.
-pub trait Sender<M: Message> {
-    /// Sends `field` if there is one; gives the number of failures (0 or 1).
-    fn send(&mut self, now: Time, field: &Option<M>) -> u64;
-}
-
-impl<M: Message> Sender<M> for Publisher<M> {
-    fn send(&mut self, now: Time, field: &Option<M>) -> u64 {
-        match field {
-            Some(message) => u64::from(self.publish(now, message).is_err()),
-            None => 0,
-        }
-    }
+    fn counts(&self, each: &mut dyn FnMut(&str, SubscriberCounts));
 }
 
 /// Declares a node's port table: the structs of its input and output, and
 /// [`Ports`] that connect them to the topics of a bus.
 ///
 /// An input is `Newest<Sample>` (the newest message, kept) or `Batch<Sample>`
-/// (every message since the last step). `extra` fields are no topics; ports of
-/// the node's own fill them.
+/// (every message since the last step), an output a sample. Where there is a
+/// topic of each joint it is `PerJoint<Newest<Sample>>` and `PerJoint<Sample>`.
+/// `extra` fields are no topics; ports of the node's own fill them.
 #[macro_export]
 macro_rules! ports {
     (
@@ -130,7 +72,7 @@ macro_rules! ports {
         #[derive(Debug, Default)]
         pub struct $output {
             $(#[doc = concat!("Output, topic `", stringify!($out_topic), "`.")]
-            pub $out_field: Option<$out_sample>,)*
+            pub $out_field: <$out_sample as $crate::node::Outgoing>::Field,)*
             $($(
                 #[doc = "Output that is no topic."]
                 pub $out_extra: $out_extra_type,
@@ -145,7 +87,7 @@ macro_rules! ports {
             }
 
             fn clear(&mut self) {
-                $(self.$out_field = None;)*
+                $(<$out_sample as $crate::node::Outgoing>::clear(&mut self.$out_field);)*
                 $($(self.$out_extra = Default::default();)*)?
                 self.health = $crate::node::NodeHealth::default();
             }
@@ -153,21 +95,25 @@ macro_rules! ports {
 
         $(#[$doc])*
         pub struct $ports {
-            $($in_field: ferntast_bus::Subscriber<$in_sample>,)*
-            $($out_field: ferntast_bus::Publisher<$out_sample>,)*
+            $($in_field: <$crate::node::$kind<$in_sample> as $crate::node::Incoming>::Port,)*
+            $($out_field: <$out_sample as $crate::node::Outgoing>::Port,)*
         }
 
         impl $ports {
-            /// Connects the ports to the topics of `bus`.
+            /// Connects the ports to the topics of `bus`, for an arm of those joints.
             ///
             /// # Errors
             ///
             /// A topic that cannot be opened.
-            pub fn connect(bus: &ferntast_bus::Bus) -> Result<Self, ferntast_bus::CreateError> {
+            pub fn connect(
+                bus: &ferntast_bus::Bus,
+                joints: &ferntast_msgs::sample::JointNames,
+            ) -> Result<Self, ferntast_bus::CreateError> {
                 Ok($ports {
-                    $($in_field: $crate::node::receiver::<$in_sample, $crate::node::$kind<$in_sample>>(
-                        bus, ferntast_msgs::topics::$in_topic)?,)*
-                    $($out_field: bus.publisher(ferntast_msgs::topics::$out_topic)?,)*
+                    $($in_field: <$crate::node::$kind<$in_sample> as $crate::node::Incoming>::open(
+                        bus, joints, ferntast_msgs::topics::$in_topic)?,)*
+                    $($out_field: <$out_sample as $crate::node::Outgoing>::open(
+                        bus, joints, ferntast_msgs::topics::$out_topic)?,)*
                 })
             }
         }
@@ -175,25 +121,51 @@ macro_rules! ports {
         impl $crate::node::Ports for $ports {
             type Node = $node;
 
-            const INPUTS: &'static [&'static str] =
-                &[$(ferntast_msgs::topics::$in_topic.name,)*];
-            const OUTPUTS: &'static [&'static str] =
-                &[$(ferntast_msgs::topics::$out_topic.name,)*];
+            fn inputs(
+                joints: &ferntast_msgs::sample::JointNames,
+            ) -> Result<Vec<ferntast_msgs::topics::TopicName>, ferntast_msgs::topics::JointNameError> {
+                $crate::node::topic_names!(joints; $($in_topic)*)
+            }
+
+            fn outputs(
+                joints: &ferntast_msgs::sample::JointNames,
+            ) -> Result<Vec<ferntast_msgs::topics::TopicName>, ferntast_msgs::topics::JointNameError> {
+                $crate::node::topic_names!(joints; $($out_topic)*)
+            }
 
             fn read(&mut self, now: ferntast_msgs::Time, input: &mut $input) {
-                $($crate::node::Receiver::fill(&mut self.$in_field, now, &mut input.$in_field);)*
+                $($crate::node::Incoming::fill(&mut input.$in_field, now, &mut self.$in_field);)*
                 let _ = (now, input);
             }
 
             fn write(&mut self, now: ferntast_msgs::Time, output: &$output) -> u64 {
                 let _ = (now, output);
-                0 $(+ $crate::node::Sender::send(&mut self.$out_field, now, &output.$out_field))*
+                0 $(+ <$out_sample as $crate::node::Outgoing>::send(
+                    &mut self.$out_field, now, &output.$out_field))*
             }
 
-            fn inputs(&self, each: &mut dyn FnMut(&'static str, ferntast_bus::SubscriberCounts)) {
-                $(each(ferntast_msgs::topics::$in_topic.name, self.$in_field.counts());)*
+            fn counts(&self, each: &mut dyn FnMut(&str, ferntast_bus::SubscriberCounts)) {
+                $(<$crate::node::$kind<$in_sample> as $crate::node::Incoming>::counts(
+                    &self.$in_field, each);)*
                 let _ = each;
             }
         }
     };
+}
+
+/// Names of the topics of these rows of the table, for an arm of those joints.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! topic_names {
+    ($joints:ident; $($topic:ident)*) => {{
+        let _ = $joints;
+        let rows: Vec<Vec<ferntast_msgs::topics::TopicName>> = vec![$(
+            ferntast_msgs::topics::$topic
+                .of_joints($joints)?
+                .iter()
+                .map(|topic| topic.name)
+                .collect(),
+        )*];
+        Ok(rows.concat())
+    }};
 }

@@ -6,10 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ferntast_msgs::sample::JointNames;
 use serde::{Deserialize, Serialize};
 
 use super::Clock;
-use crate::config::Loaded;
+use crate::config::{Loaded, joint_names};
 
 /// What every process of a session needs to know. The supervisor writes it to
 /// a file; each node reads that.
@@ -56,6 +57,8 @@ pub struct PlayOptions {
     pub estimate: bool,
     /// Topics that are not played, because a live node publishes them.
     pub except: Vec<String>,
+    /// The joints of the recording, where it says which.
+    pub joints: Option<JointNames>,
 }
 
 impl Default for PlayOptions {
@@ -65,6 +68,7 @@ impl Default for PlayOptions {
             repeat: false,
             estimate: false,
             except: Vec::new(),
+            joints: None,
         }
     }
 }
@@ -123,6 +127,13 @@ impl SessionContext {
             foxglove: None,
             twin: None,
         }
+    }
+
+    /// The joints that there are topics of: those of the arm, in a playback
+    /// those of the recording.
+    pub fn joints(&self) -> JointNames {
+        let recorded = self.play.joints;
+        recorded.unwrap_or_else(|| joint_names(&self.loaded.arm.model))
     }
 
     /// The session's clock.

@@ -3,7 +3,8 @@
 use ferntast_bus::{Bus, CreateError, Depth, Subscriber};
 use ferntast_msgs::{
     Message, Time,
-    topics::{self, Topic, Visitor},
+    sample::JointNames,
+    topics::{self, Topic, TopicName, Visitor},
 };
 
 use super::Comparison;
@@ -15,7 +16,7 @@ pub trait Check {
 }
 
 struct TypedCheck<M: Message> {
-    topic: &'static str,
+    topic: TopicName,
     recorded: Subscriber<M>,
     replayed: Subscriber<M>,
 }
@@ -66,13 +67,14 @@ fn same_bytes<R: ferntast_msgs::RosMessage>(first: &R, second: &R) -> bool {
         && first_bytes == second_bytes
 }
 
-/// Checks that compare those topics of the two buses.
+/// Checks that compare those topics of the two buses, of an arm of those joints.
 ///
 /// # Errors
 ///
 /// A topic that cannot be opened.
 pub fn checks(
-    topics: Vec<&'static str>,
+    topics: Vec<TopicName>,
+    joints: &JointNames,
     recorded: &Bus,
     replayed: &Bus,
 ) -> Result<Vec<Box<dyn Check>>, CreateError> {
@@ -82,12 +84,12 @@ pub fn checks(
         replayed,
         checks: Ok(Vec::new()),
     };
-    topics::visit(&mut add);
+    topics::visit(joints, &mut add)?;
     add.checks
 }
 
 struct AddChecks<'a> {
-    topics: Vec<&'static str>,
+    topics: Vec<TopicName>,
     recorded: &'a Bus,
     replayed: &'a Bus,
     checks: Result<Vec<Box<dyn Check>>, CreateError>,

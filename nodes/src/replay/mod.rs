@@ -76,12 +76,14 @@ pub fn run(
         .collect();
 
     let mut time = VirtualTime::new(recorded.start).map_err(RunError::from)?;
-    let mut forwarder = recorded.inputs(&rows, time.bus())?;
+    let joints = session.joints();
+    let mut forwarder = recorded.inputs(&rows, &joints, time.bus())?;
     time.add(move |now| {
         forwarder.forward(now);
     });
     time.add_nodes(rows.iter().copied(), &session)?;
-    let mut checks = check::checks(recorded.outputs(&rows), &recorded.bus, time.bus())?;
+    let compared = recorded.outputs(&rows, &joints)?;
+    let mut checks = check::checks(compared, &joints, &recorded.bus, time.bus())?;
     let mut said = time
         .bus()
         .subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?;

@@ -8,7 +8,11 @@ use ferntast_bus::{
 };
 use ferntast_emulation::channel::LinkConfig;
 use ferntast_lab::experiment::RECORD;
-use ferntast_msgs::{Time, topics::EVENT_QUEUE};
+use ferntast_msgs::{
+    Time,
+    sample::JointNames,
+    topics::{EVENT_QUEUE, TopicName},
+};
 
 use super::ReplayError;
 use crate::{
@@ -90,18 +94,27 @@ impl Recorded {
         counted.is_some_and(|own| own.messages > 0)
     }
 
-    /// Forwards what the nodes of `rows` take and none of them publishes.
+    /// Forwards what the nodes of `rows` take of an arm of those joints and none
+    /// of them publishes.
     ///
     /// # Errors
     ///
     /// A topic that cannot be opened.
-    pub fn inputs(&self, rows: &[&NodeRow], to: &Bus) -> Result<Forwarder, CreateError> {
+    pub fn inputs(
+        &self,
+        rows: &[&NodeRow],
+        joints: &JointNames,
+        to: &Bus,
+    ) -> Result<Forwarder, CreateError> {
+        let (mut taken, mut published) = (Vec::new(), Vec::new());
+        for row in rows {
+            taken.extend(row.inputs(joints)?);
+            published.extend(row.outputs(joints)?);
+        }
         let mut forwarder = Forwarder::default();
-        forwarder.add_topics(&self.bus, to, Stamp::Received, |topic| {
+        forwarder.add_topics(&self.bus, to, Stamp::Received, joints, |topic| {
             let name = topic.name;
-            let taken = rows.iter().any(|row| row.inputs().contains(&name));
-            let published = rows.iter().any(|row| row.outputs().contains(&name));
-            match taken && !published && self.has(name) {
+            match taken.contains(&name) && !published.contains(&name) && self.has(&name) {
                 true => Forwarding::Every { queue: EVENT_QUEUE },
                 false => Forwarding::Not,
             }
@@ -112,12 +125,22 @@ impl Recorded {
     /// Topics of which what the nodes of `rows` publish is compared. Recordings
     /// of earlier versions lack some; one without a twin has the twin's without
     /// messages.
-    pub fn outputs(&self, rows: &[&NodeRow]) -> Vec<&'static str> {
-        rows.iter()
-            .filter(|row| row.outputs().iter().any(|topic| self.has_messages(topic)))
-            .flat_map(|row| row.outputs())
-            .copied()
-            .filter(|topic| self.has(topic))
-            .collect()
+    ///
+    /// # Errors
+    ///
+    /// A joint's name that cannot be part of a topic's.
+    pub fn outputs(
+        &self,
+        rows: &[&NodeRow],
+        joints: &JointNames,
+    ) -> Result<Vec<TopicName>, CreateError> {
+        let mut compared = Vec::new();
+        for row in rows {
+            let outputs = row.outputs(joints)?;
+            if outputs.iter().any(|topic| self.has_messages(topic)) {
+                compared.extend(outputs.into_iter().filter(|topic| self.has(topic)));
+            }
+        }
+        Ok(compared)
     }
 }

@@ -29,7 +29,7 @@ use friction::FrictionCommands;
 use crate::{
     config::joint_names,
     graph::Build,
-    node::{Newest, Node, StatePublisher, Ticking, ports, to_law},
+    node::{Newest, Node, PerJoint, StatePublisher, Ticking, ports, to_law},
     process::NodeError,
 };
 
@@ -47,8 +47,7 @@ ports! {
         state_command: Batch<StateCommandSample> = FOLLOWER_STATE_COMMAND,
         friction_command: Batch<FrictionCommandSample> = FOLLOWER_FRICTION_COMMAND,
         twin: Newest<TwinParametersSample> = TWIN_PARAMETERS,
-        temperature_1: Newest<TemperatureSample> = FOLLOWER_JOINT_1_TEMPERATURE,
-        temperature_2: Newest<TemperatureSample> = FOLLOWER_JOINT_2_TEMPERATURE,
+        temperature: PerJoint<Newest<TemperatureSample>> = FOLLOWER_JOINT_TEMPERATURE,
     }
     /// What the servo gives.
     output ServoOutput {
@@ -56,8 +55,7 @@ ports! {
         setpoint_js: JointSample = FOLLOWER_SETPOINT_JS,
         operating_state: OperatingStateSample = FOLLOWER_OPERATING_STATE,
         command_status: CommandStatusSample = FOLLOWER_COMMAND_STATUS,
-        friction_1: FrictionStatusSample = FOLLOWER_JOINT_1_FRICTION,
-        friction_2: FrictionStatusSample = FOLLOWER_JOINT_2_FRICTION,
+        friction: PerJoint<FrictionStatusSample> = FOLLOWER_JOINT_FRICTION,
     }
 }
 
@@ -69,7 +67,7 @@ ports! {
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let node = ServoNode::new(&loaded.arm.model, &loaded.scenario.servo)?;
-    let ports = ServoPorts::connect(build.bus)?;
+    let ports = ServoPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
 
@@ -211,8 +209,7 @@ impl ServoNode {
     }
 
     fn feed_forward(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
-        let temperatures = [&input.temperature_1, &input.temperature_2];
-        for (joint, newest) in temperatures.into_iter().enumerate() {
+        for (joint, newest) in input.temperature.iter().enumerate() {
             if let Some(sample) = newest.message {
                 self.servo.set_temperature(joint, sample.temperature);
             }
@@ -227,9 +224,10 @@ impl ServoNode {
                 }
             }
         }
-        if let Some(mut told) = self.friction.tell(now, &self.servo) {
-            output.friction_1 = told.next();
-            output.friction_2 = told.next();
+        if let Some(told) = self.friction.tell(now, &self.servo) {
+            for (place, told) in output.friction.iter_mut().zip(told) {
+                *place = Some(told);
+            }
         }
     }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 /// The friction that is fed forward at one joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrictionSummary {
-    /// `joint_1` or `joint_2`.
+    /// Its name.
     pub joint: String,
     /// `configured` or `twin`.
     pub source: String,
@@ -32,7 +32,7 @@ pub struct FrictionParameter {
 }
 
 impl FrictionSummary {
-    /// Of a message on `/follower/joint_1/friction` or that of the other joint.
+    /// Of a message on `/follower/{joint}/friction`.
     pub fn of(sample: &FrictionStatusSample) -> Self {
         let parameters = (0..sample.len()).map(|i| FrictionParameter {
             name: sample.names[i].to_string(),

@@ -56,11 +56,7 @@ impl Bench {
             let mut output = ServoOutput::default();
             output.clear();
             self.node.step(self.now, &input, &mut output);
-            for (last, new) in self
-                .last
-                .iter_mut()
-                .zip([output.friction_1, output.friction_2])
-            {
+            for (last, new) in self.last.iter_mut().zip(&output.friction[..]) {
                 *last = new.or(*last);
             }
             self.faults.0 |= output.health.faults.0;

@@ -8,7 +8,8 @@ use ferntast_msgs::{
     Message, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Faults, FrictionStatusSample, HealthSample,
-        LinkStatusSample, OperatingState, OperatingStateSample, TwinParametersSample, WrenchSample,
+        JointNames, LinkStatusSample, OperatingState, OperatingStateSample, TwinParametersSample,
+        WrenchSample,
     },
     topics::{self, Topic},
 };
@@ -65,7 +66,11 @@ pub struct Monitor {
     states: [(&'static str, Subscriber<OperatingStateSample>); 2],
     authority: Subscriber<AuthoritySample>,
     twin_parameters: Subscriber<TwinParametersSample>,
-    friction: [Subscriber<FrictionStatusSample>; 2],
+    /// Of each joint, and its last word.
+    friction: Vec<(
+        Subscriber<FrictionStatusSample>,
+        Option<FrictionStatusSample>,
+    )>,
     /// The nodes that were heard of.
     pub nodes: BTreeMap<String, NodeView>,
     /// The link's last word.
@@ -84,7 +89,6 @@ pub struct Monitor {
     peak_hand_force: f64,
     refused_masters: u64,
     twin: Option<TwinParametersSample>,
-    fed_forward: [Option<FrictionStatusSample>; 2],
     servo_rates: (f64, u64),
 }
 
@@ -111,12 +115,17 @@ fn watch<M: Message>(bus: &Bus, topic: Topic<M>) -> Result<Subscriber<M>, Create
 }
 
 impl Monitor {
-    /// Watches the session on `bus`.
+    /// Watches the session on `bus`, of an arm of those joints.
     ///
     /// # Errors
     ///
     /// A topic that cannot be opened.
-    pub fn new(bus: &Bus) -> Result<Monitor, CreateError> {
+    pub fn new(bus: &Bus, joints: &JointNames) -> Result<Monitor, CreateError> {
+        let friction = topics::FOLLOWER_JOINT_FRICTION.of_joints(joints)?;
+        let friction = friction.into_iter().map(|topic| {
+            let joint = bus.subscriber(topic, Depth::Newest)?;
+            Ok((joint, None))
+        });
         Ok(Monitor {
             diagnostics: watch(bus, topics::DIAGNOSTICS)?,
             link: watch(bus, topics::LINK_STATUS)?,
@@ -128,10 +137,7 @@ impl Monitor {
             ],
             authority: watch(bus, topics::LEADER_AUTHORITY)?,
             twin_parameters: bus.subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?,
-            friction: [
-                bus.subscriber(topics::FOLLOWER_JOINT_1_FRICTION, Depth::Newest)?,
-                bus.subscriber(topics::FOLLOWER_JOINT_2_FRICTION, Depth::Newest)?,
-            ],
+            friction: friction.collect::<Result<_, CreateError>>()?,
             nodes: BTreeMap::new(),
             link_status: None,
             contact_state: None,
@@ -145,7 +151,6 @@ impl Monitor {
             peak_hand_force: 0.0,
             refused_masters: 0,
             twin: None,
-            fed_forward: [None; 2],
             servo_rates: (0.0, 0),
         })
     }
@@ -199,7 +204,7 @@ impl Monitor {
         if let Some(received) = self.twin_parameters.newest(now) {
             self.twin = Some(received.message);
         }
-        for (told, joint) in self.fed_forward.iter_mut().zip(&mut self.friction) {
+        for (joint, told) in &mut self.friction {
             if let Some(received) = joint.newest(now) {
                 *told = Some(received.message);
             }
@@ -291,7 +296,7 @@ impl Monitor {
 
     /// The friction that the servo feeds forward.
     pub fn friction(&self) -> Vec<FrictionSummary> {
-        let told = self.fed_forward.iter().flatten();
+        let told = self.friction.iter().filter_map(|(_, told)| told.as_ref());
         told.map(FrictionSummary::of).collect()
     }
 

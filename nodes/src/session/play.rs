@@ -1,8 +1,12 @@
 //! Playback: player, gateway and, if asked, a live estimator and a twin.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
-use ferntast_bus::{Bus, SharedMemoryBus, SharedMemoryConfig};
+use ferntast_bus::{Bus, CreateError, SharedMemoryBus, SharedMemoryConfig, mcap::BagReader};
+use ferntast_msgs::sample::JointNames;
 use serde::Serialize;
 
 use super::{Monitor, SessionError, Supervisor, host_resources::HostResources};
@@ -29,6 +33,11 @@ pub struct Played {
     pub twin: Option<TwinSummary>,
 }
 
+/// The joints of the recording at `path`, where it says which.
+pub fn recorded_joints(path: &Path) -> Option<JointNames> {
+    ferntast_lab::joints::recorded_joints(&BagReader::open(path).ok()?)
+}
+
 /// Plays the context's recording, to the nodes of `graph` that listen to it,
 /// until its end or until `stop` is set. What a live node publishes is not played.
 ///
@@ -48,9 +57,14 @@ pub fn play(
         .filter(|row| (row.in_playback)(&context))
         .collect();
     let nodes: Vec<&str> = rows.iter().map(|row| row.name).collect();
-    let live = rows.iter().flat_map(|row| row.outputs());
-    let live = live.map(|topic| (*topic).to_owned());
-    context.play.except.extend(live);
+    let joints = context.joints();
+    for row in &rows {
+        let live = row.outputs(&joints).map_err(CreateError::from)?;
+        context
+            .play
+            .except
+            .extend(live.into_iter().map(String::from));
+    }
     let resources = HostResources::acquire(&context)?;
     let session_file = resources.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
@@ -60,7 +74,7 @@ pub fn play(
     let bus = Bus::SharedMemory(SharedMemoryBus::open(&SharedMemoryConfig {
         session: context.session.clone(),
     })?);
-    let mut monitor = Monitor::new(&bus)?;
+    let mut monitor = Monitor::new(&bus, &joints)?;
     let ready = clock.now().plus_seconds(1.0);
     let patience = clock.now().plus_seconds(TWIN_PATIENCE);
     loop {

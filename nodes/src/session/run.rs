@@ -67,7 +67,7 @@ pub fn run(
     let bus = Bus::SharedMemory(SharedMemoryBus::open(&SharedMemoryConfig {
         session: session.context.session.clone(),
     })?);
-    let mut monitor = Monitor::new(&bus)?;
+    let mut monitor = Monitor::new(&bus, &session.context.joints())?;
     let mut arming = Arming {
         follower: bus.publisher(topics::FOLLOWER_STATE_COMMAND)?,
         leader: bus.publisher(topics::LEADER_STATE_COMMAND)?,

@@ -32,7 +32,7 @@ use ferntast_msgs::{
 
 use crate::{
     graph::Build,
-    node::{Node, Ticking, ports},
+    node::{Newest, Node, Ticking, ports},
     process::NodeError,
 };
 
@@ -54,8 +54,7 @@ ports! {
     input TwinInput {
         measured_js: Batch<JointSample> = FOLLOWER_MEASURED_JS,
         motor_js: Batch<JointSample> = FOLLOWER_MOTOR_JS,
-        temperature_1: Newest<TemperatureSample> = FOLLOWER_JOINT_1_TEMPERATURE,
-        temperature_2: Newest<TemperatureSample> = FOLLOWER_JOINT_2_TEMPERATURE,
+        temperature: PerJoint<Newest<TemperatureSample>> = FOLLOWER_JOINT_TEMPERATURE,
     }
     /// What the twin gives.
     output TwinNodeOutput {
@@ -76,12 +75,13 @@ pub const NAME: &str = "twin";
 /// opened.
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let path = build.session.twin.as_deref().ok_or(NodeError::NoTwin)?;
-    let model = open(path).map_err(NodeError::own)?;
+    let joints = build.session.joints();
+    let model = open(path, joints).map_err(NodeError::own)?;
     let assessing = match build.virtual_time {
         true => Assessing::Inline,
         false => Assessing::OnThread,
     };
-    let ports = TwinPorts::connect(build.bus)?;
+    let ports = TwinPorts::connect(build.bus, &joints)?;
     build.join(TwinNode::new(model, assessing), ports)
 }
 
@@ -205,8 +205,8 @@ impl Node for TwinNode {
     type Output = TwinNodeOutput;
 
     fn step(&mut self, now: Time, input: &TwinInput, output: &mut TwinNodeOutput) {
-        let temperatures = [&input.temperature_1, &input.temperature_2];
-        let temperature = temperatures
+        let temperature = input
+            .temperature
             .get(self.joint)
             .and_then(|newest| newest.message)
             .map(|message| message.temperature)

@@ -7,10 +7,9 @@ use ferntast_lab::{
     experiment::{self, Experiment, ExperimentError, Signals},
     recording::{self, LoadError},
 };
-use ferntast_model::kinematics::LINKS;
 use ferntast_msgs::{
     sample::{JointNames, MAX_TWIN_PARAMETERS},
-    topics,
+    topics::{self, JointNameError},
 };
 
 /// How long the estimator of the parameters remembers \[s\].
@@ -61,6 +60,9 @@ pub enum TwinOpenError {
         /// What it may say.
         expected: String,
     },
+    /// A joint has a name that topics cannot have.
+    #[error(transparent)]
+    Joint(#[from] JointNameError),
     /// The model cannot be followed, or the recordings are of no use for it.
     #[error("{path}: {source}")]
     Twin {
@@ -82,18 +84,18 @@ pub enum TwinOpenError {
 }
 
 /// Reads the experiment at `path` with its recordings, fits its model, and
-/// makes a twin of it. Takes as long as `ferntast lab fit`.
+/// makes a twin of it, for an arm of those joints. Takes as long as `ferntast lab fit`.
 ///
 /// # Errors
 ///
 /// See [`TwinOpenError`].
-pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
+pub fn open(path: &Path, joints: JointNames) -> Result<TwinModel, TwinOpenError> {
     let experiment = Experiment::read(path, &experiment::data_folder())?;
     if experiment.joint.is_contact() {
         let path = path.to_owned();
         return Err(TwinOpenError::Contact { path });
     }
-    let joint = joint_of(&experiment.signals, path)?;
+    let joint = joint_of(&experiment.signals, &joints, path)?;
     let loaded = recording::load(&experiment)?;
     let twin = Twin::new(&loaded.dataset, &experiment.model, MEMORY).map_err(|source| {
         TwinOpenError::Twin {
@@ -108,7 +110,7 @@ pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
     }
     Ok(TwinModel {
         twin,
-        joints: JointNames::numbered(LINKS),
+        joints,
         joint,
         joint_torque: experiment.signals.joint_torque.is_some(),
         temperature: experiment.signals.temperature.is_some(),
@@ -116,11 +118,8 @@ pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
 }
 
 /// The joint (from 0) whose topics the signals are.
-fn joint_of(signals: &Signals, path: &Path) -> Result<usize, TwinOpenError> {
-    let temperatures = [
-        topics::FOLLOWER_JOINT_1_TEMPERATURE.name,
-        topics::FOLLOWER_JOINT_2_TEMPERATURE.name,
-    ];
+fn joint_of(signals: &Signals, joints: &JointNames, path: &Path) -> Result<usize, TwinOpenError> {
+    let temperatures = topics::FOLLOWER_JOINT_TEMPERATURE.of_joints(joints)?;
     let measured = topics::FOLLOWER_MEASURED_JS.name;
     let motor = topics::FOLLOWER_MOTOR_JS.name;
     let refuse = |signal, found: &str, expected: String| TwinOpenError::Signal {
@@ -130,13 +129,13 @@ fn joint_of(signals: &Signals, path: &Path) -> Result<usize, TwinOpenError> {
         expected,
     };
     let position = |joint: usize| format!("{measured}.position[{joint}]");
-    let joint = (0..temperatures.len())
-        .find(|joint| signals.position == position(*joint))
-        .ok_or_else(|| {
-            let expected = format!("{} or {}", position(0), position(1));
-            refuse("position", &signals.position, expected)
-        })?;
-    let temperature = temperatures.get(joint).copied().unwrap_or_default();
+    let mut topics = temperatures.iter().enumerate();
+    let Some((joint, temperature)) = topics.find(|(joint, _)| signals.position == position(*joint))
+    else {
+        let positions: Vec<String> = (0..joints.len()).map(position).collect();
+        let expected = positions.join(" or ");
+        return Err(refuse("position", &signals.position, expected));
+    };
     let asked = [
         (
             "motor_torque",
@@ -151,7 +150,7 @@ fn joint_of(signals: &Signals, path: &Path) -> Result<usize, TwinOpenError> {
         (
             "temperature",
             signals.temperature.as_ref(),
-            format!("{temperature}.temperature"),
+            format!("{}.temperature", temperature.name),
         ),
     ];
     for (signal, found, expected) in asked {
@@ -181,8 +180,9 @@ mod tests {
     #[test]
     fn the_joint_is_that_of_the_signals() {
         let path = Path::new("e.toml");
-        assert_eq!(joint_of(&signals(0, 1), path).ok(), Some(0));
-        assert_eq!(joint_of(&signals(1, 2), path).ok(), Some(1));
+        let two = JointNames::numbered(2);
+        assert_eq!(joint_of(&signals(0, 1), &two, path).ok(), Some(0));
+        assert_eq!(joint_of(&signals(1, 2), &two, path).ok(), Some(1));
     }
 
     #[test]
@@ -200,7 +200,9 @@ mod tests {
             (column, "/follower/measured_js.position[0] or"),
             (signals(1, 1), "/follower/joint_2/temperature.temperature"),
         ] {
-            let error = joint_of(&bad, path).unwrap_err().to_string();
+            let error = joint_of(&bad, &JointNames::numbered(2), path)
+                .unwrap_err()
+                .to_string();
             assert!(error.contains(words) && error.contains("e.toml"), "{error}");
         }
     }

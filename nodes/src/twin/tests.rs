@@ -8,7 +8,7 @@ use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
 use ferntast_msgs::sample::Faults;
 
 use super::*;
-use crate::node::{Batch, Newest, Output};
+use crate::node::Output;
 
 const PERIOD: f64 = 0.01;
 
@@ -186,12 +186,7 @@ fn run(node: &mut TwinNode, seconds: f64, viscous: impl Fn(f64) -> f64) -> Publi
     let mut output = TwinNodeOutput::default();
     for step in 0..(seconds * 1000.0) as i64 {
         let now = START.plus_nanos(step * 1_000_000);
-        let mut input = TwinInput {
-            measured_js: Batch::default(),
-            motor_js: Batch::default(),
-            temperature_1: Newest::default(),
-            temperature_2: Newest::default(),
-        };
+        let mut input = TwinInput::default();
         if step % 10 == 0 {
             let t = step as f64 * 1e-3;
             let (q, torque) = joint(t, viscous(t), noise(step as u64 + 17));

@@ -83,7 +83,7 @@ pub fn create<H: TestBench>(
     let bag = McapBus::create(&at("recording"))?;
     H::publish(&recording, &Bus::Mcap(bag.clone()))?;
     bag.finish()?;
-    fs::write(at("experiment.toml"), H::experiment(&recording))
+    fs::write(at("experiment.toml"), H::experiment(&recording)?)
         .map_err(file(at("experiment.toml")))?;
     let answer = Answer {
         hidden: ids(&config.hidden, |own| vec![own.id()]),

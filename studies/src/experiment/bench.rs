@@ -15,7 +15,7 @@ use ferntast_msgs::{
         ContactStateSample, Frame, JointNames, JointSample, OperatingState, OperatingStateSample,
         PoseSample, StateCommand, StateCommandSample,
     },
-    topics,
+    topics::{self, TopicName},
 };
 use ferntast_nodes::{
     bridge::forwarder::{Forwarder, Forwarding, Stamp},
@@ -115,9 +115,8 @@ fn carry(topic: &str, contact: bool) -> Forwarding {
         topics::FOLLOWER_MEASURED_JS.name,
         topics::FOLLOWER_MOTOR_JS.name,
         topics::FOLLOWER_SETPOINT_JS.name,
-        topics::FOLLOWER_JOINT_1_TEMPERATURE.name,
-        topics::FOLLOWER_JOINT_2_TEMPERATURE.name,
     ];
+    let temperature = topics::FOLLOWER_JOINT_TEMPERATURE.joint_of(topic).is_some();
     let in_contact = [
         topics::FOLLOWER_MEASURED_CP.name,
         topics::FOLLOWER_CONTACT_CF.name,
@@ -127,9 +126,10 @@ fn carry(topic: &str, contact: bool) -> Forwarding {
         topics::FOLLOWER_OPERATING_STATE.name,
         topics::FOLLOWER_STATE_COMMAND.name,
     ];
-    if always.contains(&topic) || (contact && in_contact.contains(&topic)) {
+    let any = |names: &[TopicName]| names.iter().any(|name| *name == *topic);
+    if temperature || any(&always) || (contact && any(&in_contact)) {
         sampled
-    } else if events.contains(&topic) {
+    } else if any(&events) {
         Forwarding::Every { queue: 16 }
     } else {
         Forwarding::Not
@@ -207,11 +207,13 @@ impl Bench {
             .map_err(|error| recording_error(error.to_string()))?;
         let mut forwarder = Forwarder::default();
         let contact = self.contact;
+        let joints = joint_names(&self.arm.model());
         forwarder.add_topics(
             time.bus(),
             &Bus::Mcap(recording.clone()),
             Stamp::Received,
-            |topic| carry(topic.name, contact),
+            &joints,
+            |topic| carry(&topic.name, contact),
         )?;
         time.add(move |now| {
             forwarder.forward(now);

@@ -79,7 +79,10 @@ fn a_take_over_is_recorded_and_replayed_byte_for_byte() {
     let taken = session.folder().join("taken");
     let commands = messages(&taken, topics::FOLLOWER_FRICTION_COMMAND);
     assert_eq!(commands.len(), 2);
-    let friction = messages(&taken, topics::FOLLOWER_JOINT_2_FRICTION);
+    let friction = topics::FOLLOWER_JOINT_FRICTION
+        .of("joint_2")
+        .expect("a name");
+    let friction = messages(&taken, friction);
     let by_the_twin = |own: &&ferntast_bus::Received<_>| {
         let own: &ferntast_msgs::sample::FrictionStatusSample = &own.message;
         own.source == ferntast_msgs::sample::FrictionSource::TWIN

@@ -52,7 +52,7 @@ fn a_stribeck_effect_that_the_twin_follows_is_fed_forward() {
         }
         let mut output = ServoOutput::default();
         servo.step(now, &input, &mut output);
-        status = output.friction_2.or(status);
+        status = output.friction[1].or(status);
     }
     let status = status.unwrap();
     assert_eq!(status.source, FrictionSource::TWIN, "{status:?}");

@@ -14,7 +14,7 @@ use ferntast_msgs::{
     topics,
 };
 
-use super::{TestBench, WriteError, model_of, quoted, stamp};
+use super::{TestBench, WriteError, model_of, quoted, stamp, temperature_topic};
 
 /// Session `number` of a recording.
 fn session(own: &ContactSession, number: usize) -> Session {
@@ -86,7 +86,7 @@ impl TestBench for HiddenEffect {
     fn publish(recording: &ContactRecording, bus: &Bus) -> Result<(), WriteError> {
         let mut force = bus.publisher(topics::FOLLOWER_CONTACT_CF)?;
         let mut tip = bus.publisher(topics::FOLLOWER_MEASURED_CP)?;
-        let mut temperature = bus.publisher(topics::FOLLOWER_JOINT_1_TEMPERATURE)?;
+        let mut temperature = bus.publisher(temperature_topic()?)?;
         for session in &recording.sessions {
             for (index, time) in session.time.iter().enumerate() {
                 let stamp = stamp(session.start, *time);
@@ -104,8 +104,8 @@ impl TestBench for HiddenEffect {
         Ok(())
     }
 
-    fn experiment(recording: &ContactRecording) -> String {
-        format!(
+    fn experiment(recording: &ContactRecording) -> Result<String, WriteError> {
+        Ok(format!(
             "# A tip on an edge, {} sessions. What is missing from this model?\n\
              recording = \"recording\"\n\n\
              [contact]\n\n\
@@ -118,9 +118,9 @@ impl TestBench for HiddenEffect {
              effects = [{}]\n",
             recording.sessions.len(),
             topics::FOLLOWER_MEASURED_CP.name,
-            topics::FOLLOWER_JOINT_1_TEMPERATURE.name,
+            temperature_topic()?.name,
             quoted(&recording.believed),
             force = topics::FOLLOWER_CONTACT_CF.name,
-        )
+        ))
     }
 }

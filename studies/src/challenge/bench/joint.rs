@@ -9,11 +9,11 @@ use ferntast_benches::{
 use ferntast_bus::Bus;
 use ferntast_identification::{Dataset, JointType, ModelSpec, Session};
 use ferntast_msgs::{
-    sample::{JointNames, JointSample, TemperatureSample},
+    sample::{JointSample, TemperatureSample},
     topics,
 };
 
-use super::{TestBench, WriteError, model_of, quoted, stamp};
+use super::{TestBench, WriteError, joints, model_of, quoted, stamp, temperature_topic};
 
 /// Session `number` of a recording. Whoever runs it knows whether there are
 /// springs to pull.
@@ -91,12 +91,12 @@ impl TestBench for HiddenEffect {
     fn publish(recording: &BenchRecording, bus: &Bus) -> Result<(), WriteError> {
         let mut measured = bus.publisher(topics::FOLLOWER_MEASURED_JS)?;
         let mut motor = bus.publisher(topics::FOLLOWER_MOTOR_JS)?;
-        let mut temperature = bus.publisher(topics::FOLLOWER_JOINT_1_TEMPERATURE)?;
+        let mut temperature = bus.publisher(temperature_topic()?)?;
         for session in &recording.sessions {
             for (index, time) in session.time.iter().enumerate() {
                 let stamp = stamp(session.start, *time);
                 // The bench has one joint; the other stands still.
-                let empty = JointSample::empty(JointNames::numbered(2), stamp);
+                let empty = JointSample::empty(joints(), stamp);
                 let sample = empty
                     .with_position([session.position[index]])
                     .with_effort([session.joint_torque[index]]);
@@ -109,9 +109,9 @@ impl TestBench for HiddenEffect {
         Ok(())
     }
 
-    fn experiment(recording: &BenchRecording) -> String {
+    fn experiment(recording: &BenchRecording) -> Result<String, WriteError> {
         let believed = &recording.believed;
-        format!(
+        Ok(format!(
             "# One joint on its bench, {} sessions. What is missing from this model?\n\
              recording = \"recording\"\n\n\
              [signals]\n\
@@ -125,11 +125,11 @@ impl TestBench for HiddenEffect {
              effects = [{}]\n",
             recording.sessions.len(),
             topics::FOLLOWER_MOTOR_JS.name,
-            topics::FOLLOWER_JOINT_1_TEMPERATURE.name,
+            temperature_topic()?.name,
             believed.inertia,
             believed.gear_ratio,
             quoted(&believed.effects),
             measured = topics::FOLLOWER_MEASURED_JS.name,
-        )
+        ))
     }
 }

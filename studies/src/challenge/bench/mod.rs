@@ -9,7 +9,11 @@ use ferntast_benches::bench::{BenchConfig, BenchError, Hideable, TrueParameter};
 use ferntast_bus::{Bus, CreateError, PublishError};
 use ferntast_emulation::random::mixed;
 use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
-use ferntast_msgs::Time;
+use ferntast_msgs::{
+    Time,
+    sample::{JointNames, TemperatureSample},
+    topics::{FOLLOWER_JOINT_TEMPERATURE, Topic},
+};
 
 /// Date of the first session: when ROKVISS went into operation.
 const FIRST_SESSION: i64 = 1_107_216_000;
@@ -88,7 +92,11 @@ pub trait TestBench: Hideable + FromStr<Err = BenchError> {
     fn publish(recording: &Self::Recording, bus: &Bus) -> Result<(), WriteError>;
 
     /// The experiment file, for a recording beside it.
-    fn experiment(recording: &Self::Recording) -> String;
+    ///
+    /// # Errors
+    ///
+    /// A topic has no name.
+    fn experiment(recording: &Self::Recording) -> Result<String, WriteError>;
 }
 
 /// When a log entry `time` \[s\] into a session that began at `start` \[s\] was made.
@@ -108,6 +116,18 @@ fn model_of(inertia: f64, gear_ratio: Option<f64>, effects: &[&'static str]) -> 
             .map(|id| Term::Catalogue((*id).to_owned()))
             .collect(),
     }
+}
+
+/// The joints in the recording of a bench, of which the first is the bench's.
+fn joints() -> JointNames {
+    JointNames::numbered(2)
+}
+
+/// Where the bench's temperature is recorded.
+fn temperature_topic() -> Result<Topic<TemperatureSample>, CreateError> {
+    let joints = joints();
+    let topic = FOLLOWER_JOINT_TEMPERATURE.of(joints.get(0).unwrap_or_default())?;
+    Ok(topic)
 }
 
 /// `"a", "b"`.
