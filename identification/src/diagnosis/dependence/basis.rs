@@ -4,7 +4,9 @@ use crate::design::PreparedModel;
 use crate::effects::Direction;
 use crate::numerics::statistics::quantile_or_zero;
 
+/// Knots of a map over one signal, …
 const KNOTS_ALONE: usize = 7;
+/// … and of each signal of a map over two.
 const KNOTS_PAIR: usize = 4;
 
 /// A signal at the rows of every session.
@@ -15,7 +17,7 @@ pub(super) struct Channel {
     pub(super) slow: bool,
 }
 
-/// Every signal that may matter.
+/// Every signal on which the residual may depend.
 pub(super) fn channels(prepared: &PreparedModel) -> Vec<Channel> {
     let facts = &prepared.facts;
     let collect =
@@ -63,7 +65,7 @@ pub(super) fn channels(prepared: &PreparedModel) -> Vec<Channel> {
     all
 }
 
-/// Hat functions of one signal: knots at its quantiles.
+/// Knots of the hat functions over one signal, at its quantiles.
 fn knots(channel: &Channel, count: usize) -> Vec<f64> {
     let mut all: Vec<f64> = channel
         .values
@@ -86,6 +88,7 @@ fn knots(channel: &Channel, count: usize) -> Vec<f64> {
     knots
 }
 
+/// Values of the hat functions at `x`.
 fn hats(knots: &[f64], x: f64, out: &mut Vec<f64>) {
     out.clear();
     out.resize(knots.len(), 0.0);
