@@ -99,11 +99,11 @@ pub enum Event {
     CommandSilent,
     /// No measurement for longer than the watchdog allows: fault.
     MeasurementSilent,
-    /// A measurement that is not finite: fault.
+    /// A measurement that is not finite, or not of as many joints: fault.
     MeasurementInvalid,
-    /// A joint (1 or 2) left its position limits: fault.
+    /// A joint (counted from 1) left its position limits: fault.
     JointLimit(u8),
-    /// A joint (1 or 2) is faster than allowed: fault.
+    /// A joint (counted from 1) is faster than allowed: fault.
     Overspeed(u8),
 }
 

@@ -4,8 +4,9 @@
 //! written out for two links in a plane. Motors and gears are not in here:
 //! they turn on the other side of the torque sensor.
 
-use crate::kinematics::Kinematics;
-use crate::{JOINTS, Matrix2, Vector2, parameters};
+use crate::joint::JointParameters;
+use crate::kinematics::{Kinematics, LINKS};
+use crate::{Matrix2, ParameterError, Vector2, parameters};
 
 /// Standard gravity \[m/s²\].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -32,7 +33,7 @@ parameters! {
         /// Acceleration of gravity, base frame \[m/s²\]: zero in orbit.
         pub gravity: [f64; 2] [-20.0..=20.0, "m/s²"],
         /// Link 1 and link 2.
-        pub link: [LinkParameters; JOINTS] [section],
+        pub link: [LinkParameters; LINKS] [section],
     }
 }
 
@@ -49,6 +50,23 @@ impl ArmParameters {
     pub fn in_orbit(mut self) -> Self {
         self.gravity = [0.0, 0.0];
         self
+    }
+
+    /// The joints of these links, out of `joints`.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::WrongCount`]: there is not one for each link.
+    pub fn joints_of_links<'a>(
+        &self,
+        joints: &'a [JointParameters],
+    ) -> Result<&'a [JointParameters; LINKS], ParameterError> {
+        joints.try_into().map_err(|_| ParameterError::WrongCount {
+            key: "joint".into(),
+            found: joints.len(),
+            wanted: LINKS,
+            each: "link in the section [arm]",
+        })
     }
 
     /// Geometry of these links.

@@ -3,7 +3,23 @@
 //! Joint positions q = (q₁, q₂) \[rad\]; q₂ counts from link 1. Base frame:
 //! x along the stretched arm at q = 0, lengths in \[m\].
 
-use crate::{Matrix2, Vector2};
+use crate::{Joints, Matrix2, Vector2};
+
+/// Links of the arm that is written out here, and in [`arm`](crate::arm), in
+/// closed form; each has a joint.
+pub const LINKS: usize = 2;
+
+/// The vector of an arm's two joints; `None` of an arm that has not two.
+pub fn planar(joints: &Joints<f64>) -> Option<Vector2<f64>> {
+    let values = <[f64; LINKS]>::try_from(&joints[..]).ok()?;
+    Some(Vector2::from(values))
+}
+
+impl From<Vector2<f64>> for Joints<f64> {
+    fn from(vector: Vector2<f64>) -> Joints<f64> {
+        <[f64; LINKS]>::from(vector).into()
+    }
+}
 
 /// To which side the elbow is bent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

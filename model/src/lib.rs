@@ -12,29 +12,35 @@ pub mod contact;
 pub mod contour;
 pub mod friction;
 pub mod joint;
+pub mod joints;
 pub mod kinematics;
 mod parameter;
 pub mod recursive_least_squares;
 pub mod section;
 
+pub use joints::{JointCount, Joints, MAX_JOINTS};
 pub use nalgebra::{Matrix2, Vector2};
 pub use parameter::{ParameterError, check};
 pub use section::{Bounded, Section};
 
-/// Number of joints of the arm.
-pub const JOINTS: usize = 2;
-
 parameters! {
     /// Everything that is believed of one arm and the contour it works on:
-    /// the sections `[arm]`, `[[joint]]` (two) and `[contour]` of a file in
+    /// the sections `[arm]`, `[[joint]]` (one a link) and `[contour]` of a file in
     /// `config/arms/`.
     pub struct ArmModel {
         /// Links and gravity.
         pub arm: arm::ArmParameters [section],
-        /// Joint 1 and joint 2.
-        pub joint: [joint::JointParameters; JOINTS] [section],
+        /// The joints, from the base on: one for each link.
+        pub joint: Vec<joint::JointParameters> [section],
         /// Edges and springs, and the nominal tip point between them.
         pub contour: contour::Contour [section],
+    }
+    check ArmModel::joints_are_those_of_the_links;
+}
+
+impl ArmModel {
+    fn joints_are_those_of_the_links(&self) -> Result<(), ParameterError> {
+        self.arm.joints_of_links(&self.joint).map(drop)
     }
 }
 
@@ -60,8 +66,22 @@ mod tests {
     fn unknown_keys_and_wrong_counts_are_refused() {
         let misspelt = parse(&SHIPPED.replace("center_of_mass", "centre_of_mass"));
         assert!(misspelt.unwrap_err().to_string().contains("centre_of_mass"));
-        let three = format!("{SHIPPED}\n[[joint]]\n");
-        assert!(parse(&three).is_err());
+        let mut model = parse(SHIPPED).unwrap();
+        model.joint.push(model.joint[0].clone());
+        for (joints, found) in [(&model.joint[..], 3), (&model.joint[..1], 1), (&[], 0)] {
+            let model = ArmModel {
+                joint: joints.to_vec(),
+                ..model.clone()
+            };
+            let error = model.validate().unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!(
+                    "joint has {found} entries where 2 are needed: one for each link in the \
+                     section [arm]"
+                )
+            );
+        }
     }
 
     #[test]

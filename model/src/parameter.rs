@@ -43,6 +43,18 @@ pub enum ParameterError {
         /// Unit of the parameter.
         unit: &'static str,
     },
+    /// A list is of the wrong length.
+    #[error("{key} has {found} entries where {wanted} are needed: one for each {each}")]
+    WrongCount {
+        /// Path of the key in the configuration.
+        key: String,
+        /// Entries found.
+        found: usize,
+        /// Entries needed.
+        wanted: usize,
+        /// What there has to be one for each of.
+        each: &'static str,
+    },
 }
 
 impl ParameterError {
@@ -52,7 +64,8 @@ impl ParameterError {
         let (Self::OutOfBounds { key, .. }
         | Self::Inconsistent { key, .. }
         | Self::Unknown { key, .. }
-        | Self::Missing { key, .. }) = &mut self;
+        | Self::Missing { key, .. }
+        | Self::WrongCount { key, .. }) = &mut self;
         *key = format!("{section}.{key}");
         self
     }
@@ -63,7 +76,8 @@ impl ParameterError {
             Self::OutOfBounds { key, .. }
             | Self::Inconsistent { key, .. }
             | Self::Unknown { key, .. }
-            | Self::Missing { key, .. } => key,
+            | Self::Missing { key, .. }
+            | Self::WrongCount { key, .. } => key,
         }
     }
 }

@@ -30,8 +30,8 @@ fn main() {
             arm.advance(torque, 1e-3);
             let measured = arm.measure();
             JointMeasurement {
-                motor_position: measured.motor_position,
-                joint_torque: measured.joint_torque,
+                motor_position: measured.motor_position.into(),
+                joint_torque: measured.joint_torque.into(),
             }
         })
         .collect();

@@ -88,6 +88,16 @@ fn wrong_configurations_are_refused_by_name() {
         "{error}"
     );
 
+    // An arm that is planar and of two links has two joints.
+    let mut config = rokviss();
+    config.joint.push(config.joint[0].clone());
+    let error = SimulatedArm::new(&config, 1).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "arm configuration: joint has 3 entries where 2 are needed: one for each link in the \
+         section [arm]"
+    );
+
     let mut config = rokviss();
     config.truth.substep = 5e-4;
     config.truth.surface.lubricated.stiffness = 1e6;

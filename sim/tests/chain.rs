@@ -5,13 +5,14 @@ use ferntast_control::delay::{
     FollowerEnd, FollowerInput, Law, LeaderEnd, LeaderInput, Motion, Packet, PositionForce,
     Received,
 };
-use ferntast_control::frame::{self, FRAME_LENGTH, Frame};
+use ferntast_control::frame::{self, FRAME_LENGTH, LinkFrame};
 use ferntast_control::haptics::{HandCommand, Master, MasterConfig};
 use ferntast_control::meter::{Arrival, LinkMeasurement, LinkMeter};
 use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{Command, Measurement, Servo, ServoConfig, ServoInput, Target};
 use ferntast_emulation::channel::{Blackout, Channel, ChannelConfig, LinkConfig};
 use ferntast_emulation::hand::{Hand, ScriptedHand, ScriptedHandConfig};
+use ferntast_model::Joints;
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 
 const TICK: f64 = 1e-3;
@@ -58,7 +59,7 @@ impl End {
     }
 
     fn send(&mut self, now: i64, state: OperatingState, packet: Packet) {
-        let frame = Frame {
+        let frame = LinkFrame {
             session: 1,
             sequence: self.sequence,
             sent_ns: now,
@@ -115,7 +116,7 @@ struct Chain {
     follower_link: End,
     servo: Servo,
     arm: SimulatedArm,
-    torque: [f64; 2],
+    torque: Joints<f64>,
     command: Option<Command>,
     force: [f64; 3],
 }
@@ -128,6 +129,11 @@ struct Sight {
     state: OperatingState,
     at_leader: LinkMeasurement,
     at_follower: LinkMeasurement,
+}
+
+fn servo(config: &ArmConfig) -> Servo {
+    let kinematics = Some(config.arm.kinematics());
+    Servo::new(&config.joint, kinematics, &ServoConfig::default()).expect("valid")
 }
 
 impl Chain {
@@ -150,9 +156,9 @@ impl Chain {
             leader_link: End::new(link.up, 2),
             follower: law.follower(),
             follower_link: End::new(link.down, 3),
-            servo: Servo::new(&config.arm, &config.joint, &ServoConfig::default()).expect("valid"),
+            servo: servo(&config),
             arm: SimulatedArm::new(&config, 4).expect("valid"),
-            torque: [0.0; 2],
+            torque: [0.0; 2].into(),
             command: None,
             force: [0.0; 3],
         }
@@ -227,16 +233,16 @@ impl Chain {
             &ServoInput {
                 measurement: Some(Measurement {
                     stamp_ns: now,
-                    position: measured.motor_position,
-                    velocity: measured.motor_velocity,
-                    torque: measured.joint_torque,
+                    position: measured.motor_position.into(),
+                    velocity: measured.motor_velocity.into(),
+                    torque: measured.joint_torque.into(),
                 }),
                 command: self.command,
                 state_command,
             },
         );
         assert_eq!(servo.refused, None);
-        self.arm.advance(self.torque, TICK);
+        self.arm.advance([self.torque[0], self.torque[1]], TICK);
         self.torque = servo.torque;
         Sight {
             normal_force: truth.normal_force,

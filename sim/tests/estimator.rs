@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 fn seen(measurement: &Measurement) -> JointMeasurement {
     JointMeasurement {
-        motor_position: measurement.motor_position,
-        joint_torque: measurement.joint_torque,
+        motor_position: measurement.motor_position.into(),
+        joint_torque: measurement.joint_torque.into(),
     }
 }
 
@@ -239,7 +239,7 @@ fn broken_measurements_are_flagged_and_survived() {
     let mut driver = Driver::new(&config, 11);
     let mut estimator = ContactEstimator::new(&config.model(), &config.estimator).unwrap();
     let path = slide([1.0, 0.0], 0.001, 0.012, 2.0);
-    let mut before = ContactEstimate::UNKNOWN;
+    let mut before = ContactEstimate::unknown(estimator.joints());
     for tick in 0..3000 {
         let mut measurement = seen(&driver.step(path(f64::from(tick) * TICK)));
         let broken = tick % 100 == 50;
@@ -265,7 +265,11 @@ fn broken_measurements_are_flagged_and_survived() {
         before = estimate;
     }
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let estimate = estimator.step(dt, &JointMeasurement::default());
+        let rest = JointMeasurement {
+            motor_position: [0.0; 2].into(),
+            joint_torque: [0.0; 2].into(),
+        };
+        let estimate = estimator.step(dt, &rest);
         assert!(estimate.input_invalid && !estimate.valid);
         assert_eq!(estimate.tip, before.tip);
     }
@@ -280,8 +284,8 @@ fn flags_of(form: Form) {
     let config = with(form);
     let new = || ContactEstimator::new(&config.model(), &config.estimator).expect("valid");
     let bent = JointMeasurement {
-        motor_position: [-0.785, 1.571],
-        joint_torque: [0.0, 0.0],
+        motor_position: [-0.785, 1.571].into(),
+        joint_torque: [0.0, 0.0].into(),
     };
     let mut estimator = new();
     let settle = |estimator: &mut ContactEstimator, measurement: &JointMeasurement| {
@@ -293,7 +297,7 @@ fn flags_of(form: Form) {
     assert!(settle(&mut estimator, &bent).valid);
     // The end of the torque sensor's range, until the filter has forgotten it.
     let loaded = JointMeasurement {
-        joint_torque: [40.0, 0.0],
+        joint_torque: [40.0, 0.0].into(),
         ..bent
     };
     let estimate = estimator.step(TICK, &loaded);
@@ -305,7 +309,7 @@ fn flags_of(form: Form) {
     assert!(!estimate.valid && !estimate.input_invalid);
     assert!(settle(&mut estimator, &bent).valid);
     let stretched = JointMeasurement {
-        motor_position: [0.0, 0.01],
+        motor_position: [0.0, 0.01].into(),
         ..bent
     };
     let estimate = settle(&mut new(), &stretched);

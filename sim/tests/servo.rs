@@ -5,6 +5,7 @@ use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{
     Command, Measurement, Servo, ServoConfig, ServoInput, ServoOutput, Target,
 };
+use ferntast_model::Joints;
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 
 /// One tick.
@@ -16,8 +17,13 @@ struct Bench {
     servo: Servo,
     nominal: [f64; 2],
     measured: Measurement,
-    torque: [f64; 2],
+    torque: Joints<f64>,
     now: i64,
+}
+
+fn servo(config: &ArmConfig) -> Servo {
+    let kinematics = Some(config.arm.kinematics());
+    Servo::new(&config.joint, kinematics, &ServoConfig::default()).expect("valid")
 }
 
 impl Bench {
@@ -27,15 +33,15 @@ impl Bench {
         let start = config.truth.start_position;
         let mut bench = Bench {
             arm: SimulatedArm::new(&config, 5).expect("valid"),
-            servo: Servo::new(&config.arm, &config.joint, &ServoConfig::default()).expect("valid"),
+            servo: servo(&config),
             nominal: config.contour.nominal_tip,
             measured: Measurement {
                 stamp_ns: 1_700_000_000_000_000_000,
-                position: start,
-                velocity: [0.0; 2],
-                torque: [0.0; 2],
+                position: start.into(),
+                velocity: [0.0; 2].into(),
+                torque: [0.0; 2].into(),
             },
-            torque: [0.0; 2],
+            torque: [0.0; 2].into(),
             now: 1_700_000_000_000_000_000,
         };
         let output = bench.step(None, Some(StateCommand::Enable));
@@ -53,14 +59,14 @@ impl Bench {
                 state_command: state,
             },
         );
-        self.arm.advance(self.torque, TICK);
+        self.arm.advance([self.torque[0], self.torque[1]], TICK);
         self.torque = output.torque;
         let measured = self.arm.measure();
         self.measured = Measurement {
             stamp_ns: self.now,
-            position: measured.motor_position,
-            velocity: measured.motor_velocity,
-            torque: measured.joint_torque,
+            position: measured.motor_position.into(),
+            velocity: measured.motor_velocity.into(),
+            torque: measured.joint_torque.into(),
         };
         output
     }

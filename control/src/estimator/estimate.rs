@@ -1,16 +1,16 @@
 //! What goes into the estimator, and what comes out.
 
 use super::Coefficient;
-use ferntast_model::JOINTS;
 use ferntast_model::contour::Surface;
+use ferntast_model::{JointCount, Joints};
 
 /// What the estimator needs of a measurement, joint side.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointMeasurement {
     /// Motor positions θ \[rad\].
-    pub motor_position: [f64; JOINTS],
+    pub motor_position: Joints<f64>,
     /// Joint torques τ at the torque sensors \[Nm\].
-    pub joint_torque: [f64; JOINTS],
+    pub joint_torque: Joints<f64>,
 }
 
 /// What is known of tip and contact. Always finite, but for the error of a
@@ -18,9 +18,9 @@ pub struct JointMeasurement {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactEstimate {
     /// Link-side positions q \[rad\], newest, not filtered.
-    pub position: [f64; JOINTS],
+    pub position: Joints<f64>,
     /// Link-side velocities q̇ \[rad/s\], filtered.
-    pub velocity: [f64; JOINTS],
+    pub velocity: Joints<f64>,
     /// Stylus tip r_ee \[m\], base frame, newest, not filtered.
     pub tip: [f64; 2],
     /// Velocity of the tip \[m/s\], base frame, filtered.
@@ -56,32 +56,34 @@ pub struct ContactEstimate {
     /// A torque sensor is, or was a moment ago, at the end of its range.
     pub saturated: bool,
     /// A torque sensor gives the same number again and again while its joint turns.
-    pub stuck: [bool; JOINTS],
+    pub stuck: Joints<bool>,
     /// The measurement or the time step was not usable; the rest is from before.
     pub input_invalid: bool,
 }
 
 impl ContactEstimate {
-    /// Nothing is known.
-    pub const UNKNOWN: ContactEstimate = ContactEstimate {
-        position: [0.0; JOINTS],
-        velocity: [0.0; JOINTS],
-        tip: [0.0; 2],
-        tip_velocity: [0.0; 2],
-        force: [0.0; 2],
-        contact_force: [0.0; 2],
-        normal_force: 0.0,
-        tangential_force: 0.0,
-        surface: None,
-        feature: None,
-        friction: Coefficient::UNKNOWN,
-        in_contact: false,
-        valid: false,
-        near_rest: false,
-        corner: false,
-        singular: false,
-        saturated: false,
-        stuck: [false; JOINTS],
-        input_invalid: false,
-    };
+    /// Nothing is known of an arm with so many joints.
+    pub fn unknown(joints: JointCount) -> ContactEstimate {
+        ContactEstimate {
+            position: Joints::filled(joints, 0.0),
+            velocity: Joints::filled(joints, 0.0),
+            tip: [0.0; 2],
+            tip_velocity: [0.0; 2],
+            force: [0.0; 2],
+            contact_force: [0.0; 2],
+            normal_force: 0.0,
+            tangential_force: 0.0,
+            surface: None,
+            feature: None,
+            friction: Coefficient::UNKNOWN,
+            in_contact: false,
+            valid: false,
+            near_rest: false,
+            corner: false,
+            singular: false,
+            saturated: false,
+            stuck: Joints::filled(joints, false),
+            input_invalid: false,
+        }
+    }
 }

@@ -3,7 +3,8 @@
 
 use super::{DerivativeFilter, observer::MomentumObserver};
 use ferntast_model::arm::Arm;
-use ferntast_model::{JOINTS, Vector2};
+use ferntast_model::kinematics::planar;
+use ferntast_model::{JointCount, Joints, Vector2};
 use serde::{Deserialize, Serialize};
 
 /// How the contact's torque is found from joint torques and motion.
@@ -32,12 +33,39 @@ pub(super) struct FilteredMotion {
     pub(super) contact_torque: Vector2<f64>,
 }
 
+/// Link positions and joint torques of all joints, filtered alike.
+#[derive(Clone, Copy, Debug)]
+struct Channels {
+    positions: Joints<DerivativeFilter>,
+    torques: Joints<DerivativeFilter>,
+}
+
+impl Channels {
+    fn new(joints: JointCount, filter: DerivativeFilter) -> Self {
+        Self {
+            positions: Joints::filled(joints, filter),
+            torques: Joints::filled(joints, filter),
+        }
+    }
+
+    /// Both lists of filters with what goes into each.
+    fn each<'a>(
+        &'a mut self,
+        position: &'a Joints<f64>,
+        torque: &'a Joints<f64>,
+    ) -> impl Iterator<Item = (&'a mut DerivativeFilter, f64)> {
+        let positions = self.positions.iter_mut().zip(position.iter().copied());
+        positions.chain(self.torques.iter_mut().zip(torque.iter().copied()))
+    }
+}
+
 /// Filters all channels alike and computes the torque of the contact.
 #[derive(Clone, Debug)]
 pub(super) struct TorqueOfContact {
-    positions: [DerivativeFilter; JOINTS],
-    torques: [DerivativeFilter; JOINTS],
+    channels: Channels,
     observer: Option<MomentumObserver>,
+    /// How late the filters are, and how late everything is [s].
+    filter_delay: f64,
     delay: f64,
 }
 
@@ -47,7 +75,7 @@ impl TorqueOfContact {
     /// The observer is itself a low-pass of first order. It gets the cut-off
     /// asked for, and the filters before it twice that: their delays, 1/ω and
     /// 2/(2ω), add up to the 2/ω that the direct form's filters have.
-    pub(super) fn new(form: Form, cut_off: f64) -> Self {
+    pub(super) fn new(form: Form, cut_off: f64, joints: JointCount) -> Self {
         let (filter, observer) = match form {
             Form::Direct => (DerivativeFilter::new(cut_off), None),
             Form::MomentumObserver => (
@@ -56,9 +84,9 @@ impl TorqueOfContact {
             ),
         };
         Self {
-            positions: [filter; JOINTS],
-            torques: [filter; JOINTS],
+            channels: Channels::new(joints, filter),
             observer,
+            filter_delay: filter.delay(),
             delay: DerivativeFilter::new(cut_off).delay(),
         }
     }
@@ -69,35 +97,37 @@ impl TorqueOfContact {
     }
 
     /// Starts again, at rest at link positions `position` \[rad\] under `torque` \[Nm\].
-    pub(super) fn reset(&mut self, arm: &Arm, position: &Vector2<f64>, torque: &Vector2<f64>) {
-        for joint in 0..JOINTS {
-            self.positions[joint].reset(position[joint]);
-            self.torques[joint].reset(torque[joint]);
+    pub(super) fn reset(&mut self, arm: &Arm, position: &Joints<f64>, torque: &Joints<f64>) {
+        for (filter, value) in self.channels.each(position, torque) {
+            filter.reset(value);
         }
-        if let Some(observer) = &mut self.observer {
-            observer.reset(arm, position, torque);
+        if let Some(observer) = &mut self.observer
+            && let (Some(position), Some(torque)) = (planar(position), planar(torque))
+        {
+            observer.reset(arm, &position, &torque);
         }
     }
 
     /// Takes in link positions \[rad\] and joint torques \[Nm\], `dt` \[s\] after the last ones.
-    pub(super) fn step(&mut self, dt: f64, position: &Vector2<f64>, torque: &Vector2<f64>) {
-        for joint in 0..JOINTS {
-            self.positions[joint].step(position[joint], dt);
-            self.torques[joint].step(torque[joint], dt);
+    pub(super) fn step(&mut self, dt: f64, position: &Joints<f64>, torque: &Joints<f64>) {
+        for (filter, value) in self.channels.each(position, torque) {
+            filter.step(value, dt);
         }
     }
 
-    /// Motion and torque of the contact, after [`step`](Self::step) or [`reset`](Self::reset).
-    pub(super) fn motion(&mut self, arm: &Arm, dt: f64) -> FilteredMotion {
-        let channel = |read: fn(&DerivativeFilter) -> f64, from: &[DerivativeFilter; JOINTS]| {
-            Vector2::new(read(&from[0]), read(&from[1]))
+    /// Motion and torque of the contact, after [`step`](Self::step) or
+    /// [`reset`](Self::reset); `None` of an arm that has not the joints of `arm`.
+    pub(super) fn motion(&mut self, arm: &Arm, dt: f64) -> Option<FilteredMotion> {
+        let channels = &self.channels;
+        let channel = |read: fn(&DerivativeFilter) -> f64, from: &Joints<DerivativeFilter>| {
+            planar(&from.map(|filter| read(&filter)))
         };
-        let position = channel(DerivativeFilter::value, &self.positions);
-        let velocity = channel(DerivativeFilter::first, &self.positions);
-        let acceleration = channel(DerivativeFilter::second, &self.positions);
-        let torque = channel(DerivativeFilter::value, &self.torques);
-        let present_velocity = velocity + acceleration * self.positions[0].delay();
-        match &mut self.observer {
+        let position = channel(DerivativeFilter::value, &channels.positions)?;
+        let velocity = channel(DerivativeFilter::first, &channels.positions)?;
+        let acceleration = channel(DerivativeFilter::second, &channels.positions)?;
+        let torque = channel(DerivativeFilter::value, &channels.torques)?;
+        let present_velocity = velocity + acceleration * self.filter_delay;
+        Some(match &mut self.observer {
             None => FilteredMotion {
                 position,
                 velocity,
@@ -108,6 +138,6 @@ impl TorqueOfContact {
                 present_velocity,
                 ..observer.step(arm, dt, &position, &velocity, &torque)
             },
-        }
+        })
     }
 }

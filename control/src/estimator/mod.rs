@@ -28,7 +28,8 @@ pub use parameters::EstimatorParameters;
 
 use ferntast_model::arm::Arm;
 use ferntast_model::joint::JointParameters;
-use ferntast_model::{ArmModel, JOINTS, ParameterError, Vector2};
+use ferntast_model::kinematics::planar;
+use ferntast_model::{ArmModel, JointCount, Joints, ParameterError, Vector2};
 use form::TorqueOfContact;
 use sensors::SensorWatch;
 use split::{Motion, Split};
@@ -41,7 +42,9 @@ const LARGEST_TORQUE: f64 = 1e6;
 #[derive(Clone, Debug)]
 pub struct ContactEstimator {
     arm: Arm,
-    joints: [JointParameters; JOINTS],
+    count: JointCount,
+    /// As many as `count` says.
+    joints: Vec<JointParameters>,
     parameters: EstimatorParameters,
     contact: TorqueOfContact,
     sensors: SensorWatch,
@@ -65,18 +68,25 @@ impl ContactEstimator {
         parameters
             .validate()
             .map_err(|error| error.within("estimator"))?;
+        let count = JointCount::new(model.joint.len())?;
         Ok(Self {
             arm: Arm::new(&model.arm),
+            count,
             joints: model.joint.clone(),
             parameters: *parameters,
-            contact: TorqueOfContact::new(parameters.form, parameters.cut_off),
-            sensors: SensorWatch::new(),
+            contact: TorqueOfContact::new(parameters.form, parameters.cut_off, count),
+            sensors: SensorWatch::new(count),
             split: Split::new(model.contour.features()),
-            last: ContactEstimate::UNKNOWN,
+            last: ContactEstimate::unknown(count),
             gap: 0.0,
             settling: 0.0,
             started: false,
         })
+    }
+
+    /// How many joints it has measurements of.
+    pub fn joints(&self) -> JointCount {
+        self.count
     }
 
     /// Time that the filters take to forget \[s\].
@@ -91,7 +101,7 @@ impl ContactEstimator {
     /// forces and no contact any more.
     pub fn step(&mut self, dt: f64, measurement: &JointMeasurement) -> ContactEstimate {
         let passes = dt > 0.0 && dt.is_finite();
-        if !(passes && is_usable(measurement)) {
+        if !(passes && is_usable(self.count, measurement)) {
             self.gap += if passes { dt } else { 0.0 };
             return self.without_input();
         }
@@ -103,7 +113,11 @@ impl ContactEstimator {
         if sensors.stuck.contains(&true) {
             self.settling = memory;
         }
-        let motion = self.contact.motion(&self.arm, step);
+        // The arm's model is of its own joints: `new` has seen to that.
+        let motion = self.contact.motion(&self.arm, step).zip(planar(&link));
+        let Some((motion, link)) = motion else {
+            return self.without_input();
+        };
         let (q, qd) = (motion.position, motion.velocity);
 
         let kinematics = *self.arm.kinematics();
@@ -126,7 +140,7 @@ impl ContactEstimator {
             saturated: sensors.saturated,
             stuck: sensors.stuck,
             valid: !singular && !sensors.saturated && self.settling <= 0.0,
-            ..ContactEstimate::UNKNOWN
+            ..ContactEstimate::unknown(self.count)
         };
         let motion = Motion {
             tip,
@@ -154,7 +168,7 @@ impl ContactEstimator {
                 position: self.last.position,
                 tip: self.last.tip,
                 friction: self.last.friction,
-                ..ContactEstimate::UNKNOWN
+                ..ContactEstimate::unknown(self.count)
             };
         }
         self.last.input_invalid = true;
@@ -163,7 +177,7 @@ impl ContactEstimator {
     }
 
     /// Filters all channels; gives the newest link-side position \[rad\].
-    fn filter(&mut self, dt: f64, measurement: &JointMeasurement) -> Vector2<f64> {
+    fn filter(&mut self, dt: f64, measurement: &JointMeasurement) -> Joints<f64> {
         let anew = !self.started || dt > self.parameters.longest_gap;
         self.settling = if anew {
             self.settling_time()
@@ -171,8 +185,8 @@ impl ContactEstimator {
             (self.settling - dt).max(0.0)
         };
         self.started = true;
-        let torque = Vector2::from(measurement.joint_torque);
-        let link = Vector2::from_fn(|joint, _| {
+        let torque = measurement.joint_torque;
+        let link = Joints::from_fn(self.count, |joint| {
             self.joints[joint].link_position(measurement.motor_position[joint], torque[joint])
         });
         if anew {
@@ -184,17 +198,14 @@ impl ContactEstimator {
     }
 }
 
-/// Whether the numbers are such as an arm can give.
-fn is_usable(measurement: &JointMeasurement) -> bool {
-    // NaN fails both comparisons.
-    measurement
-        .motor_position
-        .iter()
-        .all(|position| position.abs() <= LARGEST_POSITION)
-        && measurement
-            .joint_torque
-            .iter()
-            .all(|torque| torque.abs() <= LARGEST_TORQUE)
+/// Whether the numbers are such as an arm of so many joints can give.
+fn is_usable(joints: JointCount, measurement: &JointMeasurement) -> bool {
+    // NaN fails the comparison.
+    let within = |values: &Joints<f64>, largest: f64| {
+        values.count() == joints && values.iter().all(|value| value.abs() <= largest)
+    };
+    within(&measurement.motor_position, LARGEST_POSITION)
+        && within(&measurement.joint_torque, LARGEST_TORQUE)
 }
 
 #[cfg(test)]

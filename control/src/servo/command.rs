@@ -1,9 +1,10 @@
 //! Which commands are acted on.
 
 use super::ServoConfig;
+use super::tip::TipModel;
 use crate::{nanoseconds, seconds};
-use ferntast_model::kinematics::{Elbow, Kinematics};
-use ferntast_model::{JOINTS, Vector2};
+use ferntast_model::kinematics::Kinematics;
+use ferntast_model::{Joints, ParameterError, Vector2};
 
 /// Where to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +13,7 @@ pub enum Target {
     /// the plane z = 0: z must be finite and is not looked at any further.
     Tip([f64; 3]),
     /// Joint positions \[rad\] (`servo_jp`).
-    Joints([f64; JOINTS]),
+    Joints(Joints<f64>),
 }
 
 /// A command with its stamp.
@@ -26,7 +27,9 @@ pub struct Command {
 
 impl Command {
     fn same_bits(&self, other: &Command) -> bool {
-        let bits = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+        let bits = |a: &[f64], b: &[f64]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+        };
         self.stamp_ns == other.stamp_ns
             && match (&self.target, &other.target) {
                 (Target::Tip(a), Target::Tip(b)) => bits(a, b),
@@ -65,6 +68,17 @@ pub enum CommandRefusal {
     /// NaN or infinite.
     #[error("the command is not finite; send numbers")]
     NotFinite,
+    /// For another number of joints.
+    #[error("the command is for {found} joints, this arm has {needed}; send one position each")]
+    OtherJoints {
+        /// Joints of the command.
+        found: usize,
+        /// Joints of the servo.
+        needed: usize,
+    },
+    /// A tip, where the servo knows the joints only.
+    #[error("the servo has no Cartesian model of this arm; send joint positions")]
+    NoTipModel,
     /// Outside workspace, reach or joint limits.
     #[error("the command is outside the {limit}; stay inside")]
     OutOfRange {
@@ -90,7 +104,7 @@ pub enum Range {
     Workspace,
     /// What the links reach.
     Reach,
-    /// Limits of joint 1 or 2.
+    /// Limits of a joint, counted from 1.
     Joint(u8),
 }
 
@@ -110,15 +124,20 @@ const CLOCK_TOLERANCE: f64 = 0.005;
 #[derive(Clone, Copy, Debug)]
 struct Accepted {
     stamp_ns: i64,
-    tip: Vector2<f64>,
+    /// Where there is a Cartesian model.
+    tip: Option<Vector2<f64>>,
 }
 
 /// Decides which commands are acted on, one at a time.
+///
+/// Without a Cartesian model tips are refused, and workspace and jumps, which
+/// are about the tip, are not looked at: what a jump of the joints does is
+/// bounded by the setpoint's limits alone.
 #[derive(Clone, Debug)]
 pub struct CommandCheck {
-    kinematics: Kinematics,
-    lower: [f64; JOINTS],
-    upper: [f64; JOINTS],
+    tip: Option<TipModel>,
+    /// Lower and upper joint limits [rad].
+    limits: Joints<[f64; 2]>,
     workspace: [[f64; 2]; 2],
     age: f64,
     jump_speed: f64,
@@ -132,17 +151,20 @@ pub struct CommandCheck {
 }
 
 impl CommandCheck {
-    /// Checks against joint limits `lower`, `upper` \[rad\] and `config`.
+    /// Checks against `limits`, lower and upper, of each joint \[rad\], and `config`.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::WrongCount`]: kinematics of another number of joints.
     pub fn new(
-        kinematics: Kinematics,
-        lower: [f64; JOINTS],
-        upper: [f64; JOINTS],
+        kinematics: Option<Kinematics>,
+        limits: Joints<[f64; 2]>,
         config: &ServoConfig,
-    ) -> Self {
-        CommandCheck {
-            kinematics,
-            lower,
-            upper,
+    ) -> Result<Self, ParameterError> {
+        let tip = kinematics.map(|own| TipModel::new(own, limits.count()));
+        Ok(CommandCheck {
+            tip: tip.transpose()?,
+            limits,
             workspace: [config.workspace_lower, config.workspace_upper],
             age: config.command_age,
             jump_speed: config.jump_speed,
@@ -151,7 +173,7 @@ impl CommandCheck {
             seen: None,
             newest_ns: 0,
             last: None,
-        }
+        })
     }
 
     /// Forgets where the last command was: the next one may be anywhere in
@@ -171,8 +193,8 @@ impl CommandCheck {
         new
     }
 
-    /// Joint positions \[rad\] for a new `command` at `now_ns`, elbow bent as
-    /// in `elbow`.
+    /// Joint positions \[rad\] for a new `command` at `now_ns`, bent as in
+    /// `posture` \[rad\] where a tip leaves that open.
     ///
     /// # Errors
     ///
@@ -181,8 +203,8 @@ impl CommandCheck {
         &mut self,
         command: &Command,
         now_ns: i64,
-        elbow: Elbow,
-    ) -> Result<[f64; JOINTS], CommandRefusal> {
+        posture: &Joints<f64>,
+    ) -> Result<Joints<f64>, CommandRefusal> {
         let stamp_ns = command.stamp_ns;
         if stamp_ns <= 0 {
             return Err(CommandRefusal::StampZero);
@@ -206,10 +228,12 @@ impl CommandCheck {
         if age < -CLOCK_TOLERANCE {
             return Err(CommandRefusal::FromFuture { ahead: -age });
         }
-        let (joints, tip) = self.joints(&command.target, elbow)?;
-        if let Some(last) = self.last {
+        let (joints, tip) = self.joints(&command.target, posture)?;
+        if let Some(last) = self.last
+            && let (Some(tip), Some(before)) = (tip, last.tip)
+        {
             let passed_ns = (stamp_ns - last.stamp_ns).clamp(0, self.horizon_ns);
-            let distance = (tip - last.tip).norm();
+            let distance = (tip - before).norm();
             if distance > self.jump_speed * seconds(passed_ns) + self.jump_slack {
                 let speed = distance / seconds(passed_ns).max(1e-9);
                 return Err(CommandRefusal::Jump { distance, speed });
@@ -220,38 +244,48 @@ impl CommandCheck {
         Ok(joints)
     }
 
+    /// Joint positions \[rad\] and, where that is known, the tip \[m\].
     fn joints(
         &self,
         target: &Target,
-        elbow: Elbow,
-    ) -> Result<([f64; JOINTS], Vector2<f64>), CommandRefusal> {
+        posture: &Joints<f64>,
+    ) -> Result<(Joints<f64>, Option<Vector2<f64>>), CommandRefusal> {
         let (joints, tip) = match target {
             Target::Tip(tip) => {
                 let tip = Vector2::new(tip[0], tip[1]);
-                let limit = Range::Reach;
-                let joints = self
-                    .kinematics
-                    .inverse(&tip, elbow)
-                    .map_err(|_| CommandRefusal::OutOfRange { limit })?;
-                (joints, tip)
+                let model = self.tip.ok_or(CommandRefusal::NoTipModel)?;
+                (model.joints(&tip, posture)?, Some(tip))
             }
             Target::Joints(joints) => {
-                let joints = Vector2::new(joints[0], joints[1]);
-                (joints, self.kinematics.forward(&joints))
+                self.check_count(joints)?;
+                let tip = self.tip.map(|model| model.tip(joints));
+                (*joints, tip.transpose()?)
             }
         };
         let [lower, upper] = &self.workspace;
-        if (0..2).any(|axis| tip[axis] < lower[axis] || tip[axis] > upper[axis]) {
+        let outside = |tip: Vector2<f64>| {
+            (0..2).any(|axis| tip[axis] < lower[axis] || tip[axis] > upper[axis])
+        };
+        if tip.is_some_and(outside) {
             let limit = Range::Workspace;
             return Err(CommandRefusal::OutOfRange { limit });
         }
-        for joint in 0..JOINTS {
-            if joints[joint] < self.lower[joint] || joints[joint] > self.upper[joint] {
+        for (joint, (position, [lower, upper])) in joints.iter().zip(self.limits.iter()).enumerate()
+        {
+            if position < lower || position > upper {
                 let limit = Range::Joint(joint as u8 + 1);
                 return Err(CommandRefusal::OutOfRange { limit });
             }
         }
-        Ok(([joints[0], joints[1]], tip))
+        Ok((joints, tip))
+    }
+
+    fn check_count(&self, joints: &Joints<f64>) -> Result<(), CommandRefusal> {
+        let (found, needed) = (joints.len(), self.limits.len());
+        match found == needed {
+            true => Ok(()),
+            false => Err(CommandRefusal::OtherJoints { found, needed }),
+        }
     }
 }
 
@@ -262,8 +296,9 @@ pub struct RefusalCounts {
     pub stamp: u64,
     /// Too old or from the future.
     pub time: u64,
-    /// Not finite.
-    pub not_finite: u64,
+    /// Not finite, or nothing that the servo can take: of other joints, or a tip
+    /// where it knows the joints only.
+    pub value: u64,
     /// Outside workspace, reach or joint limits.
     pub out_of_range: u64,
     /// Jumps.
@@ -276,7 +311,9 @@ impl RefusalCounts {
         let counter = match refusal {
             CommandRefusal::StampZero | CommandRefusal::StampBackwards { .. } => &mut self.stamp,
             CommandRefusal::TooOld { .. } | CommandRefusal::FromFuture { .. } => &mut self.time,
-            CommandRefusal::NotFinite => &mut self.not_finite,
+            CommandRefusal::NotFinite
+            | CommandRefusal::OtherJoints { .. }
+            | CommandRefusal::NoTipModel => &mut self.value,
             CommandRefusal::OutOfRange { .. } => &mut self.out_of_range,
             CommandRefusal::Jump { .. } => &mut self.jump,
         };
@@ -285,7 +322,7 @@ impl RefusalCounts {
 
     /// All of them.
     pub fn total(&self) -> u64 {
-        self.stamp + self.time + self.not_finite + self.out_of_range + self.jump
+        self.stamp + self.time + self.value + self.out_of_range + self.jump
     }
 }
 
@@ -298,12 +335,14 @@ mod tests {
     const NOW: i64 = 1_700_000_000_000_000_000;
 
     fn check() -> CommandCheck {
-        CommandCheck::new(
-            Kinematics::new([0.25, 0.25]),
-            [-1.5, 0.2],
-            [1.5, 2.5],
-            &ServoConfig::default(),
-        )
+        let kinematics = Kinematics::new([0.25, 0.25]);
+        let limits = [[-1.5, 1.5], [0.2, 2.5]].into();
+        CommandCheck::new(Some(kinematics), limits, &ServoConfig::default()).unwrap()
+    }
+
+    /// The elbow bent to the positive side.
+    fn posture() -> Joints<f64> {
+        [0.0, 1.0].into()
     }
 
     fn tip(stamp_ns: i64, x: f64, y: f64) -> Command {
@@ -311,8 +350,8 @@ mod tests {
         Command { stamp_ns, target }
     }
 
-    fn at(check: &mut CommandCheck, command: Command) -> Result<[f64; 2], CommandRefusal> {
-        check.check(&command, NOW, Elbow::Positive)
+    fn at(check: &mut CommandCheck, command: Command) -> Result<Joints<f64>, CommandRefusal> {
+        check.check(&command, NOW, &posture())
     }
 
     #[test]
@@ -337,11 +376,7 @@ mod tests {
         }
         // Nothing of all that moved the reference.
         at(&mut check, tip(NOW - 3 * MS, 0.351, 0.0)).unwrap();
-        let old = check.check(
-            &tip(NOW - 2 * MS, 0.351, 0.0),
-            NOW + 19 * MS,
-            Elbow::Positive,
-        );
+        let old = check.check(&tip(NOW - 2 * MS, 0.351, 0.0), NOW + 19 * MS, &posture());
         assert!(matches!(old, Err(CommandRefusal::TooOld { .. })), "{old:?}");
     }
 
@@ -351,7 +386,7 @@ mod tests {
         let mut now = NOW;
         let mut send = |check: &mut CommandCheck, x: f64| {
             now += 2 * MS;
-            check.check(&tip(now, x, 0.0), now, Elbow::Positive)
+            check.check(&tip(now, x, 0.0), now, &posture())
         };
         send(&mut check, 0.30).unwrap();
         for _ in 0..100 {
@@ -370,7 +405,7 @@ mod tests {
         for k in 0..30 {
             let now = NOW + k * MS;
             check
-                .check(&tip(now, 0.3 + 0.003 * k as f64, 0.0), now, Elbow::Positive)
+                .check(&tip(now, 0.3 + 0.003 * k as f64, 0.0), now, &posture())
                 .unwrap();
         }
     }
@@ -384,6 +419,44 @@ mod tests {
         assert!(check.is_new(&tip(0, 1.0, 0.0)));
     }
 
+    #[test]
+    fn without_a_cartesian_model_joints_are_taken_and_tips_refused() {
+        let limits = [[-1.0, 1.0]; 3].into();
+        let mut check = CommandCheck::new(None, limits, &ServoConfig::default()).unwrap();
+        let mut stamp_ns = NOW;
+        let mut send = |joints: Joints<f64>| {
+            stamp_ns += MS;
+            let target = Target::Joints(joints);
+            check.check(&Command { stamp_ns, target }, stamp_ns, &[0.0; 3].into())
+        };
+        assert_eq!(send([0.1, -0.2, 0.3].into()).unwrap(), [0.1, -0.2, 0.3]);
+        assert_eq!(send([0.9, 0.9, 0.9].into()).unwrap(), [0.9; 3]);
+        let limit = Range::Joint(3);
+        assert_eq!(
+            send([0.0, 0.0, 1.1].into()),
+            Err(CommandRefusal::OutOfRange { limit })
+        );
+        let (found, needed) = (2, 3);
+        assert_eq!(
+            send([0.0, 0.0].into()),
+            Err(CommandRefusal::OtherJoints { found, needed })
+        );
+        stamp_ns += MS;
+        let refused = check.check(&tip(stamp_ns, 0.35, 0.0), stamp_ns, &[0.0; 3].into());
+        assert_eq!(refused, Err(CommandRefusal::NoTipModel));
+    }
+
+    #[test]
+    fn kinematics_of_another_number_of_joints_are_refused() {
+        let kinematics = Some(Kinematics::new([0.25, 0.25]));
+        let limits = [[-1.0, 1.0]; 3].into();
+        let error = CommandCheck::new(kinematics, limits, &ServoConfig::default()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "joint has 3 entries where 2 are needed: one for each link of the arm's kinematics"
+        );
+    }
+
     proptest! {
         /// Whatever comes in, what comes out is within the joint limits.
         #[test]
@@ -394,8 +467,8 @@ mod tests {
             let mut check = check();
             let near = near.into_iter().map(|(age, x, y)| (NOW - age * MS, x, y, false));
             for (stamp_ns, x, y, joints) in commands.into_iter().chain(near) {
-                let target = if joints { Target::Joints([x, y]) } else { Target::Tip([x, y, 0.0]) };
-                if let Ok(q) = check.check(&Command { stamp_ns, target }, NOW, Elbow::Positive) {
+                let target = if joints { Target::Joints([x, y].into()) } else { Target::Tip([x, y, 0.0]) };
+                if let Ok(q) = check.check(&Command { stamp_ns, target }, NOW, &posture()) {
                     prop_assert!((-1.5..=1.5).contains(&q[0]) && (0.2..=2.5).contains(&q[1]));
                 }
             }

@@ -1,29 +1,38 @@
 //! How far the tip gives way to a force while the servo holds it.
 
 use super::ServoConfig;
-use ferntast_model::{ArmModel, JOINTS, Matrix2, Vector2};
+use ferntast_model::{ArmModel, JointCount, Matrix2, ParameterError, Vector2};
 
 /// Compliance of the tip at the joint positions `q` \[rad\], base frame
 /// \[m/N\]: J K⁻¹ Jᵀ with servo and gear of each joint one behind the other,
 /// 1/K = 1/k_P + 1/k (Salisbury 1980, "Active stiffness control of a
 /// manipulator in Cartesian coordinates", IEEE CDC).
-pub fn tip_compliance(model: &ArmModel, servo: &ServoConfig, q: &Vector2<f64>) -> Matrix2<f64> {
+///
+/// # Errors
+///
+/// [`ParameterError::WrongCount`]: model or tuning are not of one joint a link.
+pub fn tip_compliance(
+    model: &ArmModel,
+    servo: &ServoConfig,
+    q: &Vector2<f64>,
+) -> Result<Matrix2<f64>, ParameterError> {
+    let joints = model.arm.joints_of_links(&model.joint)?;
+    let tuning = servo.joints(JointCount::new(joints.len())?)?;
     let jacobian = model.arm.kinematics().jacobian(q);
-    let mut joints = Matrix2::zeros();
-    for joint in 0..JOINTS {
-        joints[(joint, joint)] = 1.0 / servo.stiffness[joint] + 1.0 / model.joint[joint].stiffness;
-    }
-    jacobian * joints * jacobian.transpose()
+    let each =
+        Vector2::from_fn(|joint, _| 1.0 / tuning[joint].stiffness + 1.0 / joints[joint].stiffness);
+    Ok(jacobian * Matrix2::from_diagonal(&each) * jacobian.transpose())
 }
 
 /// Stiffness of the tip in its stiffest direction at the contour's nominal
-/// point \[N/m\]; `None` where the arm does not reach that.
+/// point \[N/m\]; `None` where the arm does not reach that, or the tuning is of
+/// another number of joints.
 pub fn stiffest(model: &ArmModel, servo: &ServoConfig) -> Option<f64> {
     let contour = &model.contour;
     let tip = Vector2::from(contour.nominal_tip);
     let kinematics = model.arm.kinematics();
     let q = kinematics.inverse(&tip, contour.nominal_elbow).ok()?;
-    let compliance = tip_compliance(model, servo, &q);
+    let compliance = tip_compliance(model, servo, &q).ok()?;
     let least = compliance.symmetric_eigenvalues().min();
     (least > 0.0).then(|| 1.0 / least)
 }
@@ -38,7 +47,7 @@ mod tests {
     fn model() -> ArmModel {
         ArmModel {
             arm: arm(),
-            joint: [joint(), joint()],
+            joint: vec![joint(), joint()],
             contour: Contour {
                 nominal_tip: [0.35, 0.02],
                 nominal_elbow: Elbow::Positive,
@@ -52,13 +61,13 @@ mod tests {
     fn a_bent_elbow_gives_way_by_each_joint_and_its_lever() {
         let (model, servo) = (model(), ServoConfig::default());
         let q = Vector2::new(0.3, 1.1);
-        let compliance = tip_compliance(&model, &servo, &q);
+        let compliance = tip_compliance(&model, &servo, &q).unwrap();
         // By hand: a force F on the tip turns joint i by τᵢ/Kᵢ, τ = Jᵀ F.
         let force = Vector2::new(3.0, -2.0);
         let jacobian = model.arm.kinematics().jacobian(&q);
         let torque = jacobian.tr_mul(&force);
         let mut turned = Vector2::zeros();
-        for joint in 0..JOINTS {
+        for joint in 0..2 {
             turned[joint] = torque[joint] / servo.stiffness[joint]
                 + torque[joint] / model.joint[joint].stiffness;
         }
@@ -73,7 +82,7 @@ mod tests {
         let tip = Vector2::from(contour.nominal_tip);
         let kinematics = model.arm.kinematics();
         let q = kinematics.inverse(&tip, contour.nominal_elbow).unwrap();
-        let compliance = tip_compliance(&model, &servo, &q);
+        let compliance = tip_compliance(&model, &servo, &q).unwrap();
         let along = |angle: f64| {
             let direction = Vector2::new(angle.cos(), angle.sin());
             1.0 / direction.dot(&(compliance * direction))

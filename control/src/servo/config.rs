@@ -1,11 +1,12 @@
 //! What can be tuned about the servo.
 
 use super::TakeOverConfig;
-use ferntast_model::{JOINTS, ParameterError, Section, check, parameters};
+use ferntast_model::{JointCount, Joints, ParameterError, Section, check, parameters};
 
 parameters! {
     /// Tuning of the servo. Limits of the arm itself (position, velocity, torque)
-    /// come from the arm's file. Every key may be left out.
+    /// come from the arm's file. Every key may be left out. Lists have one entry
+    /// for each joint; their defaults are for an arm of two.
     pub struct ServoConfig {
         /// Step of the loop \[s\].
         pub period: f64 [1e-4..=1e-2, "s"] = 1e-3,
@@ -28,23 +29,23 @@ parameters! {
         /// Share of the arm's velocity limit that the setpoint uses \[-\].
         pub velocity_share: f64 [0.01..=1.0, "-"] = 1.0,
         /// Largest acceleration of the setpoint \[rad/s²\].
-        pub acceleration_limit: [f64; JOINTS] [0.1..=1e4, "rad/s²"] = [40.0, 40.0],
+        pub acceleration_limit: Vec<f64> [0.1..=1e4, "rad/s²"] = vec![40.0, 40.0],
         /// Joint speed on the way from rest to the first command after enable or
         /// resume \[rad/s\].
         pub approach_speed: f64 [0.001..=10.0, "rad/s"] = 0.2,
         /// Natural frequency ω of the tracker that smooths commands \[rad/s\].
         pub tracker_frequency: f64 [1.0..=300.0, "rad/s"] = 80.0,
         /// Proportional gain k_P on the motor position \[Nm/rad\].
-        pub stiffness: [f64; JOINTS] [0.0..=1e6, "Nm/rad"] = [8000.0, 8000.0],
+        pub stiffness: Vec<f64> [0.0..=1e6, "Nm/rad"] = vec![8000.0, 8000.0],
         /// Largest torque of the proportional part \[Nm\]: bounds how hard the arm
         /// presses against what is in its way. Below the torque sensor's range.
-        pub pressing_limit: [f64; JOINTS] [0.0..=1e6, "Nm"] = [20.0, 20.0],
+        pub pressing_limit: Vec<f64> [0.0..=1e6, "Nm"] = vec![20.0, 20.0],
         /// Derivative gain k_D on the motor velocity \[Nm·s/rad\].
-        pub damping: [f64; JOINTS] [0.0..=1e6, "Nm·s/rad"] = [100.0, 100.0],
+        pub damping: Vec<f64> [0.0..=1e6, "Nm·s/rad"] = vec![100.0, 100.0],
         /// k_P while paused \[Nm/rad\].
-        pub hold_stiffness: [f64; JOINTS] [0.0..=1e6, "Nm/rad"] = [1000.0, 1000.0],
+        pub hold_stiffness: Vec<f64> [0.0..=1e6, "Nm/rad"] = vec![1000.0, 1000.0],
         /// k_D while paused \[Nm·s/rad\].
-        pub hold_damping: [f64; JOINTS] [0.0..=1e6, "Nm·s/rad"] = [40.0, 40.0],
+        pub hold_damping: Vec<f64> [0.0..=1e6, "Nm·s/rad"] = vec![40.0, 40.0],
         /// Share of the modelled friction that is fed forward \[-\].
         pub friction_compensation: f64 [0.0..=1.0, "-"] = 0.9,
         /// Setpoint speed below which the friction fed forward fades out \[rad/s\].
@@ -60,7 +61,51 @@ parameters! {
     check ServoConfig::workspace_is_not_empty;
 }
 
+/// What is tuned joint by joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointTuning {
+    /// Largest acceleration of the setpoint \[rad/s²\].
+    pub acceleration_limit: f64,
+    /// Proportional gain k_P on the motor position \[Nm/rad\].
+    pub stiffness: f64,
+    /// Largest torque of the proportional part \[Nm\].
+    pub pressing_limit: f64,
+    /// Derivative gain k_D on the motor velocity \[Nm·s/rad\].
+    pub damping: f64,
+    /// k_P while paused \[Nm/rad\].
+    pub hold_stiffness: f64,
+    /// k_D while paused \[Nm·s/rad\].
+    pub hold_damping: f64,
+}
+
 impl ServoConfig {
+    /// The tuning of each of `count` joints.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::WrongCount`]: a list has not one entry for each joint.
+    pub fn joints(&self, count: JointCount) -> Result<Joints<JointTuning>, ParameterError> {
+        let lists = [
+            ("acceleration_limit", &self.acceleration_limit),
+            ("stiffness", &self.stiffness),
+            ("pressing_limit", &self.pressing_limit),
+            ("damping", &self.damping),
+            ("hold_stiffness", &self.hold_stiffness),
+            ("hold_damping", &self.hold_damping),
+        ];
+        for (key, list) in lists {
+            count.check(key, list.len())?;
+        }
+        Ok(Joints::from_fn(count, |joint| JointTuning {
+            acceleration_limit: self.acceleration_limit[joint],
+            stiffness: self.stiffness[joint],
+            pressing_limit: self.pressing_limit[joint],
+            damping: self.damping[joint],
+            hold_stiffness: self.hold_stiffness[joint],
+            hold_damping: self.hold_damping[joint],
+        }))
+    }
+
     fn workspace_is_not_empty(&self) -> Result<(), ParameterError> {
         for (axis, upper) in self.workspace_upper.into_iter().enumerate() {
             let key = format!("workspace_lower[{axis}]");

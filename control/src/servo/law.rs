@@ -14,8 +14,7 @@
 //! b > K T/2 + |B| (Colgate and Schenkel 1997), with b the joint's own viscous
 //! friction: about 165 Nm·s/rad against 1000 · 0.001 / 2 + 40.
 
-use super::{FeedForward, ServoConfig, Setpoint};
-use ferntast_model::JOINTS;
+use super::{FeedForward, JointTuning, ServoConfig, Setpoint};
 use ferntast_model::ParameterError;
 use ferntast_model::joint::JointParameters;
 
@@ -44,25 +43,24 @@ pub struct LimitedTorque {
 }
 
 impl PositionLaw {
-    /// The law of joint number `index` (0 or 1).
+    /// The law of one joint.
     ///
     /// # Errors
     ///
     /// When the joint's friction is not what the model knows.
     pub fn new(
         joint: &JointParameters,
-        index: usize,
+        tuning: &JointTuning,
         config: &ServoConfig,
     ) -> Result<PositionLaw, ParameterError> {
-        let index = index.min(JOINTS - 1);
         Ok(PositionLaw {
             friction: FeedForward::new(joint, config.take_over)?,
             inertia: joint.motor_inertia,
-            stiffness: config.stiffness[index],
-            pressing_limit: config.pressing_limit[index],
-            damping: config.damping[index],
-            hold_stiffness: config.hold_stiffness[index],
-            hold_damping: config.hold_damping[index],
+            stiffness: tuning.stiffness,
+            pressing_limit: tuning.pressing_limit,
+            damping: tuning.damping,
+            hold_stiffness: tuning.hold_stiffness,
+            hold_damping: tuning.hold_damping,
             torque_limit: joint.motor_torque_limit,
             compensation: config.friction_compensation,
             smoothing: config.friction_smoothing,

@@ -2,7 +2,9 @@
 //!
 //! One call of [`Servo::step`] a period: measurement, newest command and state
 //! command in; motor torques, setpoint, state and everything refused or
-//! limited out.
+//! limited out. It has the joints that it is made for, one to
+//! [`MAX_JOINTS`](ferntast_model::MAX_JOINTS); the arm's kinematics it needs only
+//! to be told tips.
 //!
 //! **When commands count.** After `enable` or `resume` the arm holds where it
 //! is, with full gains, and waits: no command yet is not a silent command. The
@@ -19,28 +21,30 @@ mod command;
 mod compliance;
 mod config;
 mod feed_forward;
+mod joint;
 mod law;
 mod setpoint;
 mod stall;
 mod take_over;
 #[cfg(test)]
 mod tests;
+mod tip;
 
 pub use command::{Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target};
 pub use compliance::{stiffest, tip_compliance};
-pub use config::ServoConfig;
+pub use config::{JointTuning, ServoConfig};
 pub use feed_forward::{FedForward, FedTorque, FeedForward, MAX_TERMS};
 pub use law::{LimitedTorque, PositionLaw};
 pub use setpoint::{Setpoint, SetpointGenerator, SetpointLimits};
 pub use take_over::{FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, TakenOver};
 
+use self::joint::{JointServo, Seen};
 use self::stall::Stall;
 use crate::operating::{Event, OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
 use crate::{nanoseconds, seconds};
-use ferntast_model::arm::ArmParameters;
 use ferntast_model::joint::JointParameters;
-use ferntast_model::kinematics::Elbow;
-use ferntast_model::{JOINTS, ParameterError, Vector2, check};
+use ferntast_model::kinematics::Kinematics;
+use ferntast_model::{JointCount, Joints, ParameterError};
 
 /// What the arm measures, on the joint side of the gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,19 +52,30 @@ pub struct Measurement {
     /// When it was measured \[ns since the UNIX epoch\].
     pub stamp_ns: i64,
     /// Motor positions \[rad\].
-    pub position: [f64; JOINTS],
+    pub position: Joints<f64>,
     /// Motor velocities \[rad/s\].
-    pub velocity: [f64; JOINTS],
+    pub velocity: Joints<f64>,
     /// Joint torques \[Nm\]; zeros when there is no sensor.
-    pub torque: [f64; JOINTS],
+    pub torque: Joints<f64>,
 }
 
 impl Measurement {
-    fn is_finite(&self) -> bool {
-        [self.position, self.velocity, self.torque]
-            .iter()
-            .flatten()
-            .all(|value| value.is_finite())
+    /// Whether it is a measurement of so many joints.
+    fn is_of(&self, count: JointCount) -> bool {
+        [&self.position, &self.velocity, &self.torque]
+            .into_iter()
+            .all(|own| own.count() == count && own.iter().all(|value| value.is_finite()))
+    }
+
+    /// What each joint measures.
+    fn joints(&self) -> impl Iterator<Item = Seen> + '_ {
+        let both = self.position.iter().zip(self.velocity.iter());
+        let all = both.zip(self.torque.iter());
+        all.map(|((&position, &velocity), &torque)| Seen {
+            position,
+            velocity,
+            torque,
+        })
     }
 }
 
@@ -79,9 +94,9 @@ pub struct ServoInput {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoOutput {
     /// Motor torques τ_m, joint side \[Nm\].
-    pub torque: [f64; JOINTS],
+    pub torque: Joints<f64>,
     /// Where the joints should be.
-    pub setpoint: [Setpoint; JOINTS],
+    pub setpoint: Joints<Setpoint>,
     /// The operating state.
     pub state: OperatingState,
     /// Why it is in this state.
@@ -115,15 +130,9 @@ pub struct Servo {
     measurement_watchdog_ns: i64,
     machine: StateMachine,
     commands: CommandCheck,
-    laws: [PositionLaw; JOINTS],
-    generators: [SetpointGenerator; JOINTS],
-    /// Where it was paused [rad].
-    hold: [f64; JOINTS],
-    /// Measured positions outside this are a fault [rad].
-    fault_range: [[f64; 2]; JOINTS],
-    limits: [[f64; 2]; JOINTS],
-    limit_margin: f64,
-    overspeed: [f64; JOINTS],
+    count: JointCount,
+    /// As many as there are joints.
+    joints: Vec<JointServo>,
     last_command_ns: Option<i64>,
     stall: Stall,
     refusals: RefusalCounts,
@@ -131,64 +140,46 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// A servo for the arm as it is believed to be.
+    /// A servo for `joints` as they are believed to be; with the arm's
+    /// `kinematics` it takes tips as well as joint positions.
     ///
     /// # Errors
     ///
-    /// The first value of `config` or of the joints that is out of bounds.
+    /// The first value of `config` or of the joints that is out of bounds; a list
+    /// of `config`, or kinematics, of another number of joints.
     pub fn new(
-        arm: &ArmParameters,
-        joints: &[JointParameters; JOINTS],
+        joints: &[JointParameters],
+        kinematics: Option<Kinematics>,
         config: &ServoConfig,
     ) -> Result<Servo, ParameterError> {
         config.validate()?;
-        let key = |index: usize| format!("joint[{index}]");
-        for (index, joint) in joints.iter().enumerate() {
-            joint
-                .validate()
-                .map_err(|error| error.within(&key(index)))?;
-            let share = config.approach_speed / joint.velocity_limit;
-            check("approach_speed / velocity_limit", share, 0.0, 1.0, "-")
-                .map_err(|error| error.within(&key(index)))?;
-        }
-        let lower = [0, 1].map(|index: usize| joints[index].position_lower);
-        let upper = [0, 1].map(|index: usize| joints[index].position_upper);
-        let limits = [0, 1].map(|index: usize| [lower[index], upper[index]]);
-        let law = |index: usize| {
-            PositionLaw::new(&joints[index], index, config)
-                .map_err(|error| error.within(&key(index)))
-        };
-        let generator = |index: usize| {
-            SetpointGenerator::new(
-                config.tracker_frequency,
-                SetpointLimits {
-                    velocity: config.velocity_share * joints[index].velocity_limit,
-                    acceleration: config.acceleration_limit[index],
-                    approach: config.approach_speed,
-                    lower: lower[index],
-                    upper: upper[index],
-                },
-            )
-        };
+        let count = JointCount::new(joints.len())?;
+        let tuning = config.joints(count)?;
+        let limits = |joint: usize| [joints[joint].position_lower, joints[joint].position_upper];
+        let limits = Joints::from_fn(count, limits);
+        let each = joints.iter().zip(tuning.iter()).enumerate();
+        let each = each.map(|(index, (joint, tuning))| {
+            JointServo::new(joint, tuning, config)
+                .map_err(|error| error.within(&format!("joint[{index}]")))
+        });
         Ok(Servo {
             period: config.period,
             command_watchdog_ns: nanoseconds(config.command_watchdog),
             measurement_watchdog_ns: nanoseconds(config.measurement_watchdog),
             machine: StateMachine::default(),
-            commands: CommandCheck::new(arm.kinematics(), lower, upper, config),
-            laws: [law(0)?, law(1)?],
-            generators: [generator(0), generator(1)],
-            hold: [0.0; JOINTS],
-            fault_range: limits,
-            limits,
-            limit_margin: config.limit_margin,
-            overspeed: [0, 1]
-                .map(|index: usize| config.overspeed_share * joints[index].velocity_limit),
+            commands: CommandCheck::new(kinematics, limits, config)?,
+            count,
+            joints: each.collect::<Result<_, _>>()?,
             last_command_ns: None,
             stall: Stall::default(),
             refusals: RefusalCounts::default(),
             accepted: 0,
         })
+    }
+
+    /// How many joints it moves.
+    pub fn joints(&self) -> JointCount {
+        self.count
     }
 
     /// The operating state.
@@ -197,13 +188,14 @@ impl Servo {
     }
 
     /// The friction that is fed forward at each joint.
-    pub fn feed_forward(&self) -> [&FeedForward; JOINTS] {
-        self.laws.each_ref().map(PositionLaw::feed_forward)
+    pub fn feed_forward(&self) -> impl Iterator<Item = &FeedForward> {
+        self.joints.iter().map(JointServo::feed_forward)
     }
 
     /// The same at joint number `joint` (from 0), to be told other friction.
     pub fn feed_forward_mut(&mut self, joint: usize) -> Option<&mut FeedForward> {
-        self.laws.get_mut(joint).map(PositionLaw::feed_forward_mut)
+        let own = self.joints.get_mut(joint);
+        own.map(JointServo::feed_forward_mut)
     }
 
     /// What the temperature of joint number `joint` (from 0) is now \[degC\].
@@ -216,8 +208,8 @@ impl Servo {
     /// One period at `now_ns` \[ns since the UNIX epoch\].
     pub fn step(&mut self, now_ns: i64, input: &ServoInput) -> ServoOutput {
         let stalled_ns = self.stall.step(now_ns);
-        for law in &mut self.laws {
-            law.feed_forward_mut().step(self.period);
+        for joint in &mut self.joints {
+            joint.feed_forward_mut().step(self.period);
         }
         let measurement = self.usable(now_ns - stalled_ns, input.measurement.as_ref());
         let was = self.machine.state();
@@ -243,12 +235,14 @@ impl Servo {
             && self.state() == OperatingState::Paused
             && let Ok(measured) = &measurement
         {
-            self.hold = measured.position;
+            for (joint, position) in self.joints.iter_mut().zip(measured.position.iter()) {
+                joint.hold_at(*position);
+            }
         }
 
         let mut output = ServoOutput {
-            torque: [0.0; JOINTS],
-            setpoint: [Setpoint::default(); JOINTS],
+            torque: Joints::filled(self.count, 0.0),
+            setpoint: Joints::filled(self.count, Setpoint::default()),
             state: self.machine.state(),
             reason: self.machine.reason(),
             refused,
@@ -265,10 +259,10 @@ impl Servo {
                 .measurement
                 .map_or(f64::NAN, |own| seconds(now_ns.saturating_sub(own.stamp_ns))),
         };
-        match measurement {
-            Ok(measured) => self.drive(&measured, &mut output),
-            Err(_) => output.setpoint = self.generators.map(|own| own.setpoint()),
+        if let Ok(measured) = measurement {
+            self.drive(&measured, &mut output);
         }
+        output.setpoint = self.setpoint();
         output
     }
 
@@ -281,35 +275,25 @@ impl Servo {
         if measured.stamp_ns <= 0 || silent {
             return Err(Event::MeasurementSilent);
         }
-        if !measured.is_finite() {
+        if !measured.is_of(self.count) {
             return Err(Event::MeasurementInvalid);
         }
         Ok(*measured)
     }
 
-    /// Starts from where the arm is. An arm that stands outside its limits
-    /// may be enabled to be brought back: only further out is a fault then.
+    /// Starts from where the arm is.
     fn arm(&mut self, measured: &Measurement) {
         self.last_command_ns = None;
         self.commands.rearm();
-        let margin = self.limit_margin;
-        for joint in 0..JOINTS {
-            let position = measured.position[joint];
-            self.generators[joint].start(position);
-            let [lower, upper] = self.limits[joint];
-            self.fault_range[joint] = [position.min(lower) - margin, position.max(upper) + margin];
+        for (joint, position) in self.joints.iter_mut().zip(measured.position.iter()) {
+            joint.start(*position);
         }
     }
 
     fn supervise(&mut self, measured: &Measurement) {
-        for joint in 0..JOINTS {
-            let number = joint as u8 + 1;
-            let [lower, upper] = self.fault_range[joint];
-            if !(lower..=upper).contains(&measured.position[joint]) {
-                self.machine.event(Event::JointLimit(number));
-            }
-            if measured.velocity[joint].abs() > self.overspeed[joint] {
-                self.machine.event(Event::Overspeed(number));
+        for (number, (joint, seen)) in (1..).zip(self.joints.iter().zip(measured.joints())) {
+            for event in joint.faults(number, &seen) {
+                self.machine.event(event);
             }
         }
     }
@@ -319,12 +303,11 @@ impl Servo {
         if !self.commands.is_new(command) || self.state() != OperatingState::Enabled {
             return Ok(());
         }
-        let bent = self.generators[1].setpoint().position;
-        let elbow = Elbow::of(&Vector2::new(0.0, bent));
-        match self.commands.check(command, now_ns, elbow) {
-            Ok(joints) => {
-                for (generator, target) in self.generators.iter_mut().zip(joints) {
-                    generator.set_target(target);
+        let posture = self.setpoint().map(|own| own.position);
+        match self.commands.check(command, now_ns, &posture) {
+            Ok(targets) => {
+                for (joint, target) in self.joints.iter_mut().zip(targets.iter()) {
+                    joint.set_target(*target);
                 }
                 self.last_command_ns = Some(now_ns);
                 self.accepted += 1;
@@ -346,29 +329,19 @@ impl Servo {
         }
     }
 
+    fn setpoint(&self) -> Joints<Setpoint> {
+        Joints::from_fn(self.count, |joint| self.joints[joint].setpoint())
+    }
+
     fn drive(&mut self, measured: &Measurement, output: &mut ServoOutput) {
-        for joint in 0..JOINTS {
-            let (position, velocity) = (measured.position[joint], measured.velocity[joint]);
-            let generator = &mut self.generators[joint];
-            let torque = match self.machine.state() {
-                OperatingState::Disabled | OperatingState::Fault => {
-                    generator.start(position);
-                    LimitedTorque::default()
-                }
-                OperatingState::Paused => {
-                    generator.start(self.hold[joint]);
-                    self.laws[joint].hold(self.hold[joint], position, velocity)
-                }
-                OperatingState::Enabled => {
-                    output.velocity_limited |= generator.step(self.period);
-                    output.approaching |= generator.is_approaching();
-                    let load = measured.torque[joint];
-                    self.laws[joint].follow(&generator.setpoint(), position, velocity, load)
-                }
-            };
-            output.torque[joint] = torque.torque;
-            output.effort_limited |= torque.limited;
-            output.setpoint[joint] = generator.setpoint();
+        let state = self.machine.state();
+        let joints = self.joints.iter_mut().zip(measured.joints());
+        for (torque, (joint, seen)) in output.torque.iter_mut().zip(joints) {
+            let driven = joint.drive(state, self.period, &seen);
+            *torque = driven.torque.torque;
+            output.effort_limited |= driven.torque.limited;
+            output.velocity_limited |= driven.velocity_limited;
+            output.approaching |= driven.approaching;
         }
     }
 }

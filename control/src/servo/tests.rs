@@ -1,9 +1,9 @@
 //! The servo on a plant of its own: motor, elasticity and link of each joint.
 
 use super::*;
-use ferntast_model::arm::LinkParameters;
+use ferntast_model::Vector2;
+use ferntast_model::arm::{ArmParameters, LinkParameters};
 use ferntast_model::friction::FrictionParameters;
-use ferntast_model::kinematics::Kinematics;
 use proptest::prelude::*;
 use std::collections::VecDeque;
 
@@ -99,7 +99,7 @@ impl Joint {
 struct Bench {
     servo: Servo,
     joints: [Joint; 2],
-    torques: VecDeque<[f64; 2]>,
+    torques: VecDeque<Joints<f64>>,
     measured: VecDeque<Measurement>,
     now: i64,
     external: [f64; 2],
@@ -109,13 +109,13 @@ impl Bench {
     fn new(position: [f64; 2]) -> Bench {
         let joints = [joint(), joint()];
         let mut bench = Bench {
-            servo: Servo::new(&arm(), &joints, &ServoConfig::default()).unwrap(),
+            servo: Servo::new(&joints, Some(arm().kinematics()), &ServoConfig::default()).unwrap(),
             joints: position.map(|q| Joint {
                 motor: [q, 0.0],
                 link: [q, 0.0],
                 ..Joint::default()
             }),
-            torques: [[0.0; 2]].into(),
+            torques: [[0.0; 2].into()].into(),
             measured: VecDeque::new(),
             now: START,
             external: [0.0; 2],
@@ -127,9 +127,9 @@ impl Bench {
     fn measure(&self) -> Measurement {
         Measurement {
             stamp_ns: self.now,
-            position: self.joints.map(|joint| joint.motor[0]),
-            velocity: self.joints.map(|joint| joint.motor[1]),
-            torque: self.joints.map(|joint| joint.torque),
+            position: self.joints.map(|joint| joint.motor[0]).into(),
+            velocity: self.joints.map(|joint| joint.motor[1]).into(),
+            torque: self.joints.map(|joint| joint.torque).into(),
         }
     }
 
@@ -351,7 +351,7 @@ fn broken_measurements_are_faults() {
         |_: Measurement| None,
         |own: Measurement| {
             Some(Measurement {
-                position: [f64::NAN, 0.0],
+                position: [f64::NAN, 0.0].into(),
                 ..own
             })
         },
@@ -363,13 +363,19 @@ fn broken_measurements_are_faults() {
         },
         |own: Measurement| {
             Some(Measurement {
-                velocity: [0.0, 9.0],
+                velocity: [0.0, 9.0].into(),
                 ..own
             })
         },
         |own: Measurement| {
             Some(Measurement {
-                position: [-2.0, 1.2],
+                position: [-2.0, 1.2].into(),
+                ..own
+            })
+        },
+        |own: Measurement| {
+            Some(Measurement {
+                torque: [0.0; 3].into(),
                 ..own
             })
         },

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use ferntast_model::{
-    ArmModel, JOINTS,
+    ArmModel,
     arm::LinkParameters,
     contour::{Feature, Surface},
 };
@@ -63,9 +63,8 @@ fn write(model: &ArmModel, fronts: &[Feature], xml: &mut String) -> std::fmt::Re
     )?;
     let joints = joint_names(model);
     let begins = [0.0, model.arm.link[0].length];
-    for index in 0..JOINTS {
-        let (parent, child) = ARM_FRAMES[index];
-        let parameters = &model.joint[index];
+    let frames = ARM_FRAMES.iter().zip(&model.joint);
+    for (index, ((parent, child), parameters)) in frames.enumerate() {
         writeln!(
             xml,
             "<joint name=\"{}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\

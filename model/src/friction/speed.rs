@@ -173,6 +173,36 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
     },
     StaticEffect {
         row: Row {
+            id: "load_stribeck",
+            equation: "τ_F = bsT · |τ| · exp(−(q̇/vsT)²) · sign(q̇)",
+            source: "Bittencourt, Gunnarsson 2012, static friction of an industrial robot's joint",
+            coefficients: &[EffectParameter::new("bsT", ONE, 0.0, 10.0)],
+            shape: &[EffectParameter::new("vsT", SPEED, 1e-6, 100.0)],
+            shows_as: "bump near q̇ = 0 that grows with load",
+            excited_by: "slow constant speeds in small steps under loads from none to full",
+            shown_by: Proposal::LoadSteps,
+            contrasts: &[
+                Contrast::SlowReversals,
+                Contrast::WideSpeedRange,
+                Contrast::LoadSteps,
+            ],
+            taken_for: &["stribeck", "load_coulomb"],
+            own_signals: OwnSignals::new(&["velocity", "load"], Direction::Opposite),
+            ..Row::NONE
+        },
+        reads: &[Signal::Velocity, Signal::Load],
+        columns: |state, shape, columns| {
+            if let ([c], [vs, ..]) = (columns, shape) {
+                *c = (-(state.velocity / vs).powi(2)).exp() * state.load.abs() * state.sign();
+            }
+        },
+        unavailable: Facts::no_load,
+        shapes: |facts| logarithmic_shapes(stribeck_speeds(facts), 9),
+        bounds: |facts| vec![stribeck_speeds(facts)],
+        is_plausible: positive,
+    },
+    StaticEffect {
+        row: Row {
             id: "asymmetric_coulomb",
             equation: "τ_F = ba",
             source: "offset by direction, as in Janot, Gautier, Brunot 2019",

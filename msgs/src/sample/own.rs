@@ -10,7 +10,7 @@ use super::{Flag, Identity, MAX_TWIN_PARAMETERS, codes::codes};
 use crate::{InvalidMessage, Text, Time};
 
 /// Which source of hand positions drives the arm, and which was refused last.
-/// Sources are distinguished by 64 bit, written as hexadecimal digits.
+/// Sources are told apart by 64 bit, written as hexadecimal digits.
 #[message(Authority)]
 pub struct AuthoritySample {
     /// when it was decided or last published

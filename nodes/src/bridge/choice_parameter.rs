@@ -16,18 +16,18 @@ use crate::process::{NodeError, ProcessContext};
 const PATIENCE: f64 = 5.0;
 
 /// A value of a parameter.
-type Choice = Text<24>;
+type Value = Text<24>;
 
 /// Passes wishes on to a node, and tells what that node does.
 pub struct ChoiceParameter {
     node: Option<ParameterNode>,
-    pass_on: Box<dyn FnMut(Time, Choice)>,
+    pass_on: Box<dyn FnMut(Time, Value)>,
     /// What the node said since the last call.
-    heard: Box<dyn FnMut(Time) -> Option<Choice>>,
+    heard: Box<dyn FnMut(Time) -> Option<Value>>,
     /// The node's last word.
-    does: Choice,
+    does: Value,
     /// A wish, and when it was passed on.
-    wished: Option<(Choice, Time)>,
+    wished: Option<(Value, Time)>,
 }
 
 impl ChoiceParameter {
@@ -77,7 +77,7 @@ impl ChoiceParameter {
             bus.subscriber(topics::FOLLOWER_JOINT_2_FRICTION, Depth::Newest)?,
         ];
         let mut sources = [None; 2];
-        let pass_on = move |now, source: Choice| {
+        let pass_on = move |now, source: Value| {
             let wish = match FrictionSource::from_name(source.as_str()) {
                 Some(FrictionSource::TWIN) => FrictionCommand::TAKE_OVER,
                 _ => FrictionCommand::GIVE_BACK,
@@ -100,8 +100,8 @@ impl ChoiceParameter {
     fn open(
         ros: &Bus,
         choice: Choice,
-        pass_on: Box<dyn FnMut(Time, Choice)>,
-        heard: Box<dyn FnMut(Time) -> Option<Choice>>,
+        pass_on: Box<dyn FnMut(Time, Value)>,
+        heard: Box<dyn FnMut(Time) -> Option<Value>>,
     ) -> Result<ChoiceParameter, NodeError> {
         Ok(ChoiceParameter {
             does: Text::new(&choice.value),

@@ -1,10 +1,11 @@
 //! An arm's file as the nodes have it.
 
 use ferntast_control::estimator::EstimatorParameters;
-use ferntast_model::{
-    ArmModel, JOINTS, arm::ArmParameters, contour::Contour, joint::JointParameters,
+use ferntast_model::{ArmModel, arm::ArmParameters, contour::Contour, joint::JointParameters};
+use serde::{
+    Deserialize, Serialize,
+    de::{DeserializeOwned, Error as _},
 };
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::value::{RawValue, to_raw_value};
 
 use super::ConfigError;
@@ -28,7 +29,7 @@ pub struct ArmFile {
 #[derive(Deserialize)]
 struct Sections {
     arm: ArmParameters,
-    joint: [JointParameters; JOINTS],
+    joint: Vec<JointParameters>,
     contour: Contour,
     estimator: EstimatorParameters,
 }
@@ -71,6 +72,8 @@ impl TryFrom<Box<RawValue>> for ArmFile {
             contour,
             estimator,
         } = serde_json::from_str(whole.get())?;
+        let links = arm.joints_of_links(&joint);
+        links.map_err(serde_json::Error::custom)?;
         Ok(ArmFile {
             model: ArmModel {
                 arm,
@@ -111,6 +114,20 @@ mod tests {
         assert_eq!(again.model, file.model);
         assert_eq!(again.estimator, file.estimator);
         assert_eq!(serde_json::to_string(&again).unwrap(), text);
+    }
+
+    #[test]
+    fn an_arm_with_a_joint_too_many_is_refused() {
+        let file = load_model_only("rokviss").unwrap();
+        let mut whole: serde_json::Value = file.whole().unwrap();
+        let joints = whole["joint"].as_array_mut().unwrap();
+        joints.push(joints[0].clone());
+        let error = serde_json::from_value::<ArmFile>(whole).unwrap_err();
+        let words = error.to_string();
+        assert!(
+            words.contains("joint has 3 entries where 2 are needed"),
+            "{words}"
+        );
     }
 
     #[test]

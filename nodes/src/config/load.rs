@@ -7,6 +7,7 @@ use ferntast_emulation::{
     channel::{ChannelConfig, LinkConfig},
     hand::{Hand, RecordedHand, RecordedMotion, ScriptedHand},
 };
+use ferntast_model::{JointCount, ParameterError};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -123,6 +124,7 @@ impl Loaded {
     pub fn complete(&mut self) -> Result<(), ConfigError> {
         self.scenario
             .validate()
+            .and_then(|()| self.check_servo())
             .map_err(|source| ConfigError::Value {
                 path: self.path.clone(),
                 source,
@@ -145,6 +147,13 @@ impl Loaded {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The servo's lists have one entry for each joint of the arm.
+    fn check_servo(&self) -> Result<(), ParameterError> {
+        let joints = JointCount::new(self.arm.model.joint.len())?;
+        let tuning = self.scenario.servo.joints(joints);
+        tuning.map(drop).map_err(|error| error.within("servo"))
     }
 
     /// The hand that the master has of its own; none where CRTK clients are the hand.
@@ -175,5 +184,20 @@ impl Loaded {
                 Ok(Some(Hand::Recorded(hand)))
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::load_model_only;
+    use super::*;
+
+    #[test]
+    fn a_servo_tuned_for_other_joints_is_refused_before_the_session() {
+        let mut loaded = load_scenario("rokviss", load_model_only).unwrap();
+        loaded.scenario.servo.damping = vec![100.0; 3];
+        let words = loaded.complete().unwrap_err().to_string();
+        let expected = "servo.damping has 3 entries where 2 are needed: one for each joint";
+        assert!(words.contains(expected), "{words}");
     }
 }

@@ -9,7 +9,7 @@ mod scenario;
 mod shipped;
 
 use ferntast_model::ArmModel;
-use ferntast_msgs::sample::JointNames;
+use ferntast_msgs::sample::{JointNames, MAX_JOINTS};
 
 #[cfg(test)]
 pub use arm::load_model_only;
@@ -19,6 +19,9 @@ pub use file::{ARM, FileKind, load};
 pub use laws::UnknownLaw;
 pub use load::{Loaded, load_scenario, read_hand_recording};
 pub use scenario::*;
+
+// What a law has room for fits a message, and the other way round.
+const _: () = assert!(MAX_JOINTS == ferntast_model::MAX_JOINTS);
 
 /// The arm's joints, in the order of its parameters.
 pub fn joint_names(model: &ArmModel) -> JointNames {

@@ -3,7 +3,7 @@
 use ferntast_control::estimator::{
     ContactEstimate, ContactEstimator, EstimatorParameters, JointMeasurement,
 };
-use ferntast_model::{ArmModel, ParameterError, contour::Surface};
+use ferntast_model::{ArmModel, Joints, ParameterError, contour::Surface, kinematics::LINKS};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -15,7 +15,7 @@ use ferntast_msgs::{
 use crate::{
     config::joint_names,
     graph::Build,
-    node::{Node, Ticking, ports},
+    node::{Node, NodeHealth, Ticking, ports},
     process::NodeError,
 };
 
@@ -56,7 +56,7 @@ pub struct EstimatorNode {
     joints: JointNames,
     estimator: ContactEstimator,
     last: Option<Time>,
-    link_lengths: [f64; 2],
+    link_lengths: [f64; LINKS],
     transforms_due: Time,
 }
 
@@ -106,33 +106,28 @@ impl Node for EstimatorNode {
             return;
         };
         let needed = JointFields::POSITION.with(JointFields::EFFORT);
+        let joints = self.estimator.joints();
         let estimate = self.estimator.step(
             dt,
             &match measured.in_order_of(&self.joints) {
                 Some(measured) if measured.fields.has(needed) => JointMeasurement {
-                    motor_position: measured.position(),
-                    joint_torque: measured.effort(),
+                    motor_position: Joints::from_places(joints, measured.position),
+                    joint_torque: Joints::from_places(joints, measured.effort),
                 },
                 // The estimator takes it for what it is: no measurement.
                 _ => JointMeasurement {
-                    motor_position: [f64::NAN; 2],
-                    joint_torque: [f64::NAN; 2],
+                    motor_position: Joints::filled(joints, f64::NAN),
+                    joint_torque: Joints::filled(joints, f64::NAN),
                 },
             },
         );
-        let health = &mut output.health;
-        for (active, fault, reason) in reasons(&estimate) {
-            if active {
-                health.raise(fault, Level::WARN);
-                health.message = Text::new(reason);
-            }
-        }
+        self.judge(&estimate, &mut output.health);
         publish(stamp, &estimate, output);
         // By the stamps too, that played back it is the same; a jump back starts over.
         let due = self.transforms_due;
         if stamp >= due || due.seconds_since(stamp) > 1e-9 * TRANSFORMS_PERIOD_NANOS as f64 {
             self.transforms_due = stamp.plus_nanos(TRANSFORMS_PERIOD_NANOS);
-            output.transforms = Some(transforms(stamp, estimate.position, self.link_lengths));
+            output.transforms = Some(transforms(stamp, &estimate.position, self.link_lengths));
         }
     }
 }
@@ -144,16 +139,44 @@ fn about_z(angle: f64) -> [f64; 4] {
 
 /// The arm's frames at the link-side joint positions \[rad\], for links of
 /// those lengths \[m\].
-fn transforms(stamp: Time, position: [f64; 2], lengths: [f64; 2]) -> TransformsSample {
+fn transforms(stamp: Time, position: &[f64], lengths: [f64; LINKS]) -> TransformsSample {
+    // The tip does not turn against its link.
+    let angle = |frame: usize| position.get(frame).copied().unwrap_or(0.0);
     TransformsSample {
         stamp,
         translations: [[0.0; 3], [lengths[0], 0.0, 0.0], [lengths[1], 0.0, 0.0]],
-        rotations: [about_z(position[0]), about_z(position[1]), about_z(0.0)],
+        rotations: std::array::from_fn(|frame| about_z(angle(frame))),
     }
 }
 
-/// What makes an estimate unusable, with a reason for people; the last one that holds is reported.
-fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
+impl EstimatorNode {
+    /// Reports what makes an estimate unusable, with a reason for people: the
+    /// last one that holds.
+    fn judge(&self, estimate: &ContactEstimate, health: &mut NodeHealth) {
+        let [corner, singular, saturated, invalid] = reasons(estimate);
+        let tell = |health: &mut NodeHealth, (active, fault, reason)| {
+            if active {
+                health.raise(fault, Level::WARN);
+                health.message = Text::new(reason);
+            }
+        };
+        tell(health, corner);
+        tell(health, singular);
+        for (joint, stuck) in self.joints.iter().zip(estimate.stuck) {
+            if stuck {
+                health.raise(Fault::TorqueStuck, Level::WARN);
+                health.message = Text::display(format_args!(
+                    "{joint} turns, but its torque stays the same: check its torque sensor"
+                ));
+            }
+        }
+        tell(health, saturated);
+        tell(health, invalid);
+    }
+}
+
+/// What makes an estimate unusable, of whatever joint.
+fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 4] {
     [
         (
             estimate.corner,
@@ -164,16 +187,6 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
             estimate.singular,
             Fault::Singular,
             "the elbow is stretched or folded: no force can be estimated; bend it",
-        ),
-        (
-            estimate.stuck[0],
-            Fault::TorqueStuck,
-            "joint_1 turns, but its torque stays the same: check its torque sensor",
-        ),
-        (
-            estimate.stuck[1],
-            Fault::TorqueStuck,
-            "joint_2 turns, but its torque stays the same: check its torque sensor",
         ),
         (
             estimate.saturated,
@@ -191,7 +204,7 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 6] {
 fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput) {
     let [x, y] = estimate.tip;
     output.measured_cp = Some(PoseSample {
-        orientation: about_z(estimate.position[0] + estimate.position[1]),
+        orientation: about_z(estimate.position.iter().sum()),
         ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, [x, y, 0.0])
     });
     let [fx, fy] = estimate.force;

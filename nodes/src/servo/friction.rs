@@ -76,17 +76,22 @@ impl FrictionCommands {
     }
 
     /// What is fed forward at each joint, when it is time to tell.
-    pub(super) fn tell(&mut self, now: Time, servo: &Servo) -> Option<[FrictionStatusSample; 2]> {
+    pub(super) fn tell<'a>(
+        &'a mut self,
+        now: Time,
+        servo: &'a Servo,
+    ) -> Option<impl Iterator<Item = FrictionStatusSample> + 'a> {
         if now < self.due {
             return None;
         }
-        let all = servo.feed_forward();
-        self.due = now.plus_nanos(match all.iter().any(|own| own.is_on_the_way()) {
+        let mut all = servo.feed_forward();
+        self.due = now.plus_nanos(match all.any(|own| own.is_on_the_way()) {
             true => PERIOD_ON_THE_WAY_NANOS,
             false => PERIOD_NANOS,
         });
-        let mut names = self.joints.iter();
-        Some(all.map(|own| self.status(now, names.next().unwrap_or_default(), own)))
+        let own = &*self;
+        let each = own.joints.iter().zip(servo.feed_forward());
+        Some(each.map(move |(joint, friction)| own.status(now, joint, friction)))
     }
 
     fn status(&self, now: Time, joint: &str, own: &FeedForward) -> FrictionStatusSample {

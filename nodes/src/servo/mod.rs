@@ -14,7 +14,7 @@ use ferntast_control::{
         ServoOutput as LawOutput, Target,
     },
 };
-use ferntast_model::{ArmModel, ParameterError};
+use ferntast_model::{ArmModel, JointCount, Joints, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -93,7 +93,7 @@ impl ServoNode {
     pub fn new(model: &ArmModel, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
         Ok(ServoNode {
             joints: joint_names(model),
-            servo: Servo::new(&model.arm, &model.joint, config)?,
+            servo: Servo::new(&model.joint, Some(model.arm.kinematics()), config)?,
             states: StatePublisher::default(),
             friction: FrictionCommands::new(joint_names(model)),
             message: Text::EMPTY,
@@ -104,21 +104,25 @@ impl ServoNode {
 }
 
 /// The newest command of either kind.
-fn command(input: &ServoInput, servo_jp: Option<JointSample>) -> Option<Command> {
+fn command(
+    input: &ServoInput,
+    servo_jp: Option<JointSample>,
+    joints: JointCount,
+) -> Option<Command> {
     let tip = input.servo_cp.message.map(|pose| Command {
         stamp_ns: pose.stamp.nanos(),
         target: Target::Tip(pose.position),
     });
-    let joints = servo_jp
+    let position = servo_jp
         .filter(|sample| sample.fields.has(JointFields::POSITION))
         .map(|sample| Command {
             stamp_ns: sample.stamp.nanos(),
-            target: Target::Joints(sample.position()),
+            target: Target::Joints(Joints::from_places(joints, sample.position)),
         });
-    match (tip, joints) {
-        (Some(tip), Some(joints)) if joints.stamp_ns > tip.stamp_ns => Some(joints),
+    match (tip, position) {
+        (Some(tip), Some(position)) if position.stamp_ns > tip.stamp_ns => Some(position),
         (Some(tip), _) => Some(tip),
-        (None, joints) => joints,
+        (None, position) => position,
     }
 }
 
@@ -129,14 +133,15 @@ impl Node for ServoNode {
     fn step(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
         let measured = self.own(&input.measured_js, Fault::MeasurementInvalid, output);
         let servo_jp = self.own(&input.servo_jp, Fault::CommandInvalid, output);
+        let joints = self.servo.joints();
         let law_input = LawInput {
             measurement: measured.map(|sample| Measurement {
                 stamp_ns: sample.stamp.nanos(),
-                position: sample.position(),
-                velocity: sample.velocity(),
-                torque: sample.effort(),
+                position: Joints::from_places(joints, sample.position),
+                velocity: Joints::from_places(joints, sample.velocity),
+                torque: Joints::from_places(joints, sample.effort),
             }),
-            command: command(input, servo_jp),
+            command: command(input, servo_jp, joints),
             // One a step; a second in the same millisecond is the newer wish.
             state_command: input
                 .state_command
@@ -147,12 +152,14 @@ impl Node for ServoNode {
         self.feed_forward(now, input, output);
         let law = self.servo.step(now.nanos(), &law_input);
         self.report(&law, output);
-        let torque = JointSample::empty(self.joints, now).with_effort(law.torque);
+        let torque = JointSample::empty(self.joints, now).with_effort(law.torque.into_places(0.0));
         output.torque = Some(torque);
+        let position = law.setpoint.map(|setpoint| setpoint.position);
+        let velocity = law.setpoint.map(|setpoint| setpoint.velocity);
         output.setpoint_js = Some(
             torque
-                .with_position(law.setpoint.map(|setpoint| setpoint.position))
-                .with_velocity(law.setpoint.map(|setpoint| setpoint.velocity)),
+                .with_position(position.into_places(0.0))
+                .with_velocity(velocity.into_places(0.0)),
         );
         output.operating_state = self
             .states
@@ -177,7 +184,7 @@ impl ServoNode {
             accepted: law.accepted,
             refused_stamp: refused.stamp,
             refused_time: refused.time,
-            refused_value: refused.not_finite,
+            refused_value: refused.value,
             refused_range: refused.out_of_range,
             refused_jump: refused.jump,
             reason: self.refusal,
@@ -220,9 +227,9 @@ impl ServoNode {
                 }
             }
         }
-        if let Some([first, second]) = self.friction.tell(now, &self.servo) {
-            output.friction_1 = Some(first);
-            output.friction_2 = Some(second);
+        if let Some(mut told) = self.friction.tell(now, &self.servo) {
+            output.friction_1 = told.next();
+            output.friction_2 = told.next();
         }
     }
 

@@ -7,7 +7,7 @@ use ferntast_lab::{
     experiment::{self, Experiment, ExperimentError, Signals},
     recording::{self, LoadError},
 };
-use ferntast_model::JOINTS;
+use ferntast_model::kinematics::LINKS;
 use ferntast_msgs::{
     sample::{JointNames, MAX_TWIN_PARAMETERS},
     topics,
@@ -108,7 +108,7 @@ pub fn open(path: &Path) -> Result<TwinModel, TwinOpenError> {
     }
     Ok(TwinModel {
         twin,
-        joints: JointNames::numbered(JOINTS),
+        joints: JointNames::numbered(LINKS),
         joint,
         joint_torque: experiment.signals.joint_torque.is_some(),
         temperature: experiment.signals.temperature.is_some(),

@@ -1,8 +1,9 @@
 //! Where and when the arm is: date, sun, gravity.
 
+use super::JOINTS;
 use super::parameters::ArmConfig;
 use ferntast_model::friction::FrictionParameters;
-use ferntast_model::{JOINTS, ParameterError, parameters};
+use ferntast_model::{ParameterError, parameters};
 
 parameters! {
     /// Date and surroundings of the simulated arm.
@@ -96,8 +97,8 @@ impl ArmConfig {
         config.truth.arm = config.truth.arm.map(|arm| arm.on_ground());
         config.truth.environment.day = ground.day;
         config.truth.environment.temperature = Some([ground.temperature; JOINTS]);
-        for (index, joint) in ground.joint.iter().enumerate() {
-            let (believed, truth) = (&mut config.joint[index], &mut config.truth.joint[index]);
+        let arm = config.joint.iter_mut().zip(&mut config.truth.joint);
+        for ((believed, truth), joint) in arm.zip(&ground.joint) {
             believed.stiffness = joint.stiffness;
             believed.friction = joint.friction.clone();
             truth.stiffness = joint.stiffness;

@@ -33,11 +33,14 @@ pub use wear::{GearWear, SurfaceWear};
 
 use ferntast_model::contour::Surface;
 use ferntast_model::joint::JointParameters;
-use ferntast_model::{JOINTS, ParameterError, Vector2};
+use ferntast_model::{ParameterError, Vector2};
 use noise::Noise;
 use plant::Plant;
 use sensors::Encoder;
 use thermal::Thermal;
+
+/// Joints of the simulated arm: ROKVISS has two.
+pub const JOINTS: usize = 2;
 
 /// Why there is no arm.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -178,7 +181,7 @@ impl SimulatedArm {
         });
         Ok(Self {
             plant,
-            believed: config.joint.clone(),
+            believed: config.arm.joints_of_links(&config.joint)?.clone(),
             noise,
             thermal,
             encoders,

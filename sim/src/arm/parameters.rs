@@ -1,5 +1,6 @@
 //! Configuration of the simulated arm: a file in `config/arms/`.
 
+use super::JOINTS;
 use super::contact::TrueSurface;
 use super::elasticity::Elasticity;
 use super::environment::{Environment, GroundParameters};
@@ -10,7 +11,7 @@ use ferntast_control::estimator::EstimatorParameters;
 use ferntast_model::arm::{Arm, ArmParameters};
 use ferntast_model::contour::Contour;
 use ferntast_model::joint::JointParameters;
-use ferntast_model::{ArmModel, JOINTS, Matrix2, ParameterError, Vector2, parameters};
+use ferntast_model::{ArmModel, Matrix2, ParameterError, Vector2, parameters};
 
 parameters! {
     /// A whole file of `config/arms/`: what is believed of the arm, and what is
@@ -18,8 +19,8 @@ parameters! {
     pub struct ArmConfig {
         /// Links and gravity.
         pub arm: ArmParameters [section],
-        /// Joint 1 and joint 2 as they are believed.
-        pub joint: [JointParameters; JOINTS] [section],
+        /// The joints as they are believed, from the base on: one for each link.
+        pub joint: Vec<JointParameters> [section],
         /// Edges and springs.
         pub contour: Contour [section],
         /// Contact-force estimator.
@@ -30,10 +31,15 @@ parameters! {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub ground: Option<GroundParameters> [section],
     }
-    check ArmConfig::substep_resolves_vibration;
+    check ArmConfig::is_consistent;
 }
 
 impl ArmConfig {
+    fn is_consistent(&self) -> Result<(), ParameterError> {
+        self.arm.joints_of_links(&self.joint)?;
+        self.substep_resolves_vibration()
+    }
+
     /// h ω ≤ 1/2 for the fastest vibration; the integration breaks down at 2.
     fn substep_resolves_vibration(&self) -> Result<(), ParameterError> {
         let truth = &self.truth;

@@ -10,13 +10,14 @@
 //! but for the small Coriolis term: energy is kept to second order and does
 //! not creep. Friction is applied to the velocities last, so rest is exact.
 
+use super::JOINTS;
 use super::contact::Front;
 use super::elasticity::Elasticity;
 use super::friction::Gear;
 use super::parameters::ArmConfig;
+use ferntast_model::Vector2;
 use ferntast_model::arm::{Arm, solve_symmetric};
 use ferntast_model::contour::Surface;
-use ferntast_model::{JOINTS, Vector2};
 
 /// One joint's mechanics.
 #[derive(Clone, Copy, Debug)]

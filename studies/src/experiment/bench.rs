@@ -214,7 +214,7 @@ impl Bench {
             |topic| carry(topic.name, contact),
         )?;
         time.add(move |now| {
-            forwarder.carry(now);
+            forwarder.forward(now);
         });
 
         let operating_state = topics::FOLLOWER_OPERATING_STATE;

@@ -1,8 +1,8 @@
 //! Place, date and temperature of an experiment.
 
-use ferntast_model::{JOINTS, ParameterError};
+use ferntast_model::ParameterError;
 use ferntast_msgs::Time;
-use ferntast_sim::arm::ArmConfig;
+use ferntast_sim::arm::{ArmConfig, JOINTS};
 use serde::{Deserialize, Serialize};
 
 /// Day 0 of the mission: 2005-01-26 10:00 UTC \[s since the UNIX epoch\], when

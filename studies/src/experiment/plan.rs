@@ -2,12 +2,12 @@
 
 use ferntast_control::servo::{self, ServoConfig};
 use ferntast_model::{
-    JOINTS, Vector2,
+    ParameterError, Vector2,
     arm::Arm,
     contour::{Feature, Surface},
     kinematics::{Elbow, Kinematics},
 };
-use ferntast_sim::arm::ArmConfig;
+use ferntast_sim::arm::{ArmConfig, JOINTS};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -125,7 +125,7 @@ impl Plan {
             _ => 38.0,
         };
         ServoConfig {
-            pressing_limit: [limit; JOINTS],
+            pressing_limit: vec![limit; JOINTS],
             ..ServoConfig::default()
         }
     }
@@ -320,17 +320,21 @@ impl Layout {
         let along = edge.along(&self.nominal_tip);
         let tip = edge.center + edge.tangent() * along;
         let q = self.kinematics.inverse(&tip, self.elbow)?;
-        let servo = self.servo_stiffness(arm, &q, &edge);
+        let servo = servo_stiffness(arm, &q, &edge)?;
         // Servo, joints and surface one behind the other.
         let stiffness = 1.0 / (1.0 / servo + 1.0 / edge.contact.stiffness);
         let motion = ContactMotion::new(edge, along, CONTACT_AMPLITUDE, stiffness, presses, time)?;
         Ok(Box::new(motion))
     }
+}
 
-    /// Stiffness of servo and joints along the normal at the tip \[N/m\].
-    fn servo_stiffness(&self, arm: &ArmConfig, q: &Vector2<f64>, edge: &Feature) -> f64 {
-        let compliance = servo::tip_compliance(&arm.model(), &ServoConfig::default(), q);
-        let along = edge.normal.dot(&(compliance * edge.normal));
-        1.0 / along.max(1e-9)
-    }
+/// Stiffness of servo and joints along the normal of `edge` at the tip \[N/m\].
+fn servo_stiffness(
+    arm: &ArmConfig,
+    q: &Vector2<f64>,
+    edge: &Feature,
+) -> Result<f64, ParameterError> {
+    let compliance = servo::tip_compliance(&arm.model(), &ServoConfig::default(), q)?;
+    let along = edge.normal.dot(&(compliance * edge.normal));
+    Ok(1.0 / along.max(1e-9))
 }

@@ -1,6 +1,6 @@
 //! What a crate reaches, by `cargo tree`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Names of crates that a pure crate must not reach, and beginnings of names
 /// (with `*`).
@@ -30,6 +30,23 @@ pub fn tree(name: &str) -> BTreeSet<String> {
         "tree", "-p", &package, "-e", "normal", "--prefix", "none", "--format", "{p}",
     ]);
     names(&text)
+}
+
+/// Features of every crate, by name and version, with which `cargo` builds what is selected.
+pub fn features(selection: &[&str]) -> BTreeMap<String, BTreeSet<String>> {
+    let arguments = ["tree", "--prefix", "none", "--format", "{p}|{f}"];
+    let text = super::cargo(&[&arguments, selection].concat());
+    let mut found: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    // A crate that is listed again is marked by a star behind its features.
+    for (name, features) in text.lines().filter_map(|line| line.split_once('|')) {
+        let features = features.trim_end_matches("(*)").trim();
+        let own = features.split(',').filter(|own| !own.is_empty());
+        found
+            .entry(name.to_owned())
+            .or_default()
+            .extend(own.map(str::to_owned));
+    }
+    found
 }
 
 /// The first word of every line.

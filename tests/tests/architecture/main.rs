@@ -107,6 +107,28 @@ fn only_a_driver_brings_the_simulated_arm_into_a_session() {
     }
 }
 
+/// The README's two commands: what the second needs with other features than the
+/// first is compiled twice, some minutes of middleware.
+#[test]
+fn the_program_and_its_tests_share_one_build_of_their_libraries() {
+    let program = dependencies::features(&["--package", "ferntast", "--edges", "normal,build"]);
+    let all = dependencies::features(&["--workspace", "--edges", "normal,build,dev"]);
+    assert!(
+        program.keys().any(|name| name.starts_with("zenoh ")),
+        "not the features: {program:?}"
+    );
+    let differ: Vec<String> = program
+        .iter()
+        .filter(|(name, features)| all.get(*name) != Some(features))
+        .map(|(name, features)| format!("{name}: {features:?}, with the tests {:?}", all.get(name)))
+        .collect();
+    assert!(
+        differ.is_empty(),
+        "name these features in cli/Cargo.toml:\n{}",
+        differ.join("\n")
+    );
+}
+
 #[test]
 fn arrows_between_crates_follow_the_table() {
     let text = std::fs::read_to_string(folder("ARCHITECTURE.md")).expect("ARCHITECTURE.md");

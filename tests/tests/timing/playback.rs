@@ -3,7 +3,6 @@
 use std::{thread, time::Duration};
 
 use ferntast_tests::{Machine, PATIENCE, Process, Session, number, run};
-use serde_json::Value;
 
 fn record(session: &Session, seconds: &str) {
     let arguments = ["lockstep", "--duration", seconds, "--record", "run"];

@@ -18,6 +18,7 @@ mod elasticity;
 mod equation_4;
 mod gravity;
 mod inertia;
+mod load_stribeck;
 mod local_friction;
 mod motor_constant;
 mod presliding_hysteresis;
@@ -214,5 +215,7 @@ truths! {
         UnknownWorkHeating = "unknown_work_heating" => unknown_work_heating::draw(strength, random),
         /// Viscous friction that differs by direction.
         AsymmetricViscous = "asymmetric_viscous" => asymmetric_viscous::draw(strength, random),
+        /// More Coulomb friction near rest, by load.
+        LoadStribeck = "load_stribeck" => load_stribeck::draw(strength, random),
     }
 }

@@ -10,7 +10,7 @@ pub use sine::SineMotion;
 pub use spring::{SpringMotion, Stroke};
 pub use stiffness::StiffnessMotion;
 
-use ferntast_model::JOINTS;
+use ferntast_sim::arm::JOINTS;
 
 /// Where the servo is told to go.
 #[derive(Clone, Copy, Debug, PartialEq)]

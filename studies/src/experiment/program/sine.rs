@@ -1,7 +1,8 @@
 //! A joint swings freely: the paper's trajectory "sinusoidal" (Fig. 9).
 
 use super::{Program, Seen, Target, advance};
-use ferntast_model::{JOINTS, ParameterError, check};
+use ferntast_model::{ParameterError, check};
+use ferntast_sim::arm::JOINTS;
 use std::f64::consts::TAU;
 
 /// q = q_0 + A sin(2π f t), one frequency after the other.

@@ -2,7 +2,8 @@
 //! identification trajectory "spring" (Fig. 3).
 
 use super::{Program, Seen, Target, advance};
-use ferntast_model::{JOINTS, ParameterError, check};
+use ferntast_model::{ParameterError, check};
+use ferntast_sim::arm::JOINTS;
 
 /// Slope of the velocity where a stroke begins and ends \[rad/s²\].
 const ACCELERATION: f64 = 10.0;

@@ -2,7 +2,8 @@
 //! fast, a saw-tooth (Fig. 15).
 
 use super::{Program, Seen, Target};
-use ferntast_model::{JOINTS, ParameterError, check};
+use ferntast_model::{ParameterError, check};
+use ferntast_sim::arm::JOINTS;
 
 /// Rise and fall of one tooth \[s\].
 const RISE: f64 = 4.0;
