@@ -186,7 +186,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 Contrast::WideSpeedRange,
                 Contrast::LoadSteps,
             ],
-            taken_for: &["stribeck", "load_coulomb"],
+            confusable_with: &["stribeck", "load_coulomb"],
             own_signals: OwnSignals::new(&["velocity", "load"], Direction::Opposite),
             ..Row::NONE
         },
