@@ -1,10 +1,23 @@
-//! What recordings say about a model of a joint, or of a contact: how far off it is and where,
-//! which physical effect is missing, and how far the error falls with it.
+//! Identification of a joint's model, or of a contact's, from recordings: how large its
+//! error is and where, which physical effect is missing, and by how much the error falls
+//! with it.
+//!
+//! Folders in the order of the pipeline; each uses only those above it:
 //!
 //! ```text
-//! sessions ─ filter, differentiate, thin, mask ─ columns of effects ─ Gram matrices ─┬ compare
-//!           (signals)                           (effects, design)    (gram)          ├ diagnose
-//!                                                                                    └ add
+//! numerics/      zero-phase filters, Gram matrices, least squares, statistics
+//! data/          recordings and the believed model, as given; what is refused
+//! signals/       sessions filtered, differentiated, thinned, masked: rows
+//! effects/       the catalogue: columns over the state, formulas of the user's own
+//! design/        model and signals together: columns, blocks of time, Gram matrices
+//! shape_search/  parameters that enter nonlinearly: grid, golden sections, periods
+//! preparation/   terms bound, shapes found, prediction made, channels compensated
+//! validation/    error on data left out, within sessions and between them
+//! fit/           parameters with standard errors; the model with one more effect
+//! comparison/    the model against the recordings: residual maps, noise, simulation
+//! diagnosis/     which effect is missing, which others explain as much, what to record next
+//! twin/          the model held against the joint while it moves
+//! experiments/   single regressions of the papers, apart from the pipeline
 //! ```
 //!
 //! Equation throughout: τ_m = J q̈ + τ + τ_F, joint quantities on the joint side
@@ -12,54 +25,32 @@
 //! depends on F_N as τ_F on the load ([`JointType::Contact`]). Pure: no file, clock, thread or randomness; the same recordings
 //! give the same answer.
 
-pub mod add;
-pub mod candidates;
-pub mod check;
-pub mod compare;
-pub mod contact_friction;
-pub mod damping;
+pub mod comparison;
 pub mod data;
-pub mod dependence;
 pub mod design;
-pub mod diagnose;
+pub mod diagnosis;
 pub mod effects;
-pub mod encompass;
-pub mod error;
-pub mod expression;
-pub mod extrapolation;
-pub mod family;
-pub mod filter;
+pub mod experiments;
 pub mod fit;
-pub mod flexible_joint;
-pub mod gram;
-pub mod noise_floor;
-pub mod periodic;
-mod prediction;
-pub mod refine;
-pub mod regression;
-pub mod residual_map;
-pub mod reversal;
-pub mod scatter;
-pub mod sensor_zero;
-pub mod setup;
+pub mod numerics;
+pub mod preparation;
+pub mod shape_search;
 pub mod signals;
-pub mod simulate;
-pub mod stated_filter;
-pub mod statistics;
-pub mod stiffness;
-pub mod turns;
 pub mod twin;
-mod undo;
 pub mod validation;
 
-pub use add::{Addition, add};
-pub use compare::{Comparison, compare};
-pub use data::{CustomEffect, Dataset, Inertia, JointType, ModelSpec, Session, Subject, Term};
-pub use diagnose::{Diagnosis, Suspect, Verdict, diagnose};
+pub use comparison::{Comparison, compare};
+pub use data::error::{ExpressionError, PrepareError};
+pub use data::stated_filter::StatedFilter;
+pub use data::{
+    CustomEffect, Dataset, Inertia, JointType, ModelSpec, RecordedSession, Subject, Term,
+};
+pub use design::PreparedModel;
+pub use diagnosis::{Diagnosis, Suspect, Verdict, diagnose};
 pub use effects::EffectDescription;
-pub use error::{ExpressionError, PrepareError};
 pub use ferntast_model::friction::Proposal;
-pub use stated_filter::StatedFilter;
+pub use fit::addition::{Addition, add};
+pub use preparation::prepare;
 
 /// Every effect that a model can be given by id, and that [`diagnose()`] tries.
 #[must_use]
@@ -70,9 +61,5 @@ pub fn catalogue() -> Vec<EffectDescription> {
         .collect()
 }
 
-#[cfg(test)]
-mod bench;
-#[cfg(test)]
-mod contact_tests;
 #[cfg(test)]
 mod tests;

@@ -116,7 +116,7 @@ fn hidden_recordings_are_six_sessions_with_days_between() {
 fn what_is_read_is_what_rosbags_reads() {
     let loaded = read(&data().join("hidden/none-100.toml"));
     let sessions = &loaded.dataset.sessions;
-    let all = |channel: fn(&ferntast_identification::Session) -> &[f64]| -> f64 {
+    let all = |channel: fn(&ferntast_identification::RecordedSession) -> &[f64]| -> f64 {
         sessions.iter().flat_map(channel).sum()
     };
     let samples: usize = sessions.iter().map(|session| session.len()).sum();

@@ -72,7 +72,7 @@ fn every_static_effect_of_the_lab_is_fed_forward() {
         "quadratic_viscous",
         "cubic_viscous",
     ];
-    for effect in effects::of(Subject::Joint) {
+    for effect in effects::for_subject(Subject::Joint) {
         let (row, (mut own, mut values)) = (effect.row(), willing());
         let known = values.clone();
         let new = row.coefficients.iter().map(|each| {

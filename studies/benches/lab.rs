@@ -5,7 +5,7 @@
 use std::{path::Path, time::Instant};
 
 use ferntast_benches::joint_bench::{Bench, BenchConfig, HiddenEffect};
-use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, compare, diagnose};
+use ferntast_identification::{Dataset, Inertia, ModelSpec, RecordedSession, compare, diagnose};
 use ferntast_studies::challenge::TestBench;
 
 const SAMPLES: usize = 600_000;
@@ -25,7 +25,7 @@ fn main() {
     {
         eprintln!("{}: {error}", Path::new(&path).display());
     }
-    let samples: usize = dataset.sessions.iter().map(Session::len).sum();
+    let samples: usize = dataset.sessions.iter().map(RecordedSession::len).sum();
     println!("{samples} samples in {} sessions", dataset.sessions.len());
     for _ in 0..RUNS {
         let begun = Instant::now();

@@ -3,7 +3,7 @@
 use ferntast_benches::flexible_joint_bench::{
     FlexibleJointParameters, FlexibleJointRecording, FlexibleJointRun, LOG_PERIOD, record,
 };
-use ferntast_identification::flexible_joint::{
+use ferntast_identification::experiments::flexible_joint::{
     FlexibleJointSignals, Inertias, OnLine, PARAMETERS, Row, off_line, on_line, rows,
 };
 use ferntast_model::recursive_least_squares::Forgetting;

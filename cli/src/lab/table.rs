@@ -3,10 +3,7 @@
 use std::collections::BTreeMap;
 
 use ferntast_identification::{
-    compare::Comparison,
-    diagnose::{Diagnosis, Verdict},
-    fit::Parameter,
-    residual_map::ResidualMap,
+    Comparison, Diagnosis, Verdict, comparison::residual_map::ResidualMap, fit::Parameter,
 };
 
 pub use ferntast_lab::report::significant;

@@ -1,6 +1,6 @@
 //! Measured against model over time, short enough to send.
 
-use ferntast_identification::compare::Series;
+use ferntast_identification::comparison::Series;
 use serde::Serialize;
 
 /// Points of all sessions together that are sent at most.

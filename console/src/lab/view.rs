@@ -6,7 +6,7 @@ use axum::{
     Json,
     extract::{Query, State},
 };
-use ferntast_identification::{Inertia, JointType, Session, Term};
+use ferntast_identification::{Inertia, JointType, RecordedSession, Term};
 use ferntast_lab::{
     experiment::{self, HistoryStep, Signals},
     work::Opened,
@@ -100,7 +100,7 @@ fn joint(lab: &Lab, opened: &Opened) -> JointView {
     let experiment = &opened.experiment;
     let names = |paths: &[std::path::PathBuf]| paths.iter().map(|path| lab.name(path)).collect();
     let session = |held_out: bool| {
-        move |session: &Session| SessionView {
+        move |session: &RecordedSession| SessionView {
             name: session.name.clone(),
             samples: session.len(),
             duration: session.len() as f64 * session.period,

@@ -1,11 +1,13 @@
 //! Columns of an effect on a session.
 
-use crate::effects::{EffectHandle, Exact, ExactSignal, MAX_COLUMNS, constant_of, parts_of};
-use crate::filter::Kernel;
-use crate::setup::BoundTerm;
+use crate::effects::{
+    BoundTerm, EffectHandle, Exact, ExactSignal, MAX_COLUMNS, constant_of, parts_of,
+};
+use crate::numerics::filter::Kernel;
 use crate::signals::{Filters, Signals};
 
-/// Columns at the working rate, not filtered.
+/// Columns of an effect at the working rate, not filtered; in the unit of the torque
+/// over that of the coefficient.
 #[must_use]
 pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<Vec<f64>> {
     if let Some(columns) = effect.whole(shape, &signals.points) {
@@ -33,7 +35,7 @@ pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<V
     columns
 }
 
-/// Columns at rows `rows`, through the column filter.
+/// Columns of an effect at the working samples `rows`, through the column filter.
 #[must_use]
 pub fn filtered(
     signals: &Signals,
@@ -69,16 +71,17 @@ pub fn filtered(
     exact.iter().map(column).collect()
 }
 
-/// Columns of an effect of the model at rows `rows`, through the column filter.
+/// Columns of a term of the model at the working samples `rows`, through the column
+/// filter.
 #[must_use]
-pub fn of_term(
+pub fn filtered_term(
     signals: &Signals,
     filters: &Filters,
     inertia: f64,
     term: &BoundTerm,
     rows: &[usize],
 ) -> Vec<Vec<f64>> {
-    if term.undone.is_empty() {
+    if term.compensated.is_empty() {
         return filtered(signals, filters, inertia, &term.effect, &term.shape, rows);
     }
     match signals.jacobians.get(&term.effect.description().id) {
@@ -89,7 +92,7 @@ pub fn of_term(
     }
 }
 
-/// y = τ_m − τ − J q̈ at rows `rows`, through the column filter.
+/// y = τ_m − τ − J q̈ \[Nm\] at the working samples `rows`, through the column filter.
 #[must_use]
 pub fn measured(signals: &Signals, filters: &Filters, inertia: f64, rows: &[usize]) -> Vec<f64> {
     let smooth = &signals.column;

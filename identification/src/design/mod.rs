@@ -1,24 +1,26 @@
 //! The regression: rows, columns, blocks of time, and their Gram matrices.
 
 pub mod columns;
+mod prepared_model;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::effects::EffectHandle;
-use crate::gram::Gram;
-use crate::setup::Setup;
+use crate::effects::{EffectHandle, Part, with_columns};
+use crate::numerics::gram::Gram;
+use crate::numerics::statistics::jackknife_covariance;
 use crate::signals::Signals;
-use crate::statistics::jackknife_covariance;
+
+pub use prepared_model::PreparedModel;
 
 /// Blocks of time in all, at least; a session is one or more of them.
 const MIN_BLOCKS: usize = 12;
 
-/// Rows of one session.
+/// Rows of one session: measured side and columns of the model.
 #[derive(Clone, Debug)]
 pub struct SessionDesign {
     /// y = τ_m − τ − J q̈, filtered \[Nm\].
     pub measured: Vec<f64>,
-    /// Columns of the model's effects, filtered.
+    /// Columns of the model's effects, filtered, in the order of its terms.
     pub base: Vec<Vec<f64>>,
     /// First row and the row past the last, of each block of time.
     pub blocks: Vec<(usize, usize)>,
@@ -26,11 +28,11 @@ pub struct SessionDesign {
     pub grams: Vec<Gram>,
 }
 
-/// How far a session's own parameters may lie from those of all sessions, as a
-/// share of these …
-const SCATTER: f64 = 1.0;
-/// … and in their standard errors by sessions left out.
-const SCATTER_ERRORS: f64 = 2.0;
+/// Expected deviation of a session's own parameters from those of all sessions, as
+/// a share of these …
+const DEVIATION_SHARE: f64 = 1.0;
+/// … plus a multiple of their standard errors by sessions left out.
+const DEVIATION_IN_STD_ERRORS: f64 = 2.0;
 
 /// Rows of all sessions that are fitted.
 #[derive(Clone, Debug)]
@@ -39,32 +41,34 @@ pub struct Design {
     pub sessions: Vec<SessionDesign>,
     /// Number of base columns.
     pub base: usize,
-    /// Which (session, block) are left out together.
+    /// Which (session, block) are left out together: whole sessions where there are
+    /// three or more, else single blocks.
     pub folds: Vec<Vec<(usize, usize)>>,
     /// Parameters of all sessions together.
     pub shared: DVector<f64>,
     /// Their covariance, by folds left out.
     pub covariance: DMatrix<f64>,
-    /// What holds a session's own parameters to them: mean square of what is left
-    /// \[Nm²\] over the square of how far they may lie apart. A session that does
-    /// not excite a parameter (friction by load, free of load) has none of its own.
+    /// Weights that draw a session's own parameters to them: mean square of the
+    /// residual \[Nm²\] over the square of the expected deviation. A session that
+    /// does not excite a parameter (friction by load, free of load) then keeps the
+    /// shared one.
     hold: DVector<f64>,
 }
 
-/// Grams of base, candidate columns and y, by session and block.
+/// Gram matrices of base columns, candidate columns and y, by session and block.
 pub type BlockGrams = Vec<Vec<Gram>>;
 
 impl Design {
-    /// Builds the rows of the model as it stands in `setup`.
+    /// Computes rows and Gram matrices of the model on the sessions that are fitted.
     #[must_use]
-    pub fn new(setup: &Setup) -> Self {
-        let per_session = MIN_BLOCKS.div_ceil(setup.sessions.len().max(1));
-        let sessions: Vec<SessionDesign> = setup
+    pub fn new(prepared: &PreparedModel) -> Self {
+        let per_session = MIN_BLOCKS.div_ceil(prepared.sessions.len().max(1));
+        let sessions: Vec<SessionDesign> = prepared
             .sessions
             .iter()
-            .map(|signals| SessionDesign::new(setup, signals, &signals.rows, per_session))
+            .map(|signals| SessionDesign::new(prepared, signals, &signals.rows, per_session))
             .collect();
-        let base = setup.terms.iter().map(|t| t.effect.columns()).sum();
+        let base = prepared.terms.iter().map(|t| t.effect.columns()).sum();
         let whole = sessions.iter().filter(|s| !s.measured.is_empty()).count() >= 3;
         let mut folds = Vec::new();
         for (s, session) in sessions.iter().enumerate() {
@@ -90,8 +94,8 @@ impl Design {
         design
     }
 
-    /// Finds the parameters of all sessions together, and what holds a session's
-    /// own to them.
+    /// Fits the parameters of all sessions together, and the weights that draw a
+    /// session's own to them.
     fn fit(&mut self) {
         let total = self.total();
         let shared = total.solve();
@@ -108,7 +112,7 @@ impl Design {
         let left = total.squared_error(&shared) / total.rows.max(1) as f64;
         self.hold = DVector::from_fn(self.base, |k, _| {
             let error = covariance[(k, k)].max(0.0).sqrt();
-            let apart = SCATTER * shared[k].abs() + SCATTER_ERRORS * error;
+            let apart = DEVIATION_SHARE * shared[k].abs() + DEVIATION_IN_STD_ERRORS * error;
             if apart > 0.0 {
                 left / (apart * apart)
             } else {
@@ -118,41 +122,71 @@ impl Design {
         (self.shared, self.covariance) = (shared, covariance);
     }
 
-    /// Coefficients by which a session's own parameters, which lie around those
-    /// of all sessions, explain the extra columns and y of its Gram `own`.
+    /// Coefficients by which a session's own parameters, drawn to those of all
+    /// sessions, explain the extra columns and y of its Gram `own`.
     #[must_use]
     pub fn explain(&self, own: &Gram) -> DMatrix<f64> {
         own.explain(&self.shared, &self.hold)
     }
 
-    /// Gram of all rows.
+    /// Coefficient of the first column of the model's effect that is this `part` of
+    /// friction, fitted to all sessions (in the unit of its row); 0 where the
+    /// model has no such effect.
+    #[must_use]
+    pub fn coefficient(&self, prepared: &PreparedModel, part: Part) -> f64 {
+        let mut terms = with_columns(&prepared.terms);
+        let own = terms.find(|(term, _)| term.effect.row().part == Some(part));
+        own.and_then(|(_, columns)| self.shared.get(columns.start).copied())
+            .unwrap_or(0.0)
+    }
+
+    /// Gram of the rows of all sessions: base columns and y.
     #[must_use]
     pub fn total(&self) -> Gram {
         Gram::sum(self.sessions.iter().flat_map(|s| &s.grams), self.base)
     }
 
-    /// The model's own Grams.
+    /// Gram matrices of the model itself, without further columns.
     #[must_use]
     pub fn own(&self) -> BlockGrams {
         self.sessions.iter().map(|s| s.grams.clone()).collect()
     }
 
-    /// Columns of another effect on every session.
+    /// Sum over the sessions of `grams` less what each session's own parameters
+    /// explain of them: the remainder of the extra columns and of y.
+    #[must_use]
+    pub fn remainder(&self, grams: &BlockGrams) -> Gram {
+        let mut sum: Option<Gram> = None;
+        for session in grams {
+            let Some(first) = session.first() else {
+                continue;
+            };
+            let total = Gram::sum(session, first.columns());
+            let reduced = total.reduce(self.base, &self.explain(&total));
+            match &mut sum {
+                None => sum = Some(reduced),
+                Some(sum) => sum.add(&reduced),
+            }
+        }
+        sum.unwrap_or_else(|| Gram::empty(0))
+    }
+
+    /// Filtered columns of another effect: by session, column and row.
     #[must_use]
     pub fn extra_columns(
         &self,
-        setup: &Setup,
+        prepared: &PreparedModel,
         effect: &EffectHandle,
         shape: &[f64],
     ) -> Vec<Vec<Vec<f64>>> {
-        setup
+        prepared
             .sessions
             .iter()
             .map(|signals| {
-                let inertia = setup.facts.inertia.unwrap_or(0.0);
+                let inertia = prepared.facts.inertia.unwrap_or(0.0);
                 columns::filtered(
                     signals,
-                    &setup.filters,
+                    &prepared.filters,
                     inertia,
                     effect,
                     shape,
@@ -162,7 +196,8 @@ impl Design {
             .collect()
     }
 
-    /// Grams with another effect's columns, or any others, put in.
+    /// Gram matrices with the `extra` columns (by session, column and row) inserted
+    /// before y.
     #[must_use]
     pub fn with(&self, extra: &[Vec<Vec<f64>>]) -> BlockGrams {
         self.sessions
@@ -183,17 +218,18 @@ impl Design {
 }
 
 impl SessionDesign {
-    /// Rows `rows` of one session in `count` blocks of time.
+    /// Measured side and columns at the working samples `rows` of one session, in
+    /// `count` blocks of time.
     #[must_use]
-    pub fn new(setup: &Setup, signals: &Signals, rows: &[usize], count: usize) -> Self {
-        let inertia = setup.facts.inertia.unwrap_or(0.0);
-        let mut measured = columns::measured(signals, &setup.filters, inertia, rows);
+    pub fn new(prepared: &PreparedModel, signals: &Signals, rows: &[usize], count: usize) -> Self {
+        let inertia = prepared.facts.inertia.unwrap_or(0.0);
+        let mut measured = columns::measured(signals, &prepared.filters, inertia, rows);
         let mut base = Vec::new();
-        for term in &setup.terms {
-            let own = columns::of_term(signals, &setup.filters, inertia, term, rows);
-            // What has been taken out of the channels is fitted again around where
-            // it was: the coefficient is all of it.
-            for (column, coefficient) in own.iter().zip(&term.undone) {
+        for term in &prepared.terms {
+            let own = columns::filtered_term(signals, &prepared.filters, inertia, term, rows);
+            // The channels are linearised around the compensated coefficients: adding
+            // these back, a fit gives the whole coefficient, not its correction.
+            for (column, coefficient) in own.iter().zip(&term.compensated) {
                 let taken = measured.iter_mut().zip(column);
                 taken.for_each(|(measured, value)| *measured += coefficient * value);
             }
@@ -203,7 +239,7 @@ impl SessionDesign {
         let views: Vec<&[f64]> = base.iter().map(Vec::as_slice).collect();
         let grams = blocks
             .iter()
-            .map(|(from, to)| Gram::of(&views, &measured, *from, *to))
+            .map(|(from, to)| Gram::from_columns(&views, &measured, *from, *to))
             .collect();
         Self {
             measured,
@@ -211,6 +247,26 @@ impl SessionDesign {
             blocks,
             grams,
         }
+    }
+
+    /// Residual of the session fitted by itself, row by row \[Nm\].
+    #[must_use]
+    pub fn own_residual(&self) -> Vec<f64> {
+        let total = Gram::sum(&self.grams, self.base.len());
+        self.residual(&total.solve())
+    }
+
+    /// Measured less modelled with these `coefficients`, row by row \[Nm\].
+    #[must_use]
+    pub fn residual(&self, coefficients: &DVector<f64>) -> Vec<f64> {
+        let mut residual = self.measured.clone();
+        for (column, c) in self.base.iter().zip(coefficients.iter()) {
+            residual
+                .iter_mut()
+                .zip(column)
+                .for_each(|(r, x)| *r -= c * x);
+        }
+        residual
     }
 
     /// Base columns, then y.

@@ -15,36 +15,36 @@ row!(
     excited_by: "reversals of the load at low speed",
     shown_by: Proposal::SlowReversals,
     contrasts: &[Contrast::SlowReversals],
-    taken_for: &["presliding_hysteresis"],
+    confusable_with: &["presliding_hysteresis"],
     at_reversal: Some(AtReversal::Gap),
     needs_prediction: true,
 );
 
-/// Places in the memory: friction that reaches the motor \[Nm\]; place in the
+/// Indices of the memory: friction that reaches the motor \[Nm\]; place in the
 /// gap \[rad\] from its middle; whether the motor is in it; whether begun.
 const FRICTION: usize = 0;
 const PLACE: usize = 1;
 const FREE: usize = 2;
 const BEGUN: usize = 3;
 
-/// Torque through the teeth, as a share of friction, below which nobody can say
-/// on which side they touch.
-const TOUCHES: f64 = 0.2;
+/// Smallest torque through the teeth, as a share of friction, whose sign shows on
+/// which side they touch.
+const MIN_TOOTH_TORQUE: f64 = 0.2;
 
-/// Where a session begins: what the motor gives goes through the teeth. Without
-/// any, it is taken to be in the middle of a gap of twice `half`.
+/// State at the start of a session: the motor torque goes through the teeth. Without
+/// any, the motor is assumed in the middle of a gap of twice `half` \[rad\].
 fn begin(point: &Point, half: f64) -> Memory {
     let most = point.friction_predicted.abs();
     let through = point.motor_torque;
     let friction = (through - point.load).clamp(-most, most);
-    match through.abs() > TOUCHES * most {
+    match through.abs() > MIN_TOOTH_TORQUE * most {
         true => [friction, sign(through) * half, 0.0, 1.0],
         false => [friction, 0.0, 1.0, 1.0],
     }
 }
 
-/// Speed \[rad/s\] at which the load pulls a gear that nothing drives: friction
-/// then takes up what it cannot hold at rest.
+/// Speed \[rad/s\] at which the load pulls a gear that nothing drives: friction at
+/// that speed balances the load, which it cannot hold at rest.
 fn gear_speed(point: &Point) -> f64 {
     let most = point.friction_predicted.abs();
     let slope = (most - point.friction_level) / point.velocity.abs();
@@ -108,9 +108,9 @@ impl Effect for Backlash {
         *c = memory[FRICTION] - point.friction_predicted;
     }
 
-    // Where the teeth meet again, the inertia of a gear whose speed nobody measures
-    // decides what the motor feels.
-    fn breaks(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
+    // Where the teeth meet again, the torque on the motor depends on the inertia of
+    // a gear whose speed is not measured.
+    fn undetermined_samples(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
         let mut memory = Memory::default();
         let mut meets = Vec::new();
         for (at, point) in points.iter().enumerate() {
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_session_begins_where_the_motor_says() {
+    fn a_session_begins_on_the_side_of_the_motor_torque() {
         let forward = || std::iter::repeat_n(0.05, 30);
         let in_the_gap = reaches(0.0, 0.0, forward());
         assert!(in_the_gap[..9].iter().all(|f| *f == 0.0));
@@ -202,7 +202,7 @@ mod tests {
         assert!(follows[32..].iter().all(|f| (f + 15.0).abs() < 0.1));
     }
     #[test]
-    fn it_breaks_where_the_teeth_meet_again() {
+    fn samples_are_undetermined_where_the_teeth_meet_again() {
         let point = |velocity: f64| Point {
             period: 1e-3 / 0.05,
             velocity,
@@ -215,7 +215,7 @@ mod tests {
         let points: Vec<Point> = (0..60)
             .map(|at| point(if at < 30 { 0.05 } else { -0.05 }))
             .collect();
-        let meets = Backlash::default().breaks(&[0.02, 1e-5], &points);
+        let meets = Backlash::default().undetermined_samples(&[0.02, 1e-5], &points);
         let [first, second] = meets[..] else {
             panic!("{meets:?}");
         };

@@ -1,4 +1,4 @@
-//! One channel stamped late.
+//! One channel with time stamps that are late.
 
 use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
 
@@ -16,15 +16,15 @@ row!(
     excited_by: "fast accelerations and changes of load",
     shown_by: Proposal::Accelerations,
     contrasts: &[Contrast::Accelerations],
-    taken_for: &["inertia", "viscous", "elasticity"],
+    confusable_with: &["inertia", "viscous", "elasticity"],
     // The fitted delay is the shift, and the channel one of three.
     freedom: Some(1),
     needs_prediction: true,
     acts_on_channels: true,
 );
 
-/// What `signal` is `samples` later, by cubics through four samples; at the end
-/// it stays as it is.
+/// `signal` advanced by `samples`, with cubic interpolation; beyond the end it
+/// keeps its last value.
 fn advanced(signal: &[f64], samples: f64) -> Vec<f64> {
     let last = signal.len().saturating_sub(1) as f64;
     let value = |at: f64| signal[at.clamp(0.0, last) as usize];
@@ -103,7 +103,7 @@ impl Effect for ChannelDelay {
         vec![[0.0, 0.0], [0.0002, 0.2]]
     }
 
-    fn undo(
+    fn compensate(
         &self,
         shape: &[f64],
         coefficients: &[f64],

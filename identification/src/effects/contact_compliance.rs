@@ -1,4 +1,5 @@
-//! The tip rests until what carries it has wound up.
+//! Compliance behind the tip: after a reversal the tip rests until the spring is
+//! deflected as far as friction can hold.
 
 use ferntast_model::friction::{Contrast, ONE, Proposal, STIFFNESS, Subject};
 
@@ -16,12 +17,12 @@ row!(
     excited_by: "reversals at several normal forces, slow and fast",
     shown_by: Proposal::ContactTurns,
     contrasts: &[Contrast::ContactTurns],
-    taken_for: &["contact_stribeck"],
-    shows_at_turns: true,
+    confusable_with: &["contact_stribeck"],
+    shows_at_reversals: true,
     needs_prediction: true,
 );
 
-/// Places in the memory: force in the spring \[N\]; place of the last sample
+/// Indices of the memory: force in the spring \[N\]; place of the last sample
 /// \[m\]; whether begun.
 const FORCE: usize = 0;
 const PLACE: usize = 1;
@@ -30,9 +31,9 @@ const BEGUN: usize = 2;
 impl Effect for ContactCompliance {
     row!(methods);
 
-    // The measured place is that of the motors. The spring takes the friction
-    // that the model predicts for sliding, and no more; the column is what it
-    // lacks of that.
+    // The measured place is that of the motors. The force of the spring is limited
+    // to the friction that the model predicts for sliding; the column is the
+    // difference of both.
     fn evaluate(&self, shape: &[f64], point: &Point, memory: &mut Memory, columns: &mut [f64]) {
         let ([c], [stiffness, ..]) = (columns, shape) else {
             return;
@@ -62,7 +63,7 @@ impl Effect for ContactCompliance {
             .collect()
     }
 
-    // From winding up over a fifth of the way to what the position does not tell.
+    // From deflection over a fifth of the travel to what the position cannot resolve.
     fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
         let soft = 5.0 * facts.motor_torque / facts.travel().max(1e-9);
         let stiff = facts.motor_torque / facts.resolved.max(1e-9);

@@ -3,12 +3,12 @@
 use ferntast_model::friction::{EffectParameter, Proposal, Row, Subject, Unit};
 use serde::Serialize;
 
-/// A parameter's name and unit.
+/// Name and unit of a parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quantity {
     /// Name as in results.
     pub name: String,
-    /// Unit.
+    /// Unit, of a revolute and of a prismatic joint.
     pub unit: Unit,
 }
 
@@ -34,14 +34,16 @@ pub struct EffectDescription {
     pub excited_by: String,
     /// The recording that shows it best.
     pub shown_by: Proposal,
-    /// Effects that look alike.
-    pub taken_for: Vec<String>,
+    /// Ids of effects that are easily mistaken for it: their signatures in the
+    /// residual are similar.
+    #[serde(rename = "taken_for")]
+    pub confusable_with: Vec<String>,
 }
 
 impl EffectDescription {
-    /// Of an effect of the catalogue.
+    /// The description of an effect of the catalogue.
     #[must_use]
-    pub fn of(row: &Row) -> Self {
+    pub fn from_row(row: &Row) -> Self {
         let quantities = |parameters: &[EffectParameter]| {
             let quantity = |own: &EffectParameter| Quantity {
                 name: own.name.to_owned(),
@@ -59,13 +61,17 @@ impl EffectDescription {
             shows_as: row.shows_as.to_owned(),
             excited_by: row.excited_by.to_owned(),
             shown_by: row.shown_by,
-            taken_for: row.taken_for.iter().map(|id| (*id).to_owned()).collect(),
+            confusable_with: row
+                .confusable_with
+                .iter()
+                .map(|id| (*id).to_owned())
+                .collect(),
         }
     }
 }
 
-/// Makes the struct of an effect that is no static law, out of its row; within
-/// its `impl Effect`, `row!(methods)` gives the two methods that say what it is.
+/// Declares the struct of an effect that is no static law from its row; within
+/// its `impl Effect`, `row!(methods)` writes the methods `description` and `row`.
 macro_rules! row {
     (methods) => {
         fn description(&self) -> &$crate::effects::EffectDescription {
@@ -87,7 +93,7 @@ macro_rules! row {
 
         impl Default for $name {
             fn default() -> Self {
-                Self($crate::effects::EffectDescription::of(&ROW))
+                Self($crate::effects::EffectDescription::from_row(&ROW))
             }
         }
     };

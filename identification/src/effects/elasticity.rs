@@ -1,9 +1,9 @@
-//! A joint that winds up between motor and measured position.
+//! Torsional elasticity between motor and measured position.
 
 use ferntast_model::friction::{Contrast, Proposal, TORQUE, Unit};
 
 use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
-use crate::filter::{Kernel, least_width};
+use crate::numerics::filter::{Kernel, least_width};
 use crate::signals::Channels;
 
 row!(
@@ -17,7 +17,7 @@ row!(
     excited_by: "load that changes fast while the joint hardly moves",
     shown_by: Proposal::Accelerations,
     contrasts: &[Contrast::SlowReversals, Contrast::Accelerations],
-    taken_for: &["presliding_hysteresis", "channel_delay"],
+    confusable_with: &["presliding_hysteresis", "channel_delay"],
     needs_prediction: true,
     acts_on_channels: true,
 );
@@ -25,7 +25,8 @@ row!(
 /// Steps of Newton's method, which converges from above.
 const STEPS: usize = 12;
 
-/// f of f + f³ = u: the twist over that of a joint that does not stiffen.
+/// f of f + f³ = u, u the `load`: deflection of a stiffening joint, scaled by that at
+/// which the cubic term equals the linear one.
 fn wound_up(load: f64) -> f64 {
     // Above where it turns back nowhere.
     let mut twist = load.abs().min(load.abs().cbrt());
@@ -68,7 +69,7 @@ impl Effect for Elasticity {
         (!facts.joint_torque).then(|| "no joint torque sensor".to_owned())
     }
 
-    fn undo(
+    fn compensate(
         &self,
         shape: &[f64],
         coefficients: &[f64],
@@ -87,7 +88,7 @@ impl Effect for Elasticity {
         0
     }
 
-    // Ahead, not behind.
+    // The motor is ahead of the measured position in the direction of the torque.
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
         coefficients.first().is_some_and(|c| *c > 0.0)
     }

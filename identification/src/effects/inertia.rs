@@ -16,7 +16,7 @@ const COMMON: Row = Row {
     excited_by: "fast accelerations at low speed",
     shown_by: Proposal::FastUnloaded,
     contrasts: &[Contrast::FastByLoad, Contrast::Accelerations],
-    taken_for: &["channel_delay"],
+    confusable_with: &["channel_delay"],
     exact: &[Exact::Acceleration],
     ..Row::NONE
 };
@@ -36,7 +36,7 @@ static FITTED: Row = Row {
     ..COMMON
 };
 
-/// A torque that goes with q̈.
+/// A torque proportional to q̈.
 pub struct Inertia {
     row: &'static Row,
     description: EffectDescription,
@@ -46,7 +46,7 @@ impl Inertia {
     fn new(row: &'static Row) -> Self {
         Self {
             row,
-            description: EffectDescription::of(row),
+            description: EffectDescription::from_row(row),
         }
     }
 

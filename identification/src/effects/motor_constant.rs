@@ -14,7 +14,7 @@ row!(
     excited_by: "fast accelerations without load, beside loads at constant speed",
     shown_by: Proposal::FastUnloaded,
     contrasts: &[Contrast::FastByLoad, Contrast::FastBySpring, Contrast::FastByWeight],
-    taken_for: &["load_coulomb", "torque_sensor_gain", "inertia"],
+    confusable_with: &["load_coulomb", "torque_sensor_gain", "inertia"],
     exact: &[Exact::Driven],
     own_signals: OwnSignals::new(&["load"], Direction::Same),
 );

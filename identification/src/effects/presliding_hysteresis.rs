@@ -15,7 +15,7 @@ row!(
     excited_by: "reversals at several amplitudes, slow and fast",
     shown_by: Proposal::SlowReversals,
     contrasts: &[Contrast::SlowReversals],
-    taken_for: &["elasticity", "backlash"],
+    confusable_with: &["elasticity", "backlash"],
     at_reversal: Some(AtReversal::Bristles),
 );
 

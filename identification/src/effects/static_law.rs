@@ -10,10 +10,10 @@ pub(super) struct StaticLaw {
     description: EffectDescription,
 }
 
-/// All of them.
+/// All static effects of the catalogue.
 pub(super) fn all() -> impl Iterator<Item = StaticLaw> {
     friction::all().map(|law| StaticLaw {
-        description: EffectDescription::of(&law.row),
+        description: EffectDescription::from_row(&law.row),
         law,
     })
 }

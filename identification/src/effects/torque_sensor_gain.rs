@@ -1,4 +1,4 @@
-//! A joint torque sensor whose gain is off.
+//! A joint torque sensor with a gain error.
 
 use ferntast_model::friction::{Contrast, Direction, Exact, ONE, OwnSignals, Proposal};
 
@@ -14,7 +14,7 @@ row!(
     excited_by: "loads in both directions at constant speed, at positions that differ for the same load",
     shown_by: Proposal::LoadSteps,
     contrasts: &[Contrast::FastByLoad, Contrast::FastBySpring, Contrast::FastByWeight, Contrast::WidePosition],
-    taken_for: &["cable_spring", "motor_constant"],
+    confusable_with: &["cable_spring", "motor_constant"],
     exact: &[Exact::JointTorque],
     own_signals: OwnSignals::new(&["load"], Direction::Same),
 );

@@ -1,4 +1,4 @@
-//! A joint torque sensor with an offset.
+//! A joint torque sensor with a constant offset.
 
 use ferntast_model::friction::{ConstantOf, Contrast, Direction, OwnSignals, Proposal, TORQUE};
 
@@ -14,7 +14,7 @@ row!(
     excited_by: "a reading of the sensor with the joint free of load",
     shown_by: Proposal::WidePosition,
     contrasts: &[Contrast::WidePosition],
-    taken_for: &["asymmetric_coulomb", "cable_spring"],
+    confusable_with: &["asymmetric_coulomb", "cable_spring"],
     constant: Some(ConstantOf::Sensor),
     needs_prediction: true,
     own_signals: OwnSignals::new(&["velocity", "position"], Direction::Same),
@@ -24,7 +24,7 @@ impl Effect for TorqueSensorOffset {
     row!(methods);
 
     // The offset is no load: friction does not grow with it, to first order.
-    // This tells it from friction that differs by direction.
+    // This distinguishes it from friction that differs by direction.
     fn evaluate(&self, _shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
         columns.fill(1.0 + point.load_slope * sign(point.load) * point.sign());
     }

@@ -1,11 +1,11 @@
-//! How large a residual may be for a while without meaning anything.
+//! Band of the residual: how large its mean square is in the model's own recordings.
 
 use super::{BAND_ROWS, Twin, TwinSample};
-use crate::data::{Dataset, Session};
+use crate::data::{Dataset, RecordedSession};
 
-/// The alarm rises when the squared residual, averaged over [`BAND_ROWS`], is
-/// above the largest such average in the model's own recordings times this \[1\]:
-/// parameters vary from session to session, and some motions leave more.
+/// Ratio of the alarm limit on the squared residual, averaged over [`BAND_ROWS`], to
+/// the largest such average in the model's own recordings \[1\]: parameters vary from
+/// session to session, and some motions leave larger residuals.
 const BAND_EXCESS: f64 = 2.0;
 
 impl Twin {
@@ -25,14 +25,13 @@ impl Twin {
                     largest = largest.max(own.mean_square);
                 }
             }
-            own.kept.clear();
-            own.kept_samples = 0;
+            own.recent.clear();
         }
         BAND_EXCESS * largest
     }
 }
 
-fn samples(session: &Session) -> impl Iterator<Item = TwinSample> + '_ {
+fn samples(session: &RecordedSession) -> impl Iterator<Item = TwinSample> + '_ {
     let channel =
         |of: &Option<Vec<f64>>, at: usize| of.as_ref().and_then(|all| all.get(at)).copied();
     let pairs = session.position.iter().zip(&session.motor_torque);

@@ -1,17 +1,17 @@
-//! Which parameter moved, and whether it stepped or drifted.
+//! Which parameter has changed, and whether by a step or by drift.
 
 use serde::Serialize;
 
-/// A parameter has moved when it is this many standard errors from where it was \[1\],
-const SIGNIFICANT: f64 = 5.0;
-/// and its part of the torque by more than this share of the residual's band \[1\].
-const RELEVANT: f64 = 1.0;
-/// A step takes its place in fewer of the estimator's own memories than this \[1\].
-const STEP: f64 = 1.0;
-/// Seconds of history that are looked at.
-const HISTORY: usize = 1200;
+/// Smallest change of a parameter, in standard errors, that is significant \[1\],
+const MIN_CHANGE: f64 = 5.0;
+/// and smallest change of its part of the torque, as a share of the residual's band \[1\].
+const MIN_TORQUE_CHANGE: f64 = 1.0;
+/// Longest duration of a step, in memories of the estimator \[1\].
+const MAX_STEP_DURATION: f64 = 1.0;
+/// Seconds of history that are evaluated.
+const MAX_HISTORY: usize = 1200;
 
-/// A parameter that moved.
+/// A parameter whose value has changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
     /// Name of the parameter.
@@ -20,25 +20,26 @@ pub struct Change {
     pub before: f64,
     /// Value now.
     pub now: f64,
-    /// When half of the way was done \[s\].
+    /// Time at which half of the change was complete \[s\].
     pub time: f64,
-    /// From a tenth to nine tenths of the way \[s\].
+    /// Duration from a tenth to nine tenths of the change \[s\].
     pub took: f64,
-    /// How it moved.
+    /// Step or drift.
     pub kind: ChangeKind,
 }
 
-/// How a parameter moves.
+/// Course of a change in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChangeKind {
-    /// At once, as far as the estimator can tell.
+    /// At once, within the response of the estimator.
     Step,
-    /// Little by little.
+    /// Gradually, longer than the response of the estimator.
     Drift,
 }
 
-/// Estimates once a second, and the torque that each is worth.
+/// Estimates once a second, and the mean square of each column, by which changes
+/// are expressed as torques.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ChangeLog {
     times: Vec<f64>,
@@ -61,7 +62,7 @@ impl ChangeLog {
         if self.times.last().is_some_and(|last| time < last + 1.0) {
             return;
         }
-        if self.times.len() >= HISTORY {
+        if self.times.len() >= MAX_HISTORY {
             self.times.remove(0);
             self.values.remove(0);
         }
@@ -74,8 +75,8 @@ impl ChangeLog {
         *self = Self::default();
     }
 
-    /// The parameter whose change is worth the most torque, if one has moved
-    /// away from `reference`. `band` is the residual's standard deviation
+    /// The parameter whose change is largest as a torque, if one differs from
+    /// `reference`. `band` is the residual's standard deviation
     /// \[Nm\], `response` the estimator's memory in time \[s\].
     pub(super) fn find(
         &self,
@@ -94,7 +95,7 @@ impl ChangeLog {
         let best = (0..names.len()).max_by(|a, b| worth(*a).total_cmp(&worth(*b)))?;
         let error = std_errors.get(best).copied().unwrap_or(f64::INFINITY);
         let way = moved(best)?;
-        if way.abs() < SIGNIFICANT * error || worth(best) < RELEVANT * band {
+        if way.abs() < MIN_CHANGE * error || worth(best) < MIN_TORQUE_CHANGE * band {
             return None;
         }
         let before = *reference.get(best)?;
@@ -115,7 +116,7 @@ impl ChangeLog {
             now: before + way,
             time: half,
             took,
-            kind: if took < STEP * response {
+            kind: if took < MAX_STEP_DURATION * response {
                 ChangeKind::Step
             } else {
                 ChangeKind::Drift

@@ -1,9 +1,9 @@
-//! The last stretch of a signal, counted from its first sample.
+//! The latest samples of a signal, indexed from its first sample.
 
-use crate::filter::Kernel;
+use crate::numerics::filter::Kernel;
 
 /// Samples kept when old ones are dropped.
-const KEPT: usize = 2048;
+const KEPT_SAMPLES: usize = 2048;
 
 /// A signal of which only the end is kept.
 #[derive(Clone, Debug, Default)]
@@ -15,8 +15,8 @@ pub(super) struct History {
 impl History {
     /// Adds a sample; old ones are dropped now and then.
     pub(super) fn push(&mut self, value: f64) {
-        if self.values.len() >= 2 * KEPT {
-            let dropped = self.values.len() - KEPT;
+        if self.values.len() >= 2 * KEPT_SAMPLES {
+            let dropped = self.values.len() - KEPT_SAMPLES;
             self.values.drain(..dropped);
             self.dropped += dropped;
         }

@@ -1,15 +1,15 @@
-//! Sensors that give the same number again and again.
+//! Sensors that are stuck at one value.
 
 use super::{Flag, TwinSample};
 
-/// Share of the motor torque's size by which it must have changed before a
-/// position that has not changed by a bit is called stuck, not at rest \[1\].
+/// Smallest range of the motor torque, as a share of its size, over which an exactly
+/// constant position is stuck rather than at rest \[1\].
 const TORQUE_SHARE: f64 = 2.0;
-/// Share of the travel in the reference recordings over which a joint torque
-/// that has not changed by a bit is called stuck \[1\].
+/// Smallest range of the position, as a share of the travel in the recordings, over
+/// which an exactly constant joint torque is stuck \[1\].
 const TRAVEL_SHARE: f64 = 0.05;
 
-/// Watches both sensors.
+/// Detects stuck sensors of position and joint torque.
 #[derive(Clone, Debug)]
 pub(super) struct Sensors {
     /// Range of motor torque \[Nm\] in which a joint can be at rest.

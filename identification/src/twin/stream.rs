@@ -4,15 +4,16 @@
 //! ([`Signals`](crate::signals::Signals)): both are short and without phase, so
 //! that a row is ready a fixed time after its sample.
 
+use crate::design::PreparedModel;
 use crate::effects::{
-    Exact, ExactSignal, MAX_COLUMNS, Memory, Point, constant_of, parts_of, with_columns,
+    BoundTerm, Exact, ExactSignal, MAX_COLUMNS, Memory, Point, constant_of, parts_of, with_columns,
 };
-use crate::filter::Kernel;
-use crate::setup::{BoundTerm, Setup};
+use crate::numerics::filter::Kernel;
 use crate::signals::{Filters, Sliding};
 
+use super::TwinSample;
 use super::history::History;
-use super::{TwinRow, TwinSample};
+use super::sample::TwinRow;
 
 /// Extra signals are read by no effect of the catalogue.
 const NO_EXTRA: [f64; 0] = [];
@@ -30,7 +31,7 @@ pub(super) struct Stream {
     /// Coefficients of the terms, for the modelled load.
     coefficients: Vec<f64>,
     kernels: Kernels,
-    state: State,
+    state: StreamState,
 }
 
 #[derive(Clone)]
@@ -42,7 +43,7 @@ struct Kernels {
 
 /// Everything that a gap in the samples resets.
 #[derive(Clone, Default)]
-struct State {
+struct StreamState {
     /// Time of grid sample 0 \[s\].
     start: f64,
     last: Option<TwinSample>,
@@ -61,29 +62,29 @@ struct State {
 }
 
 impl Stream {
-    pub(super) fn new(setup: &Setup, period: f64, coefficients: &[f64]) -> Self {
-        let filters = setup.filters;
+    pub(super) fn new(prepared: &PreparedModel, period: f64, coefficients: &[f64]) -> Self {
+        let filters = prepared.filters;
         let working = period * filters.thinning as f64;
         let state = |order| Kernel::sharp(filters.state, order, working);
         let column = |order| Kernel::gaussian(filters.column, order, working);
         let mut stream = Self {
             filters,
             period,
-            inertia: setup.facts.inertia.unwrap_or(0.0),
-            reference_temperature: if setup.facts.temperature {
-                setup.facts.reference_temperature
+            inertia: prepared.facts.inertia.unwrap_or(0.0),
+            reference_temperature: if prepared.facts.temperature {
+                prepared.facts.reference_temperature
             } else {
                 0.0
             },
-            has_sensor: setup.facts.joint_torque,
-            terms: setup.terms.clone(),
+            has_sensor: prepared.facts.joint_torque,
+            terms: prepared.terms.clone(),
             coefficients: coefficients.to_vec(),
             kernels: Kernels {
                 thin: Kernel::gaussian(0.5 * filters.thinning as f64, 0, 1.0),
                 state: [state(0), state(1), state(2)],
                 column: [column(0), column(1), column(2)],
             },
-            state: State::default(),
+            state: StreamState::default(),
         };
         stream.restart();
         stream
@@ -92,11 +93,11 @@ impl Stream {
     /// Forgets all samples, as at a gap.
     pub(super) fn restart(&mut self) {
         let columns = self.terms.iter().map(|t| t.effect.columns()).sum();
-        self.state = State {
+        self.state = StreamState {
             memories: vec![[0.0; 4]; self.terms.len()],
             columns: vec![History::default(); columns],
             next_row: Kernel::reach(self.filters.column),
-            ..State::default()
+            ..StreamState::default()
         };
     }
 

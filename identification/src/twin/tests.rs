@@ -2,8 +2,9 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::Verdict;
-use crate::bench::{State, model, plain, recording};
 use crate::design::SessionDesign;
+use crate::preparation::prepare;
+use crate::tests::recordings::{JointState, model, plain, recording};
 
 const MEMORY: f64 = 20.0;
 const MODEL: &[&str] = &["coulomb", "viscous"];
@@ -43,14 +44,14 @@ fn feed(twin: &mut Twin, samples: &[TwinSample]) -> Vec<TwinOutput> {
 #[test]
 fn rows_are_those_of_the_lab() {
     let data = recording(5, plain);
-    let setup = Setup::new(&data, &model(MODEL)).unwrap();
-    let off_line = fit(&setup, &Design::new(&setup)).coefficients;
+    let prepared = prepare(&data, &model(MODEL)).unwrap();
+    let off_line = fit(&prepared, &Design::new(&prepared)).coefficients;
     let mut twin = twin(&data);
     let outputs = feed(&mut twin, &samples(&data));
     let mut compared = 0;
     let session_length = data.sessions[0].len() as f64 * data.sessions[0].period + 60.0;
-    for (k, signals) in setup.sessions.iter().enumerate() {
-        let rows = SessionDesign::new(&setup, signals, &signals.rows, 1);
+    for (k, signals) in prepared.sessions.iter().enumerate() {
+        let rows = SessionDesign::new(&prepared, signals, &signals.rows, 1);
         for (i, at) in signals.rows.iter().enumerate() {
             let time = k as f64 * session_length + signals.time(*at);
             let Some(output) = outputs.iter().find(|o| (o.time - time).abs() < 1e-6) else {
@@ -88,7 +89,7 @@ fn a_right_model_stays_within_its_band_and_is_complete() {
 
 #[test]
 fn a_missing_effect_is_named_after_enough_data() {
-    let stribeck = |s: &State| plain(s) + 1.5 * (-(s.qd / 0.05).powi(2)).exp() * s.qd.signum();
+    let stribeck = |s: &JointState| plain(s) + 1.5 * (-(s.qd / 0.05).powi(2)).exp() * s.qd.signum();
     let mut twin = twin(&recording(6, plain));
     feed(&mut twin, &samples(&recording(7, stribeck)));
     let diagnosis = twin.assess().unwrap();

@@ -63,7 +63,8 @@ use std::{
 };
 
 use ferntast_identification::{
-    CustomEffect, Inertia, JointType, ModelSpec, StatedFilter, Term, expression::signal_names,
+    CustomEffect, Inertia, JointType, ModelSpec, StatedFilter, Term,
+    effects::expression::signal_names,
 };
 
 pub use contact::Contour;

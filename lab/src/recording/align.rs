@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ferntast_identification::statistics::quantile;
+use ferntast_identification::numerics::statistics::quantile;
 
 use super::{LoadError, Series, VALID};
 

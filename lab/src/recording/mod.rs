@@ -20,7 +20,7 @@ mod error;
 
 use std::path::{Path, PathBuf};
 
-use ferntast_identification::{Dataset, Session};
+use ferntast_identification::{Dataset, RecordedSession};
 
 use crate::{csv, experiment::Experiment};
 
@@ -114,7 +114,7 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
     let wanted = wanted(experiment);
     let mut notes = Vec::new();
     let mut clock = Clock::default();
-    let mut read = |paths: &[PathBuf]| -> Result<Vec<Session>, LoadError> {
+    let mut read = |paths: &[PathBuf]| -> Result<Vec<RecordedSession>, LoadError> {
         let mut sessions = Vec::new();
         for path in paths {
             sessions.extend(read_file(
@@ -212,7 +212,7 @@ fn read_file(
     wanted: &[Wanted],
     clock: &mut Clock,
     notes: &mut Vec<String>,
-) -> Result<Vec<Session>, LoadError> {
+) -> Result<Vec<RecordedSession>, LoadError> {
     let series = read_series(experiment, path, wanted, notes)?;
     let (pieces, left_out) = align::align(path, &series)?;
     if left_out > 0 {
@@ -229,14 +229,14 @@ fn read_file(
     let mut sessions = Vec::new();
     for (number, piece) in pieces.into_iter().enumerate() {
         let start = piece.start.saturating_sub(origin) as f64 * 1e-9 + shift;
-        let mut session = Session {
+        let mut session = RecordedSession {
             name: match several {
                 true => format!("{name}, session {}", number + 1),
                 false => name.to_string(),
             },
             start,
             period: piece.period,
-            ..Session::default()
+            ..RecordedSession::default()
         };
         let mut across = Vec::new();
         for (signal, values) in wanted.iter().zip(piece.channels) {
@@ -310,11 +310,11 @@ fn read_csv(
 }
 
 fn check_constant(
-    sessions: &[Session],
+    sessions: &[RecordedSession],
     experiment: &Experiment,
     notes: &mut Vec<String>,
 ) -> Result<(), LoadError> {
-    type Channel = fn(&Session) -> Option<&Vec<f64>>;
+    type Channel = fn(&RecordedSession) -> Option<&Vec<f64>>;
     let force = experiment.joint.signal("motor_torque");
     let channels: [(&str, bool, Channel); 5] = [
         ("position", true, |session| Some(&session.position)),

@@ -1,6 +1,6 @@
 //! From results to a report.
 
-use ferntast_identification::{Comparison, Diagnosis, compare::Series, diagnose};
+use ferntast_identification::{Comparison, Diagnosis, comparison::Series, diagnosis};
 
 use super::{
     Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap, Trace,
@@ -27,7 +27,7 @@ pub fn assemble(
         None => Vec::new(),
     };
     let (kind, text) = match diagnosis.verdict {
-        diagnose::Verdict::Missing => (
+        diagnosis::Verdict::Missing => (
             "missing",
             format!(
                 "{} explains what the model leaves.",
@@ -37,8 +37,8 @@ pub fn assemble(
                     .map_or("An effect", |best| best.effect.as_str())
             ),
         ),
-        diagnose::Verdict::Complete => ("complete", "What is left is noise.".to_owned()),
-        diagnose::Verdict::Unexplained => (
+        diagnosis::Verdict::Complete => ("complete", "What is left is noise.".to_owned()),
+        diagnosis::Verdict::Unexplained => (
             "unexplained",
             "Something is missing that the catalogue does not have.".to_owned(),
         ),

@@ -9,7 +9,9 @@ mod twin;
 
 use std::path::Path;
 
-use ferntast_identification::{Comparison, Dataset, Diagnosis, compare, diagnose};
+use ferntast_identification::{
+    Comparison, Dataset, Diagnosis, compare, comparison::compare_drawing, diagnose,
+};
 
 use crate::{
     experiment::{self, Experiment},
@@ -69,7 +71,7 @@ impl Opened {
     ///
     /// [`WorkError::Prepare`]: what data or model lack.
     pub fn compare_drawing(&self, most: usize) -> Result<Comparison, WorkError> {
-        compare::compare_drawing(&self.dataset, &self.experiment.model, most)
+        compare_drawing(&self.dataset, &self.experiment.model, most)
             .map_err(|error| self.refuse(error))
     }
 

@@ -22,7 +22,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "slow motion at several temperatures, on dates out of order with temperature",
             shown_by: Proposal::TemperatureSweep,
             contrasts: &[Contrast::TemperatureSweep],
-            taken_for: &["wear_drift"],
+            confusable_with: &["wear_drift"],
             varies: Some("coulomb"),
             own_signals: OwnSignals::varying(&["temperature"]),
             ..Row::NONE
@@ -47,7 +47,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "slow and fast motion at several temperatures",
             shown_by: Proposal::TemperatureSweep,
             contrasts: &[Contrast::TemperatureSweep],
-            taken_for: &["temperature_coulomb"],
+            confusable_with: &["temperature_coulomb"],
             varies: Some("viscous"),
             own_signals: OwnSignals::varying(&["temperature"]),
             ..Row::NONE
@@ -72,7 +72,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "the same motion at one temperature on many dates",
             shown_by: Proposal::DateSweep,
             contrasts: &[Contrast::TemperatureSweep],
-            taken_for: &["temperature_coulomb"],
+            confusable_with: &["temperature_coulomb"],
             varies: Some("coulomb"),
             own_signals: OwnSignals::varying(&["date"]),
             ..Row::NONE

@@ -32,7 +32,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 Contrast::ContactForces,
                 Contrast::ContactSweep,
             ],
-            taken_for: &["contact_viscous"],
+            confusable_with: &["contact_viscous"],
             part: Some(Part::ByLoad),
             own_signals: OwnSignals::new(&["normal_force"], Direction::Opposite),
             ..NONE
@@ -51,7 +51,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "sliding at many speeds; at one speed it is Coulomb friction",
             shown_by: Proposal::ContactSpeeds,
             contrasts: &[Contrast::ContactSpeeds, Contrast::ContactForces],
-            taken_for: &["contact_coulomb"],
+            confusable_with: &["contact_coulomb"],
             part: Some(Part::Viscous),
             exact: &[Exact::Velocity],
             own_signals: OVER_SPEED,
@@ -76,7 +76,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 Contrast::ContactForces,
                 Contrast::ContactSweep,
             ],
-            taken_for: &["contact_compliance"],
+            confusable_with: &["contact_compliance"],
             own_signals: OVER_SPEED,
             ..NONE
         },
@@ -107,7 +107,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "sliding in both directions over the whole contour",
             shown_by: Proposal::ContactSweep,
             contrasts: &[Contrast::ContactDates, Contrast::ContactSweep],
-            taken_for: &["contact_coulomb"],
+            confusable_with: &["contact_coulomb"],
             own_signals: OwnSignals::new(&["place"], Direction::Opposite),
             ..NONE
         },
@@ -143,7 +143,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "the same sliding on many dates",
             shown_by: Proposal::ContactDates,
             contrasts: &[Contrast::ContactDates],
-            taken_for: &["contact_coulomb"],
+            confusable_with: &["contact_coulomb"],
             varies: Some("contact_coulomb"),
             own_signals: OwnSignals::varying(&["date"]),
             ..NONE

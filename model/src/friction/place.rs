@@ -31,7 +31,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "slow constant speed, so slow that the ripple is not aliased",
             shown_by: Proposal::WidePosition,
             contrasts: &[Contrast::WidePosition, Contrast::Accelerations],
-            taken_for: &["local_friction"],
+            confusable_with: &["local_friction"],
             is_periodic: true,
             ..Row::NONE
         },
@@ -76,7 +76,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "slow motion in both directions past the spot",
             shown_by: Proposal::WidePosition,
             contrasts: &[Contrast::WidePosition],
-            taken_for: &["ripple"],
+            confusable_with: &["ripple"],
             own_signals: OwnSignals::new(&["position"], Direction::Opposite),
             ..Row::NONE
         },
@@ -107,7 +107,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 Contrast::WidePosition,
                 Contrast::LoadSteps,
             ],
-            taken_for: &["cable_spring"],
+            confusable_with: &["cable_spring"],
             is_load: true,
             own_signals: OVER_POSITION,
             ..Row::NONE
@@ -142,7 +142,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 Contrast::WidePosition,
                 Contrast::LoadSteps,
             ],
-            taken_for: &["gravity", "torque_sensor_gain"],
+            confusable_with: &["gravity", "torque_sensor_gain"],
             contains: &[("asymmetric_coulomb", 0), ("torque_sensor_offset", 0)],
             exact: &[Exact::Position, Exact::One],
             is_load: true,

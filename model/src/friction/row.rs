@@ -130,7 +130,7 @@ pub struct OwnSignals {
     pub names: &'static [&'static str],
     /// Symmetry.
     pub direction: Direction,
-    /// Whether it speaks for every pair with one of these signals, too.
+    /// Whether every pair with one of these signals belongs to it, too.
     pub any_pair: bool,
 }
 
@@ -209,8 +209,9 @@ pub struct Row {
     pub shown_by: Proposal,
     /// Recordings that tell it from the other effects that have the same here.
     pub contrasts: &'static [Contrast],
-    /// Effects that look alike.
-    pub taken_for: &'static [&'static str],
+    /// Ids of effects that are easily mistaken for it: their signatures in the
+    /// residual are similar.
+    pub confusable_with: &'static [&'static str],
     /// The part of friction that it belongs to.
     pub part: Option<Part>,
     /// The effect whose coefficient it lets vary from session to session; it
@@ -224,7 +225,7 @@ pub struct Row {
     pub constant: Option<ConstantOf>,
     /// It shows at reversals, as what.
     pub at_reversal: Option<AtReversal>,
-    /// Signals that it speaks for.
+    /// Signals over which its shape is fixed.
     pub own_signals: OwnSignals,
     /// Channels to which its columns are equal, where they are.
     pub exact: &'static [Exact],
@@ -236,9 +237,9 @@ pub struct Row {
     pub corrects_inertia: bool,
     /// Its shape is a period over position, sought in the residual.
     pub is_periodic: bool,
-    /// It shows mainly just after reversals, where other rows are left out: a
-    /// model that has it is fitted to these rows too.
-    pub shows_at_turns: bool,
+    /// It shows mainly just after reversals, where rows are left out for other
+    /// effects: a model that has it is fitted to these rows too.
+    pub shows_at_reversals: bool,
     /// Its columns need the model's own prediction.
     pub needs_prediction: bool,
     /// It acts on what is measured rather than on torque: its columns are right
@@ -263,7 +264,7 @@ impl Row {
         excited_by: "",
         shown_by: Proposal::LoadSteps,
         contrasts: &[],
-        taken_for: &[],
+        confusable_with: &[],
         part: None,
         varies: None,
         contains: &[],
@@ -276,7 +277,7 @@ impl Row {
         is_inertia: false,
         corrects_inertia: false,
         is_periodic: false,
-        shows_at_turns: false,
+        shows_at_reversals: false,
         needs_prediction: false,
         acts_on_channels: false,
         freedom: None,

@@ -29,7 +29,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 Contrast::WideSpeedRange,
                 Contrast::LoadSteps,
             ],
-            taken_for: &["presliding_hysteresis", "stribeck"],
+            confusable_with: &["presliding_hysteresis", "stribeck"],
             part: Some(Part::Constant),
             own_signals: OVER_SPEED,
             ..Row::NONE
@@ -48,7 +48,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "slow motion in both directions under loads from none to full",
             shown_by: Proposal::LoadSteps,
             contrasts: &[Contrast::FastByLoad, Contrast::LoadSteps],
-            taken_for: &["torque_sensor_gain", "motor_constant"],
+            confusable_with: &["torque_sensor_gain", "motor_constant"],
             part: Some(Part::ByLoad),
             own_signals: OwnSignals::new(&["load"], Direction::Opposite),
             ..Row::NONE
@@ -74,7 +74,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "constant speeds over the whole range",
             shown_by: Proposal::WideSpeedRange,
             contrasts: &[Contrast::WideSpeedRange, Contrast::Accelerations],
-            taken_for: &["channel_delay"],
+            confusable_with: &["channel_delay"],
             part: Some(Part::Viscous),
             exact: &[Exact::Velocity],
             own_signals: OVER_SPEED,
@@ -94,7 +94,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "constant speeds over the widest range that the joint allows",
             shown_by: Proposal::WideSpeedRange,
             contrasts: &[Contrast::WideSpeedRange],
-            taken_for: &["cubic_viscous"],
+            confusable_with: &["cubic_viscous"],
             part: Some(Part::Viscous),
             own_signals: OVER_SPEED,
             ..Row::NONE
@@ -112,7 +112,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "constant speeds over the widest range that the joint allows",
             shown_by: Proposal::WideSpeedRange,
             contrasts: &[Contrast::WideSpeedRange],
-            taken_for: &["quadratic_viscous"],
+            confusable_with: &["quadratic_viscous"],
             part: Some(Part::Viscous),
             own_signals: OVER_SPEED,
             ..Row::NONE
@@ -130,7 +130,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "constant speeds over the widest range that the joint allows",
             shown_by: Proposal::WideSpeedRange,
             contrasts: &[Contrast::WideSpeedRange],
-            taken_for: &["stribeck"],
+            confusable_with: &["stribeck"],
             part: Some(Part::Viscous),
             contains: &[("quadratic_viscous", 1), ("cubic_viscous", 0)],
             is_sum: true,
@@ -156,7 +156,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "slow constant speeds in small steps, down to the slowest",
             shown_by: Proposal::WideSpeedRange,
             contrasts: &[Contrast::SlowReversals, Contrast::WideSpeedRange],
-            taken_for: &["coulomb", "presliding_hysteresis"],
+            confusable_with: &["coulomb", "presliding_hysteresis"],
             own_signals: OVER_SPEED,
             ..Row::NONE
         },
@@ -186,7 +186,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 Contrast::WideSpeedRange,
                 Contrast::LoadSteps,
             ],
-            taken_for: &["stribeck", "load_coulomb"],
+            confusable_with: &["stribeck", "load_coulomb"],
             own_signals: OwnSignals::new(&["velocity", "load"], Direction::Opposite),
             ..Row::NONE
         },
@@ -211,7 +211,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "motion in both directions at two positions and without load",
             shown_by: Proposal::WidePosition,
             contrasts: &[Contrast::WidePosition],
-            taken_for: &["torque_sensor_offset", "gravity"],
+            confusable_with: &["torque_sensor_offset", "gravity"],
             constant: Some(ConstantOf::Friction),
             exact: &[Exact::One],
             own_signals: OwnSignals::new(&["velocity", "position"], Direction::Same),
@@ -236,7 +236,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             excited_by: "several speeds in both directions",
             shown_by: Proposal::WideSpeedRange,
             contrasts: &[Contrast::WideSpeedRange],
-            taken_for: &["asymmetric_coulomb"],
+            confusable_with: &["asymmetric_coulomb"],
             own_signals: OwnSignals::new(&["velocity"], Direction::Same),
             // A slope that differs by direction without a level that does is a
             // part of an asymmetry: not simpler than one cause with one number.

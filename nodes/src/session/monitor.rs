@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
-use ferntast_identification::statistics::quantile;
+use ferntast_identification::numerics::statistics::quantile;
 use ferntast_msgs::{
     Message, Time,
     sample::{

@@ -4,7 +4,7 @@ mod changes;
 mod faults;
 mod take_over;
 
-use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
+use ferntast_identification::{Dataset, Inertia, ModelSpec, RecordedSession, Term};
 use ferntast_msgs::sample::Faults;
 
 use super::*;
@@ -70,14 +70,14 @@ fn model_of(
             (motion[0] + 1e-6 * noise, torque(t, motion) + 0.1 * noise)
         });
         let (position, motor_torque): (Vec<f64>, Vec<f64>) = rows.unzip();
-        Session {
+        RecordedSession {
             name: format!("session {k}"),
             start: 500.0 * f64::from(k),
             period: PERIOD,
             joint_torque: joint_torque.then(|| vec![0.0; position.len()]),
             position,
             motor_torque,
-            ..Session::default()
+            ..RecordedSession::default()
         }
     });
     let dataset = Dataset {

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_identification::{contact_friction::ContactFriction, damping::Average};
+use ferntast_identification::experiments::{contact_friction::ContactFriction, damping::Average};
 use ferntast_model::{ParameterError, check, contour::Surface, parameters};
 use ferntast_nodes::config::{self, ConfigError, FileKind};
 use ferntast_sim::arm::ArmConfig;

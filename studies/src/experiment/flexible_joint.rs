@@ -18,7 +18,7 @@ use ferntast_bus::{
 };
 use ferntast_identification::{
     Inertia, JointType, ModelSpec,
-    flexible_joint::{FlexibleJointSignals, Inertias, Row, rows},
+    experiments::flexible_joint::{FlexibleJointSignals, Inertias, Row, rows},
 };
 use ferntast_lab::{
     experiment::{Experiment, RECORD, Signals},

@@ -4,14 +4,16 @@ use std::{collections::BTreeMap, path::Path};
 
 use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{
-    Dataset, Session, Term,
-    contact_friction::{self, ContactFriction},
-    damping::{self, Average, Sample},
+    Dataset, RecordedSession, Term,
     data::Inertia,
     design::Design,
+    experiments::{
+        contact_friction::{self, ContactFriction},
+        damping::{self, Average, Sample},
+        stiffness::{self, Stiffness},
+    },
     fit::{Parameter, fit},
-    setup::Setup,
-    stiffness::{self, Stiffness},
+    prepare,
 };
 use ferntast_lab::{
     experiment::{Experiment, RECORD, Signals, data_folder},
@@ -128,11 +130,11 @@ impl JointData {
             .iter()
             .map(|effect| Term::Catalogue((*effect).to_owned()))
             .collect();
-        let setup = Setup::new(&self.dataset, &spec).map_err(|source| IdentifyError::Fit {
+        let prepared = prepare(&self.dataset, &spec).map_err(|source| IdentifyError::Fit {
             path: path.to_owned(),
             source,
         })?;
-        let found = fit(&setup, &Design::new(&setup));
+        let found = fit(&prepared, &Design::new(&prepared));
         Ok(Friction {
             parameters: found.parameters,
             not_excited: found.not_excited,
@@ -208,7 +210,7 @@ pub fn stiffness(path: &Path) -> Result<Stiffness, IdentifyError> {
     let Some(most) = most else {
         return Err(empty);
     };
-    let at = |session: &Session| session.position.get(most).copied().unwrap_or_default();
+    let at = |session: &RecordedSession| session.position.get(most).copied().unwrap_or_default();
     let posture = Vector2::new(at(first), at(session));
     let normal = arm
         .contour
@@ -299,7 +301,8 @@ impl Contact {
             .zip(&session.position)
             .map(|(&q1, &q2)| edge.along(&kinematics.forward(&Vector2::new(q1, q2))))
             .collect();
-        let slope = ferntast_identification::filter::Kernel::gaussian(1.0, 1, session.period);
+        let slope =
+            ferntast_identification::numerics::filter::Kernel::gaussian(1.0, 1, session.period);
         let is = |channel: &[f64], at: usize| channel.get(at).is_some_and(|value| *value > 0.5);
         let rows = 0..session.len();
         Ok(Contact {

@@ -141,7 +141,7 @@ fn over_the_mission(evidence: &Evidence) -> Section {
         let one = vec![1.0; dates.len()];
         let years: Vec<f64> = dates.iter().map(|date| date.0 / 365.25).collect();
         let values: Vec<f64> = dates.iter().map(|date| date.1).collect();
-        ferntast_identification::regression::least_squares(&[&one, &years], &values)
+        ferntast_identification::numerics::regression::least_squares(&[&one, &years], &values)
     };
     let growth = trend(&coated);
     let gap = |date: Option<&(f64, f64, f64)>| date.map(|date| level - date.1);

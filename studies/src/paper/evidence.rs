@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use ferntast_drivers::simulated;
-use ferntast_identification::{damping::Sample, flexible_joint::Row, stiffness::Stiffness};
+use ferntast_identification::experiments::{
+    damping::Sample, flexible_joint::Row, stiffness::Stiffness,
+};
 use ferntast_model::contour::Surface;
 use ferntast_nodes::config::ConfigError;
 use ferntast_sim::arm::ArmConfig;

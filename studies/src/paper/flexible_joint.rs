@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ferntast_benches::flexible_joint_bench::{FlexibleJointParameters, FlexibleJointRun};
-use ferntast_identification::flexible_joint::{
+use ferntast_identification::experiments::flexible_joint::{
     Estimate, OnLine, PARAMETERS, Row, Track, off_line, on_line,
 };
 use ferntast_model::recursive_least_squares::Forgetting;

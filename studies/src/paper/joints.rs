@@ -1,6 +1,6 @@
 //! Figs. 4, 5 (linear against cubic), 8 (shares of the terms), 9 (another trajectory).
 
-use ferntast_identification::damping::Sample;
+use ferntast_identification::experiments::damping::Sample;
 
 use super::evidence::{Evidence, JointEvidence};
 use super::item::{Chart, Curve, Item, Section};

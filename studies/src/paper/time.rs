@@ -1,6 +1,6 @@
 //! Figs. 6, 7 (low speed), 10, 11 (averages by speed): damping against mission time.
 
-use ferntast_identification::{
+use ferntast_identification::numerics::{
     regression::{Coefficients, least_squares},
     statistics::quantile,
 };

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use ferntast_identification::statistics::quantile;
+use ferntast_identification::numerics::statistics::quantile;
 
 use super::{Row, largest_stable};
 

@@ -23,9 +23,6 @@ const PURE: [&str; 7] = [
 /// What reaches the simulated arm because it was chosen.
 const MAY_SIMULATE: [&str; 4] = ["sim", "drivers", "studies", "cli"];
 
-/// Crates whose files are yet to be put in order.
-const STILL_IN_CIRCLES: [&str; 1] = ["identification"];
-
 /// The folder of a crate of the workspace.
 fn folder(name: &str) -> PathBuf {
     ferntast_tests::root().join(name)
@@ -145,10 +142,7 @@ fn arrows_between_crates_follow_the_table() {
 fn no_files_of_different_folders_depend_on_each_other_in_a_circle() {
     let members = arrows::members(&cargo(&["metadata", "--no-deps", "--format-version", "1"]));
     let mut lines = Vec::new();
-    for name in members
-        .keys()
-        .filter(|name| !STILL_IN_CIRCLES.contains(&name.as_str()))
-    {
+    for name in members.keys() {
         let root = folder(name).join("src");
         let found = cycles::cycles(&root, &modules::sources(&root));
         lines.extend(found.unwrap_or_else(|error| panic!("{name}: {error}")));

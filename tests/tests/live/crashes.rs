@@ -55,9 +55,10 @@ fn a_crash_of_the_operators_end_leaves_a_paused_arm_paused() {
     let session = Session::new();
     let mut process = start(&session, &[]);
     await_enabled(&session, &mut process);
-    // So that the operator's end has words to lose.
+    // The operator's word, which its end of the link counts and loses when it dies.
     state(&session, "follower", "pause").success();
-    rearmed(&session);
+    state(&session, "leader", "resume").success();
+    assert!(wait_until(PATIENCE, || state_of_follower(&session) == "ENABLED"));
     state(&session, "follower", "pause").success();
     for _ in 0..3 {
         let before = node(&session, "link_leader");

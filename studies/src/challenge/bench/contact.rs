@@ -8,7 +8,7 @@ use ferntast_benches::{
     },
 };
 use ferntast_bus::Bus;
-use ferntast_identification::{Dataset, JointType, ModelSpec, Session};
+use ferntast_identification::{Dataset, JointType, ModelSpec, RecordedSession};
 use ferntast_msgs::{
     sample::{Frame, PoseSample, TemperatureSample, WrenchSample},
     topics,
@@ -17,8 +17,8 @@ use ferntast_msgs::{
 use super::{TestBench, WriteError, model_of, quoted, stamp, temperature_topic};
 
 /// Session `number` of a recording.
-fn session(own: &ContactSession, number: usize) -> Session {
-    Session {
+fn session(own: &ContactSession, number: usize) -> RecordedSession {
+    RecordedSession {
         name: format!("session {number}"),
         start: own.start,
         period: LOG_PERIOD,
@@ -26,7 +26,7 @@ fn session(own: &ContactSession, number: usize) -> Session {
         motor_torque: own.tangential.clone(),
         normal_force: Some(own.normal.clone()),
         temperature: Some(own.temperature.clone()),
-        ..Session::default()
+        ..RecordedSession::default()
     }
 }
 
@@ -51,7 +51,7 @@ impl TestBench for HiddenEffect {
         recording: &ContactRecording,
         motion: Motion,
         sessions: usize,
-    ) -> Result<Vec<Session>, BenchError> {
+    ) -> Result<Vec<RecordedSession>, BenchError> {
         let first = recording.sessions.len() + 1;
         let more = bench.follow_up(recording, motion, sessions);
         let more = more.iter().zip(first..);

@@ -7,7 +7,7 @@ use ferntast_benches::{
     },
 };
 use ferntast_bus::Bus;
-use ferntast_identification::{Dataset, JointType, ModelSpec, Session};
+use ferntast_identification::{Dataset, JointType, ModelSpec, RecordedSession};
 use ferntast_msgs::{
     sample::{JointSample, TemperatureSample},
     topics,
@@ -17,8 +17,8 @@ use super::{TestBench, WriteError, joints, model_of, quoted, stamp, temperature_
 
 /// Session `number` of a recording. Whoever runs it knows whether there are
 /// springs to pull.
-fn session(own: &BenchSession, number: usize) -> Session {
-    Session {
+fn session(own: &BenchSession, number: usize) -> RecordedSession {
+    RecordedSession {
         name: format!("session {number}"),
         start: own.start,
         period: LOG_PERIOD,
@@ -27,7 +27,7 @@ fn session(own: &BenchSession, number: usize) -> Session {
         joint_torque: Some(own.joint_torque.clone()),
         temperature: Some(own.temperature.clone()),
         unloaded: own.motion.is_some_and(|motion| !motion.has_springs()),
-        ..Session::default()
+        ..RecordedSession::default()
     }
 }
 
@@ -51,7 +51,7 @@ impl TestBench for HiddenEffect {
         recording: &BenchRecording,
         motion: Motion,
         sessions: usize,
-    ) -> Result<Vec<Session>, BenchError> {
+    ) -> Result<Vec<RecordedSession>, BenchError> {
         let first = recording.sessions.len() + 1;
         let more = bench.follow_up(recording, motion, sessions)?;
         let more = more.iter().zip(first..);

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use ferntast_benches::bench::{BenchConfig, BenchError, Hideable, TrueParameter};
 use ferntast_bus::{Bus, CreateError, PublishError};
 use ferntast_emulation::random::mixed;
-use ferntast_identification::{Dataset, Inertia, ModelSpec, Session, Term};
+use ferntast_identification::{Dataset, Inertia, ModelSpec, RecordedSession, Term};
 use ferntast_msgs::{
     Time,
     sample::{JointNames, TemperatureSample},
@@ -66,7 +66,7 @@ pub trait TestBench: Hideable + FromStr<Err = BenchError> {
         recording: &Self::Recording,
         motion: Self::Motion,
         sessions: usize,
-    ) -> Result<Vec<Session>, BenchError>;
+    ) -> Result<Vec<RecordedSession>, BenchError>;
 
     /// The same recording with nothing hidden: what the believed model, fitted to
     /// it, reaches is what the true model reaches on `recording`.

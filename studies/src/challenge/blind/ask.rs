@@ -4,8 +4,8 @@ use std::{collections::BTreeMap, fmt::Display};
 
 use ferntast_benches::bench::BenchConfig;
 use ferntast_identification::{
-    CustomEffect, Dataset, Diagnosis, ModelSpec, Proposal, Session, Term, Verdict, add,
-    design::Design, diagnose, fit::fit, setup::Setup,
+    CustomEffect, Dataset, Diagnosis, ModelSpec, Proposal, RecordedSession, Term, Verdict, add,
+    design::Design, diagnose, diagnosis::NamedCandidate, fit::fit, prepare,
 };
 
 use super::{super::TestBench, Case, tally::FollowedUp};
@@ -70,7 +70,7 @@ fn answer<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
         Some((proposal, was_family)) => {
             let after = put(&joined::<H>(&bench, &recording, data, proposal)?, &believed)?;
             let first = after.candidates.first();
-            let only = |own: &&diagnose::NamedCandidate| {
+            let only = |own: &&NamedCandidate| {
                 is_right(&own.effect) && own.indistinguishable_from.iter().all(is_right)
             };
             Some(FollowedUp {
@@ -139,8 +139,8 @@ fn true_model_reaches<H: TestBench>(
     let without = H::without_hidden(recording);
     let nothing_hidden = H::dataset(&without);
     let reaches = |data: &Dataset, model: &ModelSpec| {
-        let setup = Setup::new(data, model).map_err(describe)?;
-        Ok(fit(&setup, &Design::new(&setup)).held_out)
+        let prepared = prepare(data, model).map_err(describe)?;
+        Ok(fit(&prepared, &Design::new(&prepared)).held_out)
     };
     match with_hidden_part(data, &nothing_hidden) {
         Some(data) => {
@@ -162,7 +162,7 @@ fn with_hidden_part(data: &Dataset, nothing_hidden: &Dataset) -> Option<Dataset>
     let mut with = data.clone();
     let mut is_there = false;
     for (session, plain) in with.sessions.iter_mut().zip(&nothing_hidden.sessions) {
-        let same_otherwise = Session {
+        let same_otherwise = RecordedSession {
             motor_torque: session.motor_torque.clone(),
             ..plain.clone()
         };

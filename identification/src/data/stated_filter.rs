@@ -1,0 +1,192 @@
+//! The filters of a published identification, to reproduce it.
+//!
+//! Gautier's inverse-dynamics procedure, as Janot, Gautier and Brunot 2019 use
+//! it on the EMPS: position through a Butterworth low-pass forwards and
+//! backwards, velocity and acceleration by central differences, every column
+//! and the torque through the Chebyshev low-pass of a decimation, forwards and
+//! backwards; no row is left out for its speed, unless a least speed is stated.
+//!
+//! A filter run forwards and backwards has no phase: it is a symmetric finite
+//! impulse response with the square of the filter's gain, known in closed form
+//! after the bilinear transformation.
+
+use std::f64::consts::PI;
+
+use serde::{Deserialize, Serialize};
+
+use crate::numerics::filter::Kernel;
+
+/// Order of the Butterworth filter.
+const BUTTERWORTH_ORDER: i32 = 4;
+/// Order of the decimation's Chebyshev filter (first kind), its ripple \[dB\], and
+/// its edge as a share of half the new rate.
+const CHEBYSHEV_ORDER: f64 = 8.0;
+const CHEBYSHEV_RIPPLE: f64 = 0.05;
+const CHEBYSHEV_EDGE: f64 = 0.8;
+/// Samples left out at either end, where the filters look beyond it.
+const LEFT_OUT: usize = 100;
+/// Points on the unit circle at which a gain is taken.
+const POINTS: usize = 8192;
+
+/// Filters stated in place of those that are chosen from the noise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StatedFilter {
+    /// Cut-off (−3 dB, one way) of the Butterworth filter on the position \[Hz\].
+    pub butterworth_hz: f64,
+    /// Every so many samples give a row.
+    pub decimation: usize,
+    /// Slower rows \[rad/s, of a prismatic joint m/s\] are left out: friction near
+    /// rest has no value of its own.
+    #[serde(default)]
+    pub least_speed: f64,
+}
+
+impl StatedFilter {
+    /// Filters of position, velocity and acceleration for samples `period` \[s\] apart.
+    #[must_use]
+    pub fn states(&self, period: f64) -> [Kernel; 3] {
+        let edge = (PI * self.butterworth_hz * period).min(0.499 * PI).tan();
+        let gain = |angle: f64| {
+            let ratio = (0.5 * angle).tan() / edge;
+            1.0 / (1.0 + ratio.powi(2 * BUTTERWORTH_ORDER))
+        };
+        // After half a dozen periods of the cut-off nothing is left.
+        let half = (6.0 / (self.butterworth_hz * period)).ceil() as usize;
+        let position = taps(gain, half.clamp(4, POINTS / 4));
+        let velocity = central_difference(&position, period);
+        let acceleration = central_difference(&velocity, period);
+        [position, velocity, acceleration].map(Kernel::with_taps)
+    }
+
+    /// Filter of every column and of the torque.
+    #[must_use]
+    pub fn column(&self) -> Kernel {
+        let every = self.decimation.max(1) as f64;
+        if self.decimation <= 1 {
+            return Kernel::with_taps(vec![1.0]);
+        }
+        let edge = (0.5 * PI * CHEBYSHEV_EDGE / every).tan();
+        let ripple = 10_f64.powf(0.1 * CHEBYSHEV_RIPPLE) - 1.0;
+        let gain = |angle: f64| {
+            let ratio = (0.5 * angle).tan() / edge;
+            let polynomial = match ratio <= 1.0 {
+                true => (CHEBYSHEV_ORDER * ratio.acos()).cos(),
+                false => (CHEBYSHEV_ORDER * ratio.acosh()).cosh(),
+            };
+            1.0 / (1.0 + ripple * polynomial * polynomial)
+        };
+        Kernel::with_taps(taps(gain, ((60.0 * every) as usize).min(POINTS / 4)))
+    }
+
+    /// Samples that are rows, of those with these velocities \[rad/s\].
+    #[must_use]
+    pub fn rows(&self, velocities: impl ExactSizeIterator<Item = f64>) -> Vec<usize> {
+        let last = velocities.len().saturating_sub(LEFT_OUT);
+        let samples = velocities.enumerate().take(last).skip(LEFT_OUT);
+        let rows = samples.step_by(self.decimation.max(1));
+        rows.filter(|(_, velocity)| velocity.abs() >= self.least_speed)
+            .map(|(at, _)| at)
+            .collect()
+    }
+}
+
+/// Impulse response from −`half` to `half` of the zero-phase filter whose gain,
+/// squared as for one pass each way, is `gain` of the angle 0 … π.
+fn taps(gain: impl Fn(f64) -> f64, half: usize) -> Vec<f64> {
+    let gains: Vec<f64> = (0..POINTS / 2)
+        .map(|k| gain(2.0 * PI * k as f64 / POINTS as f64))
+        .collect();
+    let cosines: Vec<f64> = (0..POINTS)
+        .map(|k| (2.0 * PI * k as f64 / POINTS as f64).cos())
+        .collect();
+    let one_side: Vec<f64> = (0..=half)
+        .map(|n| {
+            let sum: f64 = gains
+                .iter()
+                .enumerate()
+                .skip(1)
+                .map(|(k, gain)| gain * cosines[n * k % POINTS])
+                .sum();
+            (gains[0] + 2.0 * sum) / POINTS as f64
+        })
+        .collect();
+    let all: Vec<f64> = one_side
+        .iter()
+        .skip(1)
+        .rev()
+        .chain(&one_side)
+        .copied()
+        .collect();
+    // What was cut off is made up for, so that constants pass unchanged.
+    let sum: f64 = all.iter().sum();
+    all.iter().map(|tap| tap / sum).collect()
+}
+
+/// The filter, then (x₍ₖ₊₁₎ − x₍ₖ₋₁₎) / 2h.
+fn central_difference(taps: &[f64], period: f64) -> Vec<f64> {
+    let at = |index: Option<usize>| index.and_then(|i| taps.get(i)).copied().unwrap_or(0.0);
+    (0..taps.len() + 2)
+        .map(|i| (at(i.checked_sub(2)) - at(Some(i))) / (2.0 * period))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FILTER: StatedFilter = StatedFilter {
+        butterworth_hz: 100.0,
+        decimation: 10,
+        least_speed: 0.0,
+    };
+
+    /// Gain of a symmetric kernel at `hertz`, sampled at 1 kHz.
+    fn gain(kernel: &Kernel, hertz: f64) -> f64 {
+        let signal: Vec<f64> = (0..4001)
+            .map(|i| (2.0 * PI * hertz * f64::from(i - 2000) * 1e-3).cos())
+            .collect();
+        kernel.at(&signal, 2000)
+    }
+
+    #[test]
+    fn gains_are_those_of_the_filters_run_both_ways() {
+        let [position, ..] = FILTER.states(1e-3);
+        // One way the cut-off is −3 dB, so both ways a half.
+        assert!((gain(&position, 100.0) - 0.5).abs() < 1e-3);
+        assert!((gain(&position, 10.0) - 1.0).abs() < 1e-6);
+        assert!(gain(&position, 250.0) < 1e-3);
+        let column = FILTER.column();
+        // Ripples of 0.05 dB each way; at the edge as low as at rest, which is
+        // set to 1; then steeply down.
+        assert!((gain(&column, 40.0) - 1.0).abs() < 2e-3);
+        assert!((gain(&column, 5.0) - 1.0).abs() < 0.013);
+        assert!(gain(&column, 50.0) < 0.05 && gain(&column, 100.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn differences_are_exact_for_lines_and_parabolas() {
+        let [_, velocity, acceleration] = FILTER.states(1e-3);
+        let signal: Vec<f64> = (0..1001)
+            .map(|i| f64::from(i) * 1e-3)
+            .map(|t| 1.0 + 2.0 * t + 3.0 * t * t)
+            .collect();
+        assert!((velocity.at(&signal, 500) - 5.0).abs() < 1e-6);
+        assert!((acceleration.at(&signal, 500) - 6.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn rows_are_every_tenth_sample_that_is_fast_enough() {
+        let velocity = |at: usize| if at < 500 { 0.1 } else { -0.3 };
+        let rows = |least_speed: f64| {
+            let filter = StatedFilter {
+                least_speed,
+                ..FILTER
+            };
+            filter.rows((0..1000).map(velocity))
+        };
+        let all: Vec<usize> = (100..900).step_by(10).collect();
+        assert_eq!(rows(0.0), all);
+        assert_eq!(rows(0.2), all[40..]);
+    }
+}

@@ -1,0 +1,93 @@
+//! Recordings and model put together, as the regression needs them.
+
+use nalgebra::DVector;
+
+use crate::effects::{BoundTerm, Facts, with_columns};
+use crate::numerics::filter::Kernel;
+use crate::signals::{Filters, Signals};
+
+/// A model bound to recordings: signals filtered, effects with their shapes, the
+/// model's own prediction. Fits, tests and simulations start from it;
+/// [`prepare`](crate::preparation::prepare()) makes it.
+#[derive(Clone)]
+pub struct PreparedModel {
+    /// Properties of the recordings and of the model that the effects depend on.
+    pub facts: Facts,
+    /// Widths of the filters, the same for all sessions.
+    pub filters: Filters,
+    /// Sessions that the model is fitted to.
+    pub sessions: Vec<Signals>,
+    /// Sessions that are only predicted; may be empty.
+    pub held_out: Vec<Signals>,
+    /// The model's effects in the order of their columns; a fitted inertia comes first.
+    pub terms: Vec<BoundTerm>,
+    /// Whether rows near rest and just after reversals count.
+    pub reversals: bool,
+    /// Coefficients of the terms that need no prediction, from which the prediction
+    /// is made that the other terms act on.
+    pub(crate) predicted: DVector<f64>,
+}
+
+impl PreparedModel {
+    /// Whether the model has the effect `id`.
+    #[must_use]
+    pub fn has(&self, id: &str) -> bool {
+        self.terms.iter().any(|t| t.effect.description().id == id)
+    }
+
+    /// The model's effect `id`, and the index of its first column.
+    #[must_use]
+    pub fn first_column(&self, id: &str) -> Option<(&BoundTerm, usize)> {
+        let mut terms = with_columns(&self.terms);
+        let (term, columns) = terms.find(|(t, _)| t.effect.description().id == id)?;
+        Some((term, columns.start))
+    }
+
+    /// The same model with the rows near rest and just after reversals; of a
+    /// contact only while it lasts.
+    #[must_use]
+    pub fn with_reversals(&self) -> Self {
+        let mut whole = self.clone();
+        whole.keep_reversals();
+        whole
+    }
+
+    pub(crate) fn keep_reversals(&mut self) {
+        self.reversals = true;
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            signals.rows.clone_from(&signals.rows_with_reversals);
+        }
+    }
+
+    /// Leaves out the rows whose filters reach a sample at which the torque of an
+    /// effect of the model is not determined by what is measured.
+    pub(crate) fn leave_out_undetermined_rows(&mut self) {
+        let reach = Kernel::reach(self.filters.column);
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            for term in &self.terms {
+                let samples = (term.effect).undetermined_samples(&term.shape, &signals.points);
+                signals.rows.retain(|row| {
+                    let after = samples.partition_point(|at| at + reach < *row);
+                    samples.get(after).is_none_or(|at| *at > row + reach)
+                });
+            }
+        }
+    }
+
+    /// Rows of each session: those fitted, then those held out.
+    pub fn rows(&self) -> impl Iterator<Item = &[usize]> {
+        let all = self.sessions.iter().chain(&self.held_out);
+        all.map(|signals| signals.rows.as_slice())
+    }
+
+    /// The same model on the rows of `other`, which has the same sessions.
+    #[must_use]
+    pub fn on_rows_of(mut self, other: &Self) -> Self {
+        let own = self.sessions.iter_mut().chain(&mut self.held_out);
+        let theirs = other.sessions.iter().chain(&other.held_out);
+        for (own, theirs) in own.zip(theirs) {
+            own.rows.clone_from(&theirs.rows);
+        }
+        self
+    }
+}

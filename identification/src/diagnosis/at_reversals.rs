@@ -1,0 +1,60 @@
+//! An effect that shows only just after reversals, where the rows of the
+//! regression are left out, is searched in all rows of a contact.
+//!
+//! A tip that rests until the compliance behind it has wound up (the paper's
+//! Fig. 16) does so over a travel that may be shorter than what is left out.
+
+use super::candidates::{Candidate, missing, score};
+use crate::design::{Design, PreparedModel};
+use crate::shape_search;
+
+/// Smallest share of the mean square over all rows that it explains; other
+/// influences at reversals (the uncertain sign of a velocity near zero) explain less.
+const MIN_SHARE: f64 = 0.5;
+/// Smallest certainty of its prediction of rows left out, in standard errors.
+const MIN_CERTAINTY: f64 = 4.0;
+/// Probability of a false alarm.
+const SIGNIFICANCE: f64 = 1e-4;
+
+/// Puts an effect that shows at reversals first in `passing`, where it is
+/// significant on all rows and explains more of them than the first does.
+pub fn put_first(prepared: &PreparedModel, design: &Design, passing: &mut Vec<Candidate>) {
+    let Some(effect) = missing(prepared)
+        .into_iter()
+        .find(|e| e.row().shows_at_reversals)
+    else {
+        return;
+    };
+    let whole = prepared.with_reversals();
+    let all_rows = Design::new(&whole);
+    let Some(shape) = shape_search::search(&whole, &all_rows, &effect) else {
+        return;
+    };
+    let on_all_rows = score(&whole, &all_rows, &effect, &shape);
+    let is_significant = effect.plausible(&shape, &on_all_rows.coefficients)
+        && on_all_rows.share() > MIN_SHARE
+        && on_all_rows.certainty > MIN_CERTAINTY
+        && on_all_rows.p_value < SIGNIFICANCE;
+    let rival = passing.first().map_or(0.0, |first| {
+        score(&whole, &all_rows, &first.effect, &first.shape).gain
+    });
+    if !is_significant || on_all_rows.gain <= rival {
+        return;
+    }
+    // Its gain is reported on the same rows as that of all others, its p-value on all
+    // rows, which prove it. Away from reversals its gain may be zero.
+    let mut own = score(prepared, design, &effect, &shape);
+    own.gain = own.gain.max(0.0);
+    own.p_value = on_all_rows.p_value;
+    passing.retain(|other| other.id() != effect.description().id);
+    passing.insert(
+        0,
+        Candidate {
+            variants: shape_search::grid(&whole, &effect).len(),
+            effect,
+            shape,
+            score: own,
+            plausible: true,
+        },
+    );
+}

@@ -1,0 +1,185 @@
+//! Every effect that the model lacks, tried on the same rows.
+
+use crate::design::{Design, PreparedModel};
+use crate::effects::{self, BoundTerm, EffectHandle, Row};
+use crate::shape_search;
+use crate::shape_search::periodicity;
+use crate::validation::session_variation::trend;
+use crate::validation::{Score, agreement, between, within};
+
+/// p-value below which a coefficient differs within and between sessions.
+const MAX_DISAGREEMENT_P_VALUE: f64 = 0.005;
+
+/// One effect at its best shape, scored on rows left out.
+#[derive(Clone)]
+pub struct Candidate {
+    /// The effect.
+    pub effect: EffectHandle,
+    /// Its best shape.
+    pub shape: Vec<f64>,
+    /// What it explains of rows left out.
+    pub score: Score,
+    /// Whether sign and size of its coefficients are physically possible.
+    pub plausible: bool,
+    /// Number of its shapes that were tried.
+    pub variants: usize,
+}
+
+impl Candidate {
+    /// Its effect at its shape, as a term of a model.
+    #[must_use]
+    pub fn term(&self) -> BoundTerm {
+        BoundTerm::new(self.effect.clone(), self.shape.clone())
+    }
+
+    /// Id of the effect.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        &self.effect.description().id
+    }
+}
+
+/// All candidates, and how many variants were tried.
+pub struct Trial {
+    /// One for each effect, largest gain first.
+    pub candidates: Vec<Candidate>,
+    /// Number of shapes tried of the effects that show within sessions, for the
+    /// correction of p-values.
+    pub variants: usize,
+    /// The same of the effects that show between sessions.
+    pub variants_between: usize,
+}
+
+impl Trial {
+    /// p-value of one of its candidates, corrected for all that was tried
+    /// (weighted Bonferroni): half of the chance of a false alarm is shared out
+    /// among effects, half among shapes, so that an effect of one shape does not
+    /// pay for the thousand periods that a ripple may have. What shows between
+    /// sessions is counted apart: there are few of these.
+    #[must_use]
+    pub fn corrected(&self, candidate: &Candidate) -> f64 {
+        let between = candidate.effect.row().is_between_sessions();
+        let p_value = candidate.score.p_value;
+        let factor = match between {
+            true => self.variants_between as f64,
+            false => {
+                let effects = self.candidates.iter();
+                let effects = effects
+                    .filter(|c| !c.effect.row().is_between_sessions())
+                    .count();
+                let by_effect = 1.0 / (effects * candidate.variants).max(1) as f64;
+                let by_shape = 1.0 / self.variants.max(1) as f64;
+                2.0 / (by_effect + by_shape)
+            }
+        };
+        (p_value * factor.max(1.0)).min(1.0)
+    }
+}
+
+/// Effects that the model may lack: those that are neither in it nor a part of
+/// one that is.
+#[must_use]
+pub fn missing(prepared: &PreparedModel) -> Vec<EffectHandle> {
+    let has_whole = |part: &Row| {
+        let mut own = prepared.terms.iter().map(|t| t.effect.row());
+        own.any(|whole| whole.has(part))
+    };
+    let has_part = |whole: &Row| whole.is_sum && whole.parts().any(|p| prepared.has(p));
+    effects::for_subject(prepared.facts.joint.subject())
+        .into_iter()
+        .filter(|effect| {
+            let row = effect.row();
+            let there = prepared.has(row.id) || has_whole(row) || has_part(row);
+            !there && effect.unavailable(&prepared.facts).is_none()
+        })
+        .collect()
+}
+
+/// Scores one effect at one shape.
+#[must_use]
+pub fn score(
+    prepared: &PreparedModel,
+    design: &Design,
+    effect: &EffectHandle,
+    shape: &[f64],
+) -> Score {
+    let grams = design.with(&design.extra_columns(prepared, effect, shape));
+    if effect.row().is_between_sessions() && prepared.facts.sessions >= 3 {
+        let mut score = between(design, &grams);
+        // A session changes a coefficient by one number, so that the test is a
+        // regression line over sessions, not over rows.
+        let varied = effect.row().varies;
+        if let Some(p) = varied.and_then(|id| trend(prepared, design, &grams, id)) {
+            score.p_value = p;
+        }
+        // A quantity that also changes within a session must have the same
+        // coefficient there.
+        if agreement(design, &grams) < MAX_DISAGREEMENT_P_VALUE {
+            score.p_value = 1.0;
+        }
+        score
+    } else {
+        within(design, &grams)
+    }
+}
+
+/// Tries every effect that the model lacks at its best shape. `progress` is called
+/// with the share done, 0 … 1.
+#[must_use]
+pub fn try_all(prepared: &PreparedModel, design: &Design, progress: &mut dyn FnMut(f64)) -> Trial {
+    let effects = missing(prepared);
+    let mut trial = Trial {
+        candidates: Vec::new(),
+        variants: 0,
+        variants_between: 0,
+    };
+    let count = effects.len().max(1) as f64;
+    for (done, effect) in effects.iter().enumerate() {
+        let mut shapes = shape_search::grid(prepared, effect);
+        let mut searched = 0;
+        if effect.row().is_periodic {
+            shapes.extend(
+                periodicity::peaks(prepared, design, effect, 3)
+                    .into_iter()
+                    .map(|k| vec![k]),
+            );
+            searched = periodicity::tried(prepared, effect);
+        }
+        let variants = shapes.len() + searched;
+        match effect.row().is_between_sessions() {
+            true => trial.variants_between += variants,
+            false => trial.variants += variants,
+        }
+        let best = shapes
+            .into_iter()
+            .map(|shape| {
+                (
+                    shape_search::error_of(prepared, design, effect, &shape),
+                    shape,
+                )
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        progress((done as f64 + 0.6) / count);
+        let Some((error, shape)) = best else { continue };
+        // A shape is refined only where the grid has a plausible point.
+        let shape = if error.is_finite() {
+            shape_search::polish(prepared, design, effect, &shape)
+        } else {
+            shape
+        };
+        let score = score(prepared, design, effect, &shape);
+        let plausible = effect.plausible(&shape, &score.coefficients);
+        trial.candidates.push(Candidate {
+            effect: effect.clone(),
+            shape,
+            score,
+            plausible,
+            variants,
+        });
+        progress((done as f64 + 1.0) / count);
+    }
+    trial
+        .candidates
+        .sort_by(|a, b| b.score.gain.total_cmp(&a.score.gain));
+    trial
+}

@@ -1,0 +1,289 @@
+//! Zero-phase smoothing and differentiation.
+//!
+//! A Gaussian and its derivatives as finite impulse responses: symmetric, so
+//! without phase; short, so without memory of a session's start; and the
+//! derivative of the smoothed signal is exactly the smoothed signal's
+//! derivative, which makes position, velocity, acceleration and torques
+//! consistent with each other.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::statistics::quantile_or_zero;
+
+/// A finite impulse response, centred.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    taps: Vec<f64>,
+}
+
+impl Kernel {
+    /// Gaussian of standard deviation `sigma` \[samples\] (> 0), differentiated
+    /// `order` times (0, 1 or 2) for samples `period` \[s\] apart.
+    ///
+    /// Moments are set right for the sampled taps: constants pass order 0
+    /// unchanged, straight lines give their exact slope by order 1, parabolas
+    /// their exact curvature by order 2.
+    #[must_use]
+    pub fn gaussian(sigma: f64, order: u8, period: f64) -> Self {
+        let radius = Self::reach(sigma) as i64;
+        let position = |i: usize| i as f64 - radius as f64;
+        let mut gauss: Vec<f64> = (0..=2 * radius as usize)
+            .map(|i| (-0.5 * (position(i) / sigma).powi(2)).exp())
+            .collect();
+        let sum: f64 = gauss.iter().sum();
+        gauss.iter_mut().for_each(|g| *g /= sum);
+        let moment = |n: i32| -> f64 {
+            gauss
+                .iter()
+                .enumerate()
+                .map(|(i, g)| g * position(i).powi(n))
+                .sum()
+        };
+        let (second, fourth) = (moment(2), moment(4));
+        let taps = gauss
+            .iter()
+            .enumerate()
+            .map(|(i, g)| match order {
+                0 => *g,
+                1 => g * position(i) / second / period,
+                _ => {
+                    2.0 * g * (position(i).powi(2) - second)
+                        / (fourth - second * second)
+                        / (period * period)
+                }
+            })
+            .collect();
+        Self { taps }
+    }
+
+    /// As [`Self::gaussian`], yet exact for polynomials two degrees higher: a
+    /// Gaussian flattens peaks, and steep friction at the wrong velocity is a
+    /// large error. It lets more noise through.
+    #[must_use]
+    pub fn sharp(sigma: f64, order: u8, period: f64) -> Self {
+        let radius = Self::reach(sigma).max(2) as i64;
+        let places: Vec<f64> = (-radius..=radius).map(|i| i as f64).collect();
+        let gauss: Vec<f64> = places
+            .iter()
+            .map(|x| (-0.5 * (x / sigma).powi(2)).exp())
+            .collect();
+        // taps = Gaussian × (c₀ + c₁ x² …) x^parity, such that the moments of
+        // degree `order` and its neighbours are those of the derivative.
+        let parity = i32::from(order % 2);
+        let degrees: Vec<i32> = if order == 2 {
+            vec![0, 2, 4]
+        } else {
+            vec![parity, parity + 2]
+        };
+        let n = degrees.len();
+        let system = DMatrix::from_fn(n, n, |row, column| {
+            places
+                .iter()
+                .zip(&gauss)
+                .map(|(x, g)| g * x.powi(degrees[row] + degrees[column]))
+                .sum()
+        });
+        let factorial = if order == 2 { 2.0 } else { 1.0 };
+        let wanted = DVector::from_fn(n, |row, _| {
+            if degrees[row] == i32::from(order) {
+                factorial
+            } else {
+                0.0
+            }
+        });
+        let Some(c) = system.lu().solve(&wanted) else {
+            return Self::gaussian(sigma, order, period);
+        };
+        let scale = period.powi(-i32::from(order));
+        let taps = places
+            .iter()
+            .zip(&gauss)
+            .map(|(x, g)| {
+                scale
+                    * g
+                    * degrees
+                        .iter()
+                        .zip(c.iter())
+                        .map(|(d, c)| c * x.powi(*d))
+                        .sum::<f64>()
+            })
+            .collect();
+        Self { taps }
+    }
+
+    /// With these weights, the middle one for the sample itself.
+    #[must_use]
+    pub(crate) fn with_taps(taps: Vec<f64>) -> Self {
+        Self { taps }
+    }
+
+    /// Samples on either side that a Gaussian of `sigma` \[samples\] looks at.
+    #[must_use]
+    pub fn reach(sigma: f64) -> usize {
+        ((3.5 * sigma).ceil() as usize).max(1)
+    }
+
+    /// Variance of the output for white noise of unit variance.
+    #[must_use]
+    pub fn noise_gain(&self) -> f64 {
+        self.taps.iter().map(|t| t * t).sum()
+    }
+
+    /// Value at sample `at`; beyond the ends the signal keeps its end value.
+    #[must_use]
+    pub fn at(&self, signal: &[f64], at: usize) -> f64 {
+        let radius = self.taps.len() / 2;
+        if at >= radius
+            && let Some(window) = signal.get(at - radius..at + radius + 1)
+        {
+            return self.taps.iter().zip(window).map(|(t, x)| t * x).sum();
+        }
+        let last = signal.len().saturating_sub(1);
+        self.taps
+            .iter()
+            .enumerate()
+            .map(|(i, t)| {
+                let index = (at + i).saturating_sub(radius).min(last);
+                t * signal.get(index).copied().unwrap_or(0.0)
+            })
+            .sum()
+    }
+
+    /// Value at every sample.
+    #[must_use]
+    pub fn everywhere(&self, signal: &[f64]) -> Vec<f64> {
+        (0..signal.len()).map(|at| self.at(signal, at)).collect()
+    }
+
+    /// Value at some samples.
+    #[must_use]
+    pub fn at_samples(&self, signal: &[f64], samples: &[usize]) -> Vec<f64> {
+        samples.iter().map(|at| self.at(signal, *at)).collect()
+    }
+}
+
+/// Standard deviation of the noise in a smooth signal: its fourth differences
+/// hold next to nothing else. The median keeps single jumps out.
+#[must_use]
+pub fn noise_level(signal: &[f64]) -> f64 {
+    let mut differences: Vec<f64> = signal
+        .windows(5)
+        .map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs())
+        .collect();
+    if differences.is_empty() {
+        return 0.0;
+    }
+    let rms = (differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64).sqrt();
+    let median = quantile_or_zero(&mut differences, 0.5);
+    // A coarse encoder stands still most of the time: its median is zero then,
+    // and the root mean square is the better estimate.
+    let level = if median > 0.2 * rms {
+        median / 0.6745
+    } else {
+        rms
+    };
+    level / 70.0_f64.sqrt()
+}
+
+/// Widths \[samples\] of smoothing to choose from.
+const WIDTHS: [f64; 6] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
+/// Largest share of noise in a smoothed derivative.
+const MAX_NOISE_SHARE: f64 = 0.05;
+
+/// The least width \[samples\] of [`Kernel::sharp`] that leaves the derivative of
+/// this `order` a twentieth noise; the greatest where none does.
+#[must_use]
+pub fn least_width(signals: &[Vec<f64>], order: u8, period: f64) -> f64 {
+    let noise = signals.iter().map(|s| noise_level(s)).fold(0.0, f64::max);
+    let is_quiet = |width: f64| {
+        let kernel = Kernel::sharp(width, order, period);
+        let (mut sum, mut count) = (0.0, 1e-9);
+        for signal in signals {
+            for at in (0..signal.len()).step_by(3) {
+                sum += kernel.at(signal, at).powi(2);
+                count += 1.0;
+            }
+        }
+        noise * noise * kernel.noise_gain() < MAX_NOISE_SHARE * MAX_NOISE_SHARE * sum / count
+    };
+    let [.., greatest] = WIDTHS;
+    let least = WIDTHS.into_iter().find(|width| is_quiet(*width));
+    least.unwrap_or(greatest)
+}
+
+/// Thins a signal by `factor` after a Gaussian against aliasing.
+#[must_use]
+pub fn thin(signal: &[f64], factor: usize) -> Vec<f64> {
+    if factor <= 1 {
+        return signal.to_vec();
+    }
+    let kernel = Kernel::gaussian(0.5 * factor as f64, 0, 1.0);
+    (0..signal.len())
+        .step_by(factor)
+        .map(|at| kernel.at(signal, at))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_are_differentiated_exactly() {
+        let period = 0.012;
+        let signal: Vec<f64> = (0..60)
+            .map(|i| i as f64 * period)
+            .map(|t| 3.0 + 2.0 * t - 5.0 * t * t)
+            .collect();
+        let t = 30.0 * period;
+        for sigma in [0.8, 1.5, 3.0] {
+            let value = |order| Kernel::gaussian(sigma, order, period).at(&signal, 30);
+            assert!((value(1) - (2.0 - 10.0 * t)).abs() < 1e-9);
+            assert!((value(2) + 10.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn sharp_kernels_are_exact_two_degrees_further() {
+        let period = 0.01;
+        let value = |t: f64| 1.0 - t + 2.0 * t * t - 3.0 * t.powi(3);
+        let signal: Vec<f64> = (0..60).map(|i| value(f64::from(i) * period)).collect();
+        let t: f64 = 0.3;
+        for sigma in [0.8, 1.0, 2.0] {
+            let at = |order| Kernel::sharp(sigma, order, period).at(&signal, 30);
+            assert!((at(0) - value(t)).abs() < 1e-9);
+            assert!((at(1) - (-1.0 + 4.0 * t - 9.0 * t * t)).abs() < 1e-8);
+            assert!((at(2) - (4.0 - 18.0 * t)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn no_phase_between_a_sine_and_its_smoothed_self() {
+        let signal: Vec<f64> = (0..400).map(|i| (0.1 * f64::from(i)).sin()).collect();
+        let smooth = Kernel::gaussian(2.0, 0, 1.0).everywhere(&signal);
+        // The Gaussian's own transfer function: exp(−(ωσ)²/2).
+        let gain = (-0.5_f64 * 0.04).exp();
+        for at in 20..380 {
+            assert!((smooth[at] - gain * signal[at]).abs() < 2e-3);
+        }
+    }
+
+    #[test]
+    fn noise_is_separated_from_motion() {
+        let mut state = 1_u64;
+        let signal: Vec<f64> = (0..4000)
+            .map(|i| {
+                let mut noise = -6.0;
+                for _ in 0..12 {
+                    state = state
+                        .wrapping_mul(6364136223846793005)
+                        .wrapping_add(1442695040888963407);
+                    noise += (state >> 11) as f64 / (1_u64 << 53) as f64;
+                }
+                (0.01 * f64::from(i)).sin() + 1e-3 * noise
+            })
+            .collect();
+        let level = noise_level(&signal);
+        assert!(level > 0.9e-3 && level < 1.1e-3, "{level}");
+    }
+}

@@ -1,0 +1,87 @@
+//! Recordings and model put together: signals filtered, effects bound and their
+//! shapes searched, the model's prediction made, channels compensated.
+
+mod binding;
+mod compensation;
+mod facts;
+mod prediction;
+mod shapes;
+
+use nalgebra::DVector;
+
+use crate::data::check::check;
+use crate::data::error::PrepareError;
+use crate::data::{Dataset, ModelSpec, RecordedSession};
+use crate::design::PreparedModel;
+use crate::effects::BoundTerm;
+use crate::signals::{Filters, Signals};
+
+/// Binds the model `spec` to the recordings in `dataset`.
+///
+/// # Errors
+///
+/// See [`PrepareError`].
+pub fn prepare(dataset: &Dataset, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
+    check(dataset, spec)?;
+    let mut prepared = with_signals(dataset, spec);
+    prepared.terms = prepared.bind(spec)?;
+    let mut terms = prepared.terms.iter();
+    if terms.any(|t| t.effect.row().shows_at_reversals) {
+        prepared.keep_reversals();
+    }
+    let parameters = prepared.terms.iter().map(|t| t.effect.columns()).sum();
+    let rows = prepared.sessions.iter().map(|s| s.rows.len()).sum();
+    if rows < 20 + 5 * parameters {
+        return Err(PrepareError::NothingExcited { rows, parameters });
+    }
+    prepared.model_load();
+    prepared.find_shapes();
+    prepared.model_load();
+    prepared.predict();
+    prepared.compensate();
+    prepared.refine_shapes_on_determined_rows();
+    Ok(prepared)
+}
+
+/// `prepared` with one more effect in the model, whose shape is kept.
+#[must_use]
+pub fn extend(prepared: &PreparedModel, term: BoundTerm) -> PreparedModel {
+    let acts_on_channels = term.effect.row().acts_on_channels;
+    let mut extended = prepared.clone();
+    extended.facts.load_coulomb |= term.effect.row().is_load_coulomb();
+    extended.terms.push(term);
+    extended.predict();
+    if acts_on_channels {
+        extended.compensate();
+    }
+    extended.leave_out_undetermined_rows();
+    extended
+}
+
+/// Filtered signals and facts, without any term yet.
+fn with_signals(dataset: &Dataset, spec: &ModelSpec) -> PreparedModel {
+    let filters = Filters::for_dataset(dataset);
+    let filtered = |sessions: &[RecordedSession]| -> Vec<Signals> {
+        let sessions = sessions.iter();
+        sessions.map(|s| Signals::new(s, &filters)).collect()
+    };
+    let mut sessions = filtered(&dataset.sessions);
+    let mut held_out = filtered(&dataset.held_out);
+    let facts = facts::gather(dataset, spec, &sessions, &filters);
+    for signals in sessions.iter_mut().chain(&mut held_out) {
+        for point in &mut signals.points {
+            if facts.temperature {
+                point.temperature -= facts.reference_temperature;
+            }
+        }
+    }
+    PreparedModel {
+        facts,
+        filters,
+        sessions,
+        held_out,
+        terms: Vec::new(),
+        reversals: false,
+        predicted: DVector::zeros(0),
+    }
+}

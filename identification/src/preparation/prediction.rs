@@ -1,0 +1,166 @@
+//! The model's own prediction of load, friction and motor torque, for effects that
+//! are functions of it.
+
+use nalgebra::DVector;
+
+use crate::design::{Design, PreparedModel, columns};
+use crate::effects::{BoundTerm, EffectHandle, Point, Row, with_columns};
+use crate::signals::Signals;
+
+/// Fits of a model whose effects act on its own prediction, at most, …
+const MAX_FITS: usize = 20;
+/// … and none after one that moves no parameter by this share of its standard error.
+const MIN_STEP_IN_STD_ERRORS: f64 = 0.02;
+/// Largest factor by which relaxation lengthens a step.
+const MAX_RELAXATION: f64 = 20.0;
+
+impl PreparedModel {
+    /// Models the load of a joint without a torque sensor: inertia, gravity and
+    /// spring by the model's own fit.
+    pub(super) fn model_load(&mut self) {
+        if self.facts.joint_torque || self.facts.joint.is_contact() {
+            return;
+        }
+        for _ in 0..2 {
+            let coefficients = Design::new(self).shared;
+            let (inertia, terms) = (self.facts.inertia, &self.terms);
+            for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+                let load = working(signals, terms, &coefficients, |effect| {
+                    effect.row().is_modelled_load()
+                });
+                for (point, load) in signals.points.iter_mut().zip(load) {
+                    point.load = load + inertia.unwrap_or(0.0) * point.acceleration;
+                }
+                let loads: Vec<f64> = signals.points.iter().map(|p| p.load).collect();
+                let rates = slope(&loads, signals.period);
+                let jerks = slope(&rates, signals.period);
+                for (point, (rate, jerk)) in signals.points.iter_mut().zip(rates.iter().zip(jerks))
+                {
+                    (point.load_rate, point.load_jerk) = (*rate, jerk);
+                }
+            }
+        }
+    }
+
+    /// Makes the prediction for effects that act on it. These effects are fitted
+    /// together with the others, but are no part of the prediction; all are fitted
+    /// again until it does not change.
+    pub(super) fn predict(&mut self) {
+        let mut own = self.terms.clone();
+        own.retain(|t| !t.effect.row().needs_prediction);
+        let all = std::mem::replace(&mut self.terms, own.clone());
+        let mut predicted = Design::new(self).shared;
+        self.write_prediction(&predicted, &own);
+        self.terms = all;
+        if own.len() == self.terms.len() {
+            return;
+        }
+        // Where a prediction depends strongly on itself, as where a sensor is
+        // clipped, fixed-point iteration converges slowly: Aitken's relaxation
+        // extrapolates two steps.
+        let mut before: Option<DVector<f64>> = None;
+        let mut stride = 1.0;
+        for _ in 0..MAX_FITS {
+            let together = Design::new(self);
+            let kept = self.predicting_columns();
+            let error = |k: &usize| together.covariance[(*k, *k)].max(1e-300).sqrt();
+            let step = DVector::from_iterator(
+                kept.len(),
+                (kept.iter().zip(&predicted))
+                    .map(|(k, own)| (together.shared[*k] - own) / error(k)),
+            );
+            if let Some(before) = &before {
+                let change = &step - before;
+                let along = -stride * before.dot(&change) / change.norm_squared().max(1e-300);
+                stride = along.clamp(1.0, MAX_RELAXATION);
+            }
+            for ((own, step), k) in predicted.iter_mut().zip(&step).zip(&kept) {
+                *own += stride * step * error(k);
+            }
+            self.write_prediction(&predicted, &own);
+            if step.amax() < MIN_STEP_IN_STD_ERRORS {
+                return;
+            }
+            before = Some(step);
+        }
+    }
+
+    /// Columns of the terms that need no prediction.
+    fn predicting_columns(&self) -> Vec<usize> {
+        with_columns(&self.terms)
+            .filter(|(term, _)| !term.effect.row().needs_prediction)
+            .flat_map(|(_, columns)| columns)
+            .collect()
+    }
+
+    /// Writes the prediction with these coefficients into the points of all sessions.
+    fn write_prediction(&mut self, coefficients: &DVector<f64>, terms: &[BoundTerm]) {
+        self.predicted.clone_from(coefficients);
+        let sensor = self.facts.joint_torque;
+        let first_of = |is: fn(&Row) -> bool| {
+            let (_, columns) = with_columns(terms).find(|(term, _)| is(term.effect.row()))?;
+            coefficients.get(columns.start).copied()
+        };
+        let given = self.facts.inertia;
+        let inertia = given.or_else(|| first_of(|row| row.is_inertia));
+        let (given, inertia) = (given.unwrap_or(0.0), inertia.unwrap_or(0.0));
+        let load_slope = first_of(Row::is_load_coulomb).unwrap_or(0.0);
+        let is_friction = |effect: &EffectHandle| !effect.row().is_inertia;
+        let nudge = 1e-3 * self.facts.speed[1];
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            let friction = working(signals, terms, coefficients, is_friction);
+            let total = working(signals, terms, coefficients, |_| true);
+            let mut other = signals.clone();
+            let mut friction_at = |velocity: fn(&Point, f64) -> f64| {
+                for (point, measured) in other.points.iter_mut().zip(&signals.points) {
+                    point.velocity = velocity(measured, nudge);
+                }
+                working(&other, terms, coefficients, is_friction)
+            };
+            let faster = friction_at(|point, nudge| point.velocity + nudge * point.sign());
+            let slowest = friction_at(|point, nudge| nudge * point.sign());
+            for (at, point) in signals.points.iter_mut().enumerate() {
+                point.friction_predicted = friction[at];
+                point.friction_level = slowest[at].abs();
+                point.load_slope = load_slope;
+                point.inertia = inertia;
+                point.friction_slope = if nudge > 0.0 {
+                    point.sign() * (faster[at] - friction[at]) / nudge
+                } else {
+                    0.0
+                };
+                point.motor_predicted =
+                    total[at] + given * point.acceleration + if sensor { point.load } else { 0.0 };
+            }
+        }
+    }
+}
+
+/// Sum of coefficients times columns at the working rate, of some effects.
+pub(super) fn working(
+    signals: &Signals,
+    terms: &[BoundTerm],
+    coefficients: &DVector<f64>,
+    which: impl Fn(&EffectHandle) -> bool,
+) -> Vec<f64> {
+    let mut sum = vec![0.0; signals.points.len()];
+    for (term, places) in with_columns(terms).filter(|(term, _)| which(&term.effect)) {
+        for (k, column) in places.zip(columns::working(signals, &term.effect, &term.shape)) {
+            let c = coefficients.get(k).copied().unwrap_or(0.0);
+            sum.iter_mut().zip(column).for_each(|(s, x)| *s += c * x);
+        }
+    }
+    sum
+}
+
+/// Central differences.
+fn slope(signal: &[f64], period: f64) -> Vec<f64> {
+    let last = signal.len().saturating_sub(1);
+    (0..signal.len())
+        .map(|at| {
+            let (before, after) = (at.saturating_sub(1), (at + 1).min(last));
+            let span = (after - before).max(1) as f64 * period;
+            (signal[after] - signal[before]) / span
+        })
+        .collect()
+}

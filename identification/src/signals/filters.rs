@@ -1,0 +1,147 @@
+//! Widths of the filters, chosen from the noise in the recordings.
+
+use crate::data::stated_filter::StatedFilter;
+use crate::data::{Dataset, RecordedSession};
+use crate::numerics::filter::{Kernel, least_width, noise_level, thin};
+use crate::numerics::statistics::quantile_or_zero;
+
+/// Sampling period \[s\] below which a recording holds no more information about friction.
+const WORKING_PERIOD: f64 = 0.002;
+/// Share of the range of positions that is dropped after a reversal: there
+/// friction still builds up (presliding) and has no value of its own.
+const TRAVEL_AFTER_REVERSAL: f64 = 0.006;
+/// Share of the top speed below which a joint is near rest.
+const NEAR_REST: f64 = 0.005;
+/// Share of the top of F_N below which a tip does not touch for certain.
+const MIN_NORMAL_FORCE_SHARE: f64 = 0.1;
+/// Travel that is resolved for certain, in standard deviations of the position's noise.
+pub(crate) const RESOLVED: f64 = 10.0;
+
+/// Widths of the filters, the same for all sessions of a dataset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Filters {
+    /// Samples of the recording in one working sample.
+    pub thinning: usize,
+    /// Width \[working samples\] of the light smoothing in which states (the
+    /// sign of velocity, for example) are determined.
+    pub state: f64,
+    /// The same for the rates of change of the load, which is noisier.
+    pub load: f64,
+    /// Width \[working samples\] of the filter on every column of the regression.
+    pub column: f64,
+    /// Working samples from one row of the regression to the next.
+    pub stride: usize,
+    /// |q̇| \[rad/s\] below which the joint is near rest.
+    pub rest_speed: f64,
+    /// Travel \[rad\] after a reversal that is dropped.
+    pub travel: f64,
+    /// Standard deviation of the position's noise \[rad\].
+    pub position_noise: f64,
+    /// Of a contact: F_N \[N\] below which the tip does not touch; `None` for a joint.
+    pub touching: Option<f64>,
+    /// Filters stated by the user, which replace those chosen from the noise.
+    pub stated: Option<StatedFilter>,
+}
+
+impl Filters {
+    /// The filters for these recordings: as stated, else chosen from the noise.
+    #[must_use]
+    pub fn for_dataset(dataset: &Dataset) -> Self {
+        let sessions = &dataset.sessions;
+        let chosen = match dataset.joint.is_contact() {
+            true => Self::choose_for_contact(sessions),
+            false => Self::choose(sessions),
+        };
+        match dataset.filter {
+            Some(filter) => Self {
+                thinning: 1,
+                stride: filter.decimation.max(1),
+                stated: Some(filter),
+                ..chosen
+            },
+            None => chosen,
+        }
+    }
+
+    /// Chooses widths from the noise in the recordings of a joint: as little
+    /// smoothing as leaves the acceleration a twentieth noise, at most.
+    #[must_use]
+    pub fn choose(sessions: &[RecordedSession]) -> Self {
+        Self::least_smoothing(sessions, 2)
+    }
+
+    /// The same for a contact, where no acceleration is needed: the velocity
+    /// decides. Compliance before a tip slides shows over travel, so that no more
+    /// travel is dropped than the position cannot resolve, and the filter on
+    /// columns is as short as possible.
+    fn choose_for_contact(sessions: &[RecordedSession]) -> Self {
+        let normal = sessions.iter().filter_map(|s| s.normal_force.as_ref());
+        let mut all: Vec<f64> = normal.flatten().map(|force| force.abs()).collect();
+        let chosen = Self::least_smoothing(sessions, 1);
+        Self {
+            column: chosen.state,
+            stride: (2.0 * chosen.state).round() as usize,
+            travel: RESOLVED * chosen.position_noise,
+            touching: Some(MIN_NORMAL_FORCE_SHARE * quantile_or_zero(&mut all, 0.98)),
+            ..chosen
+        }
+    }
+
+    /// As little smoothing as leaves the derivative of this `order` a twentieth
+    /// noise, at most.
+    fn least_smoothing(sessions: &[RecordedSession], order: u8) -> Self {
+        let period = sessions.first().map_or(0.01, |s| s.period);
+        let thinning = ((WORKING_PERIOD / period + 1e-6).floor() as usize).max(1);
+        let working = period * thinning as f64;
+        let positions: Vec<Vec<f64>> = sessions
+            .iter()
+            .map(|s| thin(&s.position, thinning))
+            .collect();
+        let noise = positions.iter().map(|q| noise_level(q)).fold(0.0, f64::max);
+        let state = least_width(&positions, order, working);
+        let loads: Vec<Vec<f64>> = (sessions.iter())
+            .filter_map(|s| Some(thin(s.joint_torque.as_ref()?, thinning)))
+            .collect();
+        let load = match loads.is_empty() {
+            true => state,
+            false => least_width(&loads, 2, working).max(state),
+        };
+        let slope = Kernel::sharp(state, 1, working);
+        let mut speeds: Vec<f64> = positions
+            .iter()
+            .flat_map(|q| (0..q.len()).step_by(5).map(|at| slope.at(q, at).abs()))
+            .collect();
+        let top = quantile_or_zero(&mut speeds, 0.99);
+        let mut all: Vec<f64> = positions.concat();
+        let range = quantile_or_zero(&mut all, 0.98) - quantile_or_zero(&mut all, 0.02);
+        let column = f64::max(2.0, state);
+        Self {
+            thinning,
+            state,
+            load,
+            column,
+            stride: (2.0 * column).round() as usize,
+            rest_speed: f64::max(NEAR_REST * top, 4.0 * noise * slope.noise_gain().sqrt()),
+            travel: TRAVEL_AFTER_REVERSAL * range,
+            position_noise: noise,
+            touching: None,
+            stated: None,
+        }
+    }
+
+    /// Smoothing of states by this `width`, and their first two derivatives.
+    pub(super) fn state_kernels(&self, width: f64, period: f64) -> [Kernel; 3] {
+        match &self.stated {
+            Some(filter) => filter.states(period),
+            None => [0, 1, 2].map(|order| Kernel::sharp(width, order, period)),
+        }
+    }
+
+    /// Smoothing of a column that is not differentiated.
+    pub(super) fn column_kernel(&self, period: f64) -> Kernel {
+        match &self.stated {
+            Some(filter) => filter.column(),
+            None => Kernel::gaussian(self.column, 0, period),
+        }
+    }
+}

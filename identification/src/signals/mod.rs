@@ -1,0 +1,174 @@
+//! A session made ready: smoothed, differentiated, thinned, masked.
+
+mod filters;
+mod point;
+mod sliding;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::data::RecordedSession;
+use crate::numerics::filter::{Kernel, thin};
+
+pub use filters::Filters;
+pub(crate) use filters::RESOLVED;
+pub use point::Point;
+pub(crate) use sliding::Sliding;
+use sliding::{rows_clear_of_bad_samples, touches_and_moves};
+
+const SECONDS_PER_DAY: f64 = 86_400.0;
+
+/// A session at its working rate, and the rows of the regression. For a prismatic
+/// joint read m for rad and N for Nm; of a contact see [`Point`].
+#[derive(Clone, Debug)]
+pub struct Signals {
+    /// Name of the session.
+    pub name: String,
+    /// Working period \[s\].
+    pub period: f64,
+    /// Smoothing filter on columns of the regression that are not differentiated.
+    pub column: Kernel,
+    /// States at the working rate, smoothed only as far as their signs and
+    /// derivatives need.
+    pub points: Vec<Point>,
+    /// Extra signals at the working rate by name, in the units of the recording.
+    pub extra: BTreeMap<String, Vec<f64>>,
+    /// Channels at the working rate before smoothing, compensated for the model's
+    /// effects that act on channels.
+    pub raw: Arc<Channels>,
+    /// Channels at the working rate before smoothing, as recorded.
+    pub recorded: Arc<Channels>,
+    /// Derivatives of the torque balance \[Nm\] by the coefficients of effects that
+    /// act on channels, by the effects' ids: one column at the working rate for
+    /// each coefficient, in its units.
+    pub jacobians: BTreeMap<String, Vec<Vec<f64>>>,
+    /// Working samples that are rows of the regression, in order of time: sliding,
+    /// away from rest and reversals.
+    pub rows: Vec<usize>,
+    /// Whether the session is known to be free of load, see [`RecordedSession::unloaded`].
+    pub unloaded: bool,
+    /// Rows that include rest and reversals (of a contact while it lasts), for
+    /// effects with [`Row::shows_at_reversals`](ferntast_model::friction::Row::shows_at_reversals).
+    pub rows_with_reversals: Vec<usize>,
+    /// Rows at rest, at reversals and without contact, too: for drawing.
+    pub all_rows: Vec<usize>,
+}
+
+/// Measured channels at the working rate, all of one length.
+#[derive(Clone, Debug, Default)]
+pub struct Channels {
+    /// q \[rad\].
+    pub position: Vec<f64>,
+    /// τ_m \[Nm\].
+    pub motor_torque: Vec<f64>,
+    /// τ \[Nm\]; zero without a sensor.
+    pub joint_torque: Vec<f64>,
+}
+
+impl Signals {
+    /// Thins and smooths a session, and finds its rows.
+    #[must_use]
+    pub fn new(session: &RecordedSession, filters: &Filters) -> Self {
+        let period = session.period * filters.thinning as f64;
+        let thin = |signal: &[f64]| thin(signal, filters.thinning);
+        let raw = Channels {
+            position: thin(&session.position),
+            motor_torque: thin(&session.motor_torque),
+            joint_torque: session.joint_torque.as_ref().map_or_else(
+                || vec![0.0; session.len().div_ceil(filters.thinning)],
+                |s| thin(s),
+            ),
+        };
+        let raw = Arc::new(raw);
+        let [smooth, ..] = filters.state_kernels(filters.state, period);
+        let temperature = session.temperature.as_ref().map(|s| thin(s));
+        let days = session.start / SECONDS_PER_DAY;
+        let points = (0..raw.position.len())
+            .map(|at| Point {
+                period,
+                temperature: temperature.as_ref().map_or(0.0, |t| smooth.at(t, at)),
+                days: days + at as f64 * period / SECONDS_PER_DAY,
+                ..Point::default()
+            })
+            .collect();
+        let mut signals = Self {
+            name: session.name.clone(),
+            period,
+            column: filters.column_kernel(period),
+            points,
+            extra: session
+                .extra
+                .iter()
+                .map(|(k, v)| (k.clone(), smooth.everywhere(&thin(v))))
+                .collect(),
+            raw: raw.clone(),
+            recorded: raw.clone(),
+            jacobians: BTreeMap::new(),
+            unloaded: session.unloaded,
+            rows: Vec::new(),
+            rows_with_reversals: Vec::new(),
+            all_rows: Vec::new(),
+        };
+        match session.normal_force.as_ref() {
+            Some(force) => signals.derive(filters, &thin(force), 0),
+            None => signals.derive(filters, &raw.joint_torque, 0),
+        }
+        signals
+    }
+
+    /// Replaces the channels, and derives states and rows again; the last `lost`
+    /// samples of the channels are invalid.
+    pub(crate) fn replace_channels(&mut self, channels: Channels, lost: usize, filters: &Filters) {
+        let channels = Arc::new(channels);
+        self.raw = channels.clone();
+        self.derive(filters, &channels.joint_torque, lost);
+    }
+
+    /// States and rows from the channels.
+    fn derive(&mut self, filters: &Filters, load: &[f64], lost: usize) {
+        let raw = &self.raw;
+        let [smooth, slope, curvature] = filters.state_kernels(filters.state, self.period);
+        let [_, load_rate, load_jerk] = filters.state_kernels(filters.load, self.period);
+        for (at, point) in self.points.iter_mut().enumerate() {
+            point.position = smooth.at(&raw.position, at);
+            point.velocity = slope.at(&raw.position, at);
+            point.acceleration = curvature.at(&raw.position, at);
+            point.motor_torque = smooth.at(&raw.motor_torque, at);
+            point.load = smooth.at(load, at);
+            point.load_rate = load_rate.at(load, at);
+            point.load_jerk = load_jerk.at(load, at);
+        }
+        let points = &self.points;
+        let reach = Kernel::reach(filters.column);
+        let last = points.len().saturating_sub(reach + lost);
+        self.all_rows = match &filters.stated {
+            Some(filter) => filter.rows(points.iter().map(|point| point.velocity)),
+            None => (reach..last).step_by(filters.stride.max(1)).collect(),
+        };
+        let mut sliding = Sliding::default();
+        let slides: Vec<bool> = points
+            .iter()
+            .map(|point| sliding.next(point, filters))
+            .collect();
+        let with_reversals = match filters.touching {
+            Some(least) => touches_and_moves(points, filters.rest_speed, least),
+            None => vec![true; points.len()],
+        };
+        let both: Vec<bool> = slides
+            .iter()
+            .zip(&with_reversals)
+            .map(|(slides, counts)| *slides && *counts)
+            .collect();
+        let rows = |good: &[bool]| match filters.stated {
+            Some(_) => self.all_rows.clone(),
+            None => rows_clear_of_bad_samples(&self.all_rows, good, reach),
+        };
+        (self.rows, self.rows_with_reversals) = (rows(&both), rows(&with_reversals));
+    }
+
+    /// Time \[s\] of a working sample since the session's start.
+    #[must_use]
+    pub fn time(&self, at: usize) -> f64 {
+        at as f64 * self.period
+    }
+}

@@ -1,0 +1,52 @@
+//! The state of the joint at one sample, which effects are functions of.
+
+use ferntast_model::friction::sign;
+
+/// State of the joint at one sample. For a prismatic joint read m for rad and N
+/// for Nm. For a contact, too: then q is the place along the contour, τ_m and
+/// τ_F are F_T, and the load is F_N.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Point {
+    /// Time \[s\] since the sample before.
+    pub period: f64,
+    /// q \[rad\].
+    pub position: f64,
+    /// q̇ \[rad/s\].
+    pub velocity: f64,
+    /// q̈ \[rad/s²\].
+    pub acceleration: f64,
+    /// τ_m as recorded \[Nm\].
+    pub motor_torque: f64,
+    /// Load τ \[Nm\]: the joint torque sensor, or without one the modelled load;
+    /// of a contact F_N \[N\].
+    pub load: f64,
+    /// τ̇ \[Nm/s\].
+    pub load_rate: f64,
+    /// τ̈ \[Nm/s²\].
+    pub load_jerk: f64,
+    /// T − T₀ \[K\], T₀ the mean over the recordings; 0 without a sensor.
+    pub temperature: f64,
+    /// Time \[days\] since the first session's start.
+    pub days: f64,
+    /// τ_m that the model predicts \[Nm\].
+    pub motor_predicted: f64,
+    /// τ_F that the model predicts \[Nm\].
+    pub friction_predicted: f64,
+    /// ∂τ_F/∂q̇ that the model predicts \[Nm s/rad\].
+    pub friction_slope: f64,
+    /// Size of τ_F that the model predicts just above rest \[Nm\]: what friction
+    /// holds by itself.
+    pub friction_level: f64,
+    /// ∂τ_F/∂|τ| that the model predicts for q̇ > 0 \[-\]: b_0T.
+    pub load_slope: f64,
+    /// J of the model, given or fitted \[kg m²\].
+    pub inertia: f64,
+}
+
+impl Point {
+    /// sign(q̇), zero at rest.
+    #[must_use]
+    pub fn sign(&self) -> f64 {
+        sign(self.velocity)
+    }
+}
