@@ -2,7 +2,7 @@
 
 use ferntast_bus::{Bus, CreateError, Depth, MemoryBus};
 use ferntast_msgs::{
-    Time,
+    Text, Time,
     sample::{Faults, FrictionStatusSample, JointNames, JointSample, TemperatureSample},
     topics::{FOLLOWER_JOINT_FRICTION, FOLLOWER_JOINT_TEMPERATURE},
 };
@@ -38,6 +38,7 @@ impl Node for WarmNode {
         for (place, heard) in output.friction.iter_mut().zip(&input.temperature[..]) {
             *place = heard.fresh().map(|warm| {
                 let mut sample = FrictionStatusSample::initial(now);
+                sample.joint = Text::new("warm");
                 sample.values[0] = warm.temperature;
                 sample
             });
