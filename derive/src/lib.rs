@@ -3,7 +3,7 @@
 //! A message is declared once, as the struct of its sample; fields stand in
 //! the order of the wire, their comments are those of the `.msg` text:
 //!
-//! ```ignore
+//! ```text
 //! /// What the recorder does.
 //! #[message(RecorderStatus)]
 //! pub struct RecorderStatusSample {
