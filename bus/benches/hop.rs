@@ -15,7 +15,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use ferntast_bus::frames::{LinkDirection, LinkEndpoint, MAX_FRAME, ZenohLink, ZenohLinkConfig};
+use ferntast_bus::frames::{
+    LinkDirection, LinkEndpoint, LinkTls, MAX_FRAME, ZenohLink, ZenohLinkConfig,
+};
 use ferntast_bus::{
     Bus, DdsBus, DdsConfig, Depth, MemoryBus, SharedMemoryBus, SharedMemoryConfig, ZenohBus,
     ZenohConfig, ZenohMode,
@@ -28,6 +30,12 @@ use ferntast_msgs::{
 use zenoh::Wait;
 
 const TOPIC: Topic<JointSample> = Topic::new(TopicName::constant("/bench/hop"), Delivery::Stream);
+/// The seed of both ends' certificates, and its Ed25519 key.
+const SEED: [u8; 32] = [7; 32];
+const KEY_OF_SEED: [u8; 32] = [
+    0xea, 0x4a, 0x6c, 0x63, 0xe2, 0x9c, 0x52, 0x0a, 0xbe, 0xf5, 0x50, 0x7b, 0x13, 0x2e, 0xc5, 0xf9,
+    0x95, 0x47, 0x76, 0xae, 0xbe, 0xbe, 0x7b, 0x92, 0x42, 0x1e, 0xea, 0x69, 0x14, 0x46, 0xd2, 0x2c,
+];
 const HOPS: usize = 5_000;
 const PERIOD: Duration = Duration::from_micros(500);
 
@@ -65,6 +73,7 @@ fn main() {
     for (way, kind, port) in [
         ("the link's frames, TCP", "tcp", 32_100),
         ("the link's frames, UDP", "udp", 34_200),
+        ("the link's frames, QUIC", "quic", 38_400),
     ] {
         let endpoint = format!("{kind}/127.0.0.1:{}", port + process % 2000);
         let own = match link(process, &endpoint) {
@@ -238,6 +247,10 @@ fn link(process: u32, endpoint: &str) -> Result<Vec<f64>, String> {
             session: format!("bench_{process}"),
             endpoint,
             sends,
+            tls: Some(LinkTls {
+                seed: SEED,
+                known: vec![KEY_OF_SEED],
+            }),
             clock: Arc::new(clock),
         })
         .map_err(|error| error.to_string())

@@ -165,7 +165,7 @@ impl<M: Message> Subscriber<M> {
     }
 
     /// What was handed out, refused and dropped so far.
-    pub fn counts(&self) -> SubscriberCounts {
+    pub fn counts(&self) -> &SubscriberCounts {
         match self {
             Subscriber::Memory(subscriber) => subscriber.counts(),
             Subscriber::SharedMemory(subscriber) => subscriber.counts(),

@@ -1,5 +1,7 @@
 //! What can go wrong: one enum an operation.
 
+use std::path::PathBuf;
+
 use ferntast_msgs::{
     InvalidMessage,
     topics::{JointNameError, TopicName},
@@ -37,6 +39,47 @@ pub enum OpenError {
         endpoint: String,
         /// What is wrong with it.
         reason: String,
+    },
+    /// The link would leave this host with nothing that keeps strangers out of it.
+    #[error(
+        "the link's endpoint {endpoint} leaves this host without TLS; write {instead} at both ends, or \
+         sealed-udp/HOST:PORT where a long way loses frames (docs/who_may_do_what.md; keys: 'ferntast link keys --help')"
+    )]
+    Unprotected {
+        /// What was given.
+        endpoint: String,
+        /// What to write in place of it.
+        instead: String,
+    },
+    /// A file that is no configuration of a Zenoh router.
+    #[error(
+        "{path}: no configuration of a Zenoh router: {reason}; begin with the one that rmw_zenoh ships, \
+         DEFAULT_RMW_ZENOH_ROUTER_CONFIG.json5", path = path.display()
+    )]
+    RouterConfig {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// TLS over TCP, which Zenoh cannot do both ways at once.
+    #[error(
+        "the link does not go over {endpoint}: where frames go both ways Zenoh's TLS over TCP ends the process by a bad \
+         access (eclipse-zenoh/zenoh#2557); write {instead}, TLS within QUIC"
+    )]
+    TlsStream {
+        /// What was given.
+        endpoint: String,
+        /// What to write in place of it.
+        instead: String,
+    },
+    /// TLS is asked for, and there is no key, or nobody is known.
+    #[error(
+        "{endpoint} is met over TLS, and this end has no key for it, or knows nobody: 'ferntast link keys --help' says how"
+    )]
+    NoCertificate {
+        /// The endpoint.
+        endpoint: String,
     },
     /// An address that others could reach, where nothing asks who they are.
     #[error(
@@ -201,6 +244,9 @@ pub enum PublishError {
         /// What the library said.
         reason: String,
     },
+    /// A bus in memory that was told to refuse.
+    #[error("the bus in memory was told to refuse every message")]
+    Refused,
     /// The recording cannot be written.
     #[error("{topic} cannot be recorded: {reason}")]
     Recording {

@@ -4,7 +4,10 @@
 
 mod mcap_samples;
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use ferntast_bus::mcap::{BagReader, BagWriter, OpenBagError, RepairError, info, repair};
 use ferntast_msgs::{Time, topics::FOLLOWER_MEASURED_JS};
@@ -26,6 +29,17 @@ fn content(path: &Path) -> Vec<(String, Time, Time, u32, Vec<u8>)> {
             )
         })
         .collect()
+}
+
+/// A recording of 300 rounds in 6 chunks: its folder, where it is, the bytes of its file and
+/// their summary.
+fn six_chunks() -> (tempfile::TempDir, PathBuf, Vec<u8>, mcap::Summary) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run");
+    write_sample_bag(&path, 300).unwrap();
+    let bytes = fs::read(path.join("run_0.mcap")).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    (directory, path, bytes, summary)
 }
 
 #[test]
@@ -98,13 +112,42 @@ fn a_directory_is_mended_in_place_and_the_broken_file_kept() {
 }
 
 #[test]
+fn behind_a_damaged_head_in_a_file_that_was_not_closed_the_rest_is_found() {
+    let (directory, path, bytes, summary) = six_chunks();
+    let whole = content(&path);
+    let chunks = &summary.chunk_indexes;
+    let third = chunks[2].chunk_start_offset as usize;
+    let last = chunks.last().unwrap();
+    let end = (last.chunk_start_offset + last.chunk_length) as usize;
+    // Opcode, lengths shorter, longer and beyond the file, the name of the compression.
+    for (place, flip) in [
+        (0, 0x70),
+        (0, 0x02),
+        (1, 0x04),
+        (3, 0x01),
+        (7, 0x80),
+        (45, 0x20),
+    ] {
+        let mut damaged = bytes[..end].to_vec();
+        damaged[third + place] ^= flip;
+        let file = directory.path().join("damaged.mcap");
+        let mended = directory.path().join("mended.mcap");
+        fs::write(&file, damaged).unwrap();
+        let report = repair(&file, Some(&mended)).unwrap();
+        assert!(!report.files[0].breaks.is_empty());
+        let messages = content(&mended);
+        let lost = whole.len() - messages.len();
+        // A chunk holds half a second: 50 rounds.
+        assert!(lost <= 51 * topic_count(), "{place}: {lost} lost");
+        assert_eq!(messages.last(), whole.last());
+        fs::remove_file(&mended).unwrap();
+    }
+}
+
+#[test]
 fn a_damaged_chunk_is_left_out_and_the_rest_kept() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("run");
-    write_sample_bag(&path, 300).unwrap();
+    let (_directory, path, mut bytes, summary) = six_chunks();
     let file = path.join("run_0.mcap");
-    let mut bytes = fs::read(&file).unwrap();
-    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     let third = &summary.chunk_indexes[2];
     let inside = third.compressed_data_offset().unwrap() + third.compressed_size / 2;
     bytes[inside as usize] ^= 0x10;
@@ -137,6 +180,60 @@ fn a_damaged_chunk_is_left_out_and_the_rest_kept() {
             .raw()
             .all(|message| message.is_ok())
     );
+}
+
+/// The first chunk alone used to say what the messages of all chunks are.
+#[test]
+fn a_damaged_chunk_of_a_file_that_was_cut_off_takes_no_other_along() {
+    let (directory, path, bytes, summary) = six_chunks();
+    let whole = content(&path);
+    let chunks = &summary.chunk_indexes;
+    let messages = |chunk: &mcap::records::ChunkIndex| {
+        let indexes = summary.read_message_indexes(&bytes, chunk).unwrap();
+        indexes.values().map(Vec::len).sum::<usize>()
+    };
+    assert!(chunks.len() >= 5, "{}", chunks.len());
+    let last = chunks
+        .iter()
+        .map(|chunk| chunk.chunk_start_offset + chunk.chunk_length + chunk.message_index_length);
+    let end = last.max().unwrap() as usize;
+    for (k, chunk) in chunks.iter().enumerate() {
+        let mut cut = bytes[..end].to_vec();
+        let inside = chunk.compressed_data_offset().unwrap() + chunk.compressed_size / 2;
+        cut[inside as usize] ^= 0x10;
+        let file = directory.path().join(format!("cut_{k}.mcap"));
+        fs::write(&file, cut).unwrap();
+        let report = repair(&file, None).unwrap();
+        let kept = whole.len() - messages(chunk);
+        assert_eq!(report.messages as usize, kept, "without chunk {k}");
+        assert_eq!(content(&file).len(), kept);
+    }
+}
+
+/// A copy of a schema outside the chunks has no checksum: the one within counts.
+#[test]
+fn a_damaged_copy_of_a_schema_is_told_and_does_not_count() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run");
+    write_sample_bag(&path, 300).unwrap();
+    let whole = content(&path);
+    let file = path.join("run_0.mcap");
+    let mut bytes = fs::read(&file).unwrap();
+    // Chunks are compressed: in clear the text stands in a copy and in the summary.
+    let text = b"float64[] position";
+    let found = bytes.windows(text.len()).position(|window| window == text);
+    bytes[found.unwrap()] = b'g';
+    bytes.truncate(bytes.len() - 100);
+    fs::write(&file, bytes).unwrap();
+    let report = repair(&path, None).unwrap();
+    let reasons = &report.files[0].breaks;
+    assert!(
+        reasons.iter().any(|one| one.reason.contains("unlike")),
+        "{reasons:?}"
+    );
+    assert_eq!(content(&path), whole);
+    let topics = BagReader::open(&path).unwrap();
+    assert!(topics.raw().all(|message| message.is_ok()));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::{collections::BTreeSet, fs};
 
 use ferntast_bus::mcap::{
     BagOptions, BagReader, BagWriter, ChunkCompression, CreateBagError, OpenBagError,
-    SelectTopicError, WriteBagError,
+    SelectTopicError, WriteBagError, info,
 };
 use ferntast_msgs::{
     Message, RosMessage, Time, interface,
@@ -102,6 +102,63 @@ fn the_same_messages_give_the_same_bytes() {
         })
         .into();
     assert_eq!(bytes.len(), 1);
+}
+
+#[test]
+fn a_file_that_is_full_is_followed_by_another() {
+    let directory = tempfile::tempdir().unwrap();
+    let write = |name: &str| {
+        let path = directory.path().join(name).join("run");
+        let mut writer = BagWriter::create(
+            &path,
+            BagOptions {
+                max_file_size: 100_000,
+                flush_interval_ns: 20_000_000,
+                ..options()
+            },
+        )
+        .unwrap();
+        record(&mut writer, 0..600).unwrap();
+        (path, writer.finish().unwrap())
+    };
+    let (path, summary) = write("a");
+    let info = info(&path).unwrap();
+    assert!((3..40).contains(&info.files.len()), "{}", info.files.len());
+    assert!(info.closed && info.breaks.is_empty(), "{info:?}");
+    assert_eq!(summary.messages, 600 * topic_count() as u64);
+    assert_eq!(info.messages, summary.messages);
+    assert_eq!(
+        (summary.start, summary.end),
+        (Some(log_time(0)), Some(log_time(599)))
+    );
+    let mut bytes = 0;
+    let mut alone = 0;
+    for number in 0..info.files.len() {
+        let file = path.join(format!("run_{number}.mcap"));
+        let length = fs::metadata(&file).unwrap().len();
+        let last = number + 1 == info.files.len();
+        assert!(last || (100_000..200_000).contains(&length), "{length}");
+        bytes += length;
+        // Each can be read without the others, and says what the recording is.
+        let reader = BagReader::open(&file).unwrap();
+        assert_eq!(reader.metadata(), options().custom);
+        let all: Result<Vec<_>, _> = reader.raw().collect();
+        alone += all.unwrap().len();
+    }
+    assert_eq!(bytes, summary.bytes);
+    assert_eq!(alone as u64, summary.messages);
+    // As one, in order.
+    let reader = BagReader::open(&path).unwrap();
+    let times: Vec<_> = reader.raw().map(|own| own.unwrap().log_time).collect();
+    assert_eq!(times.len() as u64, summary.messages);
+    assert!(times.is_sorted());
+
+    let (again, _) = write("b");
+    for entry in fs::read_dir(&path).unwrap() {
+        let name = entry.unwrap().file_name();
+        let [one, other] = [&path, &again].map(|own| fs::read(own.join(&name)).unwrap());
+        assert!(one == other, "{name:?}");
+    }
 }
 
 #[test]

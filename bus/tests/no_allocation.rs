@@ -3,11 +3,12 @@
 #![allow(missing_docs)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    cell::Cell,
-    process,
-};
+#[path = "../../tests/shared/allocations.rs"]
+mod allocations;
+
+use std::process;
+
+use allocations::allocations;
 
 use ferntast_bus::{Bus, Depth, MemoryBus, SharedMemoryBus, SharedMemoryConfig, frames};
 use ferntast_msgs::{
@@ -16,39 +17,10 @@ use ferntast_msgs::{
     topics::{DIAGNOSTICS, FOLLOWER_MEASURED_JS},
 };
 
-/// The system's allocator, counting what this thread asks of it.
-struct Counting;
-
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-// SAFETY: hands everything on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
-
-fn allocations(work: impl FnOnce()) -> u64 {
-    let before = ALLOCATIONS.get();
-    work();
-    ALLOCATIONS.get() - before
-}
-
 #[test]
 fn the_counter_counts() {
-    assert!(allocations(|| drop(std::hint::black_box(vec![1]))) >= 1);
+    let ((), counted) = allocations(|| drop(std::hint::black_box(vec![1])));
+    assert!(counted >= 1);
 }
 
 const TICKS: i64 = 4_000;
@@ -69,14 +41,14 @@ fn run(bus: &Bus) -> (u64, u64) {
     for tick in 1..=warm_up + TICKS {
         let now = Time::from_nanos(tick * 1_000_000);
         state.stamp = now;
-        let published = allocations(|| {
+        let ((), published) = allocations(|| {
             joints
                 .publish(now, &JointSample::zero(JointNames::numbered(2), now))
                 .unwrap();
             health.publish(now, &state).unwrap();
         });
         let later = now.plus_nanos(1);
-        let read = allocations(|| {
+        let ((), read) = allocations(|| {
             delivered += i32::from(newest.newest(later).is_some());
             // Now and then, so that it runs full.
             if tick % 300 == 0 {
@@ -119,7 +91,7 @@ fn shared_memory_allocates_one_block_a_message_and_none_to_read() {
 fn frames_in_memory_do_not_allocate() {
     let (mut sender, mut receiver) = frames::memory();
     let mut buffer = [0; frames::MAX_FRAME];
-    let count = allocations(|| {
+    let ((), count) = allocations(|| {
         for tick in 1..5_000 {
             sender.send(Time::from_nanos(tick), &[7; 64]).unwrap();
             if tick % 3 == 0 {

@@ -27,7 +27,10 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let section = &loaded.scenario.gateway;
     let mut endpoints = Vec::new();
     let link = &loaded.scenario.link.endpoint;
-    if !link.starts_with("udp/") {
+    if !["udp/", "sealed-udp/", "quic/"]
+        .iter()
+        .any(|kind| link.starts_with(kind))
+    {
         endpoints.push(TcpEndpoint {
             purpose: "link".to_owned(),
             address: link.clone(),

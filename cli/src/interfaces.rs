@@ -39,7 +39,7 @@ struct TopicLine {
 fn from_ros_2(authority: Authority) -> &'static str {
     match authority {
         Authority::Never => "never",
-        Authority::Always => "always",
+        Authority::Commands => "stops; all with [gateway] commands = true",
         Authority::ByScenario(switch) => switch.setting(),
     }
 }

@@ -72,6 +72,8 @@ struct Result {
     friction: Vec<FrictionSummary>,
     states: std::collections::BTreeMap<String, StateSummary>,
     recording: Option<String>,
+    /// Why the recording is not whole; `null` where it is, or without one.
+    recording_fault: Option<String>,
 }
 
 /// Runs it.
@@ -141,7 +143,7 @@ pub fn run(
     let wall = begun.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let monitor = session.monitor();
-    let result = Result {
+    let mut result = Result {
         scenario: context.loaded.scenario.name.clone(),
         seed: context.loaded.scenario.seed,
         duration_s: duration,
@@ -154,8 +156,10 @@ pub fn run(
         friction: monitor.friction(),
         states: monitor.states(),
         recording: context.bag.as_ref().map(|path| path.display().to_string()),
+        recording_fault: None,
     };
-    session.finish().map_err(Failure::failed)?;
+    let recorded = session.finish();
+    result.recording_fault = recorded.as_ref().err().map(ToString::to_string);
     if json {
         print_json(&result)?;
     } else {
@@ -175,7 +179,9 @@ pub fn run(
             result.friction.iter().for_each(|own| println!("{own}"));
         }
     }
-    Ok(ExitCode::SUCCESS)
+    recorded
+        .map(|()| ExitCode::SUCCESS)
+        .map_err(Failure::failed)
 }
 
 /// Time \[s\] and law of `SECONDS=LAW`.

@@ -4,6 +4,7 @@ mod bag;
 mod challenge;
 mod doctor;
 mod experiment;
+mod faults;
 mod foxglove_option;
 mod interfaces;
 mod lab;
@@ -26,7 +27,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, builder::PossibleValue};
 
 use ferntast_drivers::simulated;
-use ferntast_nodes::{graph::Graph, session_graph};
+use ferntast_nodes::{graph::Graph, process::Priority, session_graph};
 
 use output::Failure;
 
@@ -67,6 +68,8 @@ enum Command {
     Play(play::Arguments),
     /// Hold the delay laws against each other over delay, jitter, loss and environment.
     Sweep(sweep::Arguments),
+    /// Run a session under seeded schedules of faults, and check at every step what has to hold.
+    Faults(faults::Arguments),
     /// Hold a model against a recording, find the missing effect, add it.
     Lab(lab::Arguments),
     /// Make a recording with a hidden effect, to learn on; test the lab with many.
@@ -93,10 +96,10 @@ impl Command {
     /// Whether it holds processes or a recording, so that nobody who stops
     /// reading its output may end it.
     fn keeps_running(&self) -> bool {
-        use Command::{Experiment, Lockstep, Node, Paper, Play, Session};
+        use Command::{Experiment, Faults, Lockstep, Node, Paper, Play, Session};
         matches!(
             self,
-            Session(_) | Node(_) | Play(_) | Lockstep(_) | Experiment(_) | Paper(_)
+            Session(_) | Node(_) | Play(_) | Lockstep(_) | Faults(_) | Experiment(_) | Paper(_)
         )
     }
 }
@@ -116,6 +119,14 @@ fn parse(graph: &Graph) -> Result<Arguments, clap::Error> {
 /// Runs the command line; gives the process's exit code: 0 when all is well,
 /// 2 when the input was refused, 1 when something failed on the way.
 fn main() -> ExitCode {
+    if std::env::args_os()
+        .nth(1)
+        .is_some_and(|word| word == "state")
+    {
+        // Whoever wants the arm to stop shall not wait for a computer that is
+        // busy. Where that is not allowed it goes on without.
+        let _ = Priority::Command.take();
+    }
     let graph = session_graph(simulated::row());
     let arguments = match parse(&graph) {
         Ok(arguments) => arguments,
@@ -137,6 +148,7 @@ fn main() -> ExitCode {
         Command::Play(arguments) => play::run(&graph, arguments, json),
         Command::Challenge(arguments) => challenge::run(arguments, json),
         Command::Sweep(arguments) => sweep::run(arguments, json),
+        Command::Faults(arguments) => faults::run(&graph, &arguments, json),
         Command::Lab(arguments) => lab::run(arguments, json),
         Command::Experiment(arguments) => experiment::run(arguments, json),
         Command::Paper(arguments) => paper::run(&arguments, json),

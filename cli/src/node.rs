@@ -57,6 +57,7 @@ pub fn run(graph: &Graph, arguments: Arguments) -> Result<ExitCode, Failure> {
             let loaded = arguments.scenario.load()?;
             let mut context =
                 SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+            context.link_access.peer = arguments.scenario.link_peer;
             context.bag = arguments.bag;
             context.twin = arguments.twin;
             context

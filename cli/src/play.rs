@@ -76,8 +76,7 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     check_twin(arguments.twin.as_deref(), context.joints())?;
     context.twin = arguments.twin;
     let stop = stop_on_signals().map_err(Failure::failed)?;
-    let played =
-        session::play(graph, context, info.duration_s, &stop).map_err(Failure::of_session)?;
+    let played = session::play(graph, context, &info, &stop).map_err(Failure::of_session)?;
     if json {
         print_json(&played)?;
     } else {
@@ -86,5 +85,8 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
             println!("{twin}");
         }
     }
-    Ok(ExitCode::SUCCESS)
+    match played.fault() {
+        None => Ok(ExitCode::SUCCESS),
+        Some(fault) => Err(Failure::failed(fault)),
+    }
 }

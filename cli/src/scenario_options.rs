@@ -49,14 +49,28 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "ID")]
     pub domain: Option<u32>,
 
-    /// Endpoint at which the arm's end of the link listens (over udp what is lost stays lost, over tcp it
-    /// is sent again and holds up the rest).
-    #[arg(long, value_name = "tcp|udp/HOST:PORT")]
+    /// Let peers on ROS 2 arm devices and choose law, friction, channel and recording; without it they may
+    /// only pause and disable.
+    #[arg(long)]
+    pub ros_commands: bool,
+
+    /// Endpoint at which the arm's end of the link listens: quic (TLS with both hosts' certificates), on the
+    /// loopback also tcp or udp.
+    #[arg(long, value_name = "quic|tcp|udp/HOST:PORT")]
     pub link_endpoint: Option<String>,
+
+    /// Which of the known hosts has the arm, where several are known (see ferntast link keys --help).
+    #[arg(long, value_name = "NAME")]
+    pub link_peer: Option<String>,
 
     /// Endpoint of the Zenoh router for ROS 2 (with --middleware zenoh).
     #[arg(long, value_name = "tcp/HOST:PORT")]
     pub router_endpoint: Option<String>,
+
+    /// Zenoh configuration of that router: TLS, access control, where it listens (the kind of file that
+    /// ZENOH_ROUTER_CONFIG_URI names to rmw_zenoh's own router).
+    #[arg(long, value_name = "FILE", conflicts_with = "router_endpoint")]
+    pub router_config: Option<PathBuf>,
 }
 
 impl ScenarioOptions {
@@ -80,6 +94,7 @@ impl ScenarioOptions {
         } else if let Some(domain) = domain_of_environment()? {
             scenario.gateway.domain_id = domain;
         }
+        scenario.gateway.commands |= self.ros_commands;
         if let Some(law) = &self.law {
             scenario.set_law(law).map_err(Failure::refused)?;
         }
@@ -88,6 +103,9 @@ impl ScenarioOptions {
         }
         if let Some(endpoint) = &self.router_endpoint {
             scenario.gateway.router_endpoint.clone_from(endpoint);
+        }
+        if let Some(file) = &self.router_config {
+            scenario.gateway.router_config = Some(file.clone());
         }
         match self.hand.as_deref() {
             None => {}

@@ -4,7 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_nodes::{
     graph::Graph,
-    process::{SessionContext, stop_on_signals},
+    process::{SessionContext, link_end, stop_on_signals},
     session::{self, SessionOptions},
 };
 
@@ -74,6 +74,7 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     }
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    context.link_access.secret = Some(link_end::draw_secret().map_err(Failure::failed)?);
     context.bag = arguments.record;
     let page = arguments.page.console()?;
     context.console = (!arguments.no_console).then_some(page);

@@ -3,12 +3,12 @@
 use std::{process::ExitCode, thread, time::Duration};
 
 use clap::ValueEnum;
-use ferntast_bus::{Bus, Depth, SharedMemoryBus, SharedMemoryConfig};
+use ferntast_bus::{Bus, Depth};
 use ferntast_msgs::sample::{
     OperatingState, OperatingStateSample, StateCommand, StateCommandSample,
 };
 use ferntast_msgs::topics::{self, Topic};
-use ferntast_nodes::process::Clock;
+use ferntast_nodes::{process::Clock, session::Visit};
 use serde_json::json;
 
 use super::{Failure, output::print_json};
@@ -59,12 +59,7 @@ const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// Gives the command and waits for the state that follows.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let bus = Bus::SharedMemory(
-        SharedMemoryBus::open(&SharedMemoryConfig {
-            session: arguments.session.clone(),
-        })
-        .map_err(Failure::refused)?,
-    );
+    let visit = Visit::open(&arguments.session).map_err(Failure::refused)?;
     let (command_topic, state_topic) = match arguments.device {
         Device::Follower => (
             topics::FOLLOWER_STATE_COMMAND,
@@ -78,12 +73,11 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         StateChange::Pause => (StateCommand::PAUSE, OperatingState::PAUSED),
         StateChange::Resume => (StateCommand::RESUME, OperatingState::ENABLED),
     });
-    let state = ask(&bus, command_topic, state_topic, wish);
-    drop(bus);
-    // Where no session runs, this process is the only one that was in its
-    // shared memory; where one runs, this is refused.
-    let _ = SharedMemoryBus::clean_up(&arguments.session);
-    let state = state?;
+    let state = match visit.as_ref().and_then(Visit::bus) {
+        Some(bus) => ask(bus, command_topic, state_topic, wish)?,
+        None => None,
+    };
+    drop(visit);
     let Some((state, reason)) = state else {
         return Err(Failure::failed(format!(
             "nobody answered in session {:?}: is it running? (ferntast session, or --session NAME)",
@@ -119,8 +113,8 @@ fn ask(
         .subscriber(state_topic, Depth::Newest)
         .map_err(Failure::failed)?;
     if let Some((command, _)) = wish {
-        // The reader of the command has to find this publisher first.
-        thread::sleep(Duration::from_millis(50));
+        // It waits in shared memory until its reader, the servo or the master, has
+        // found this publisher, with one of its next steps.
         let now = clock.now();
         publisher
             .publish(now, &StateCommandSample::new(now, command))

@@ -5,13 +5,18 @@ use std::{
     path::PathBuf,
     sync::Arc,
     thread::JoinHandle,
+    time::Duration,
 };
 
-use axum::{Router, middleware};
+use axum::{Router, body::Body, middleware};
+use hyper::{body::Incoming, server::conn::http1, service::service_fn};
+use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::sync::oneshot;
+use tower_service::Service;
 
 use crate::{
-    ServerError, assets,
+    ServerError, assets, bodies,
+    connections::{Connections, Watched},
     guard::{self, Guard},
     lab, session,
 };
@@ -104,6 +109,7 @@ impl Server {
             .merge(assets::routes())
             .merge(lab::routes(Arc::new(lab)))
             .merge(session::routes(content.shared))
+            .layer(middleware::from_fn(bodies::take_whole))
             .layer(middleware::from_fn_with_state(guard, guard::watch));
         let thread = std::thread::Builder::new()
             .name("page".to_owned())
@@ -112,11 +118,10 @@ impl Server {
                     let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
                         return;
                     };
-                    let serving = IntoFuture::into_future(axum::serve(listener, router));
                     // Connections that are open are cut: nobody waits for a
                     // page that somebody left open.
                     tokio::select! {
-                        _ = serving => {}
+                        () = accept(listener, router) => {}
                         _ = stopped => {}
                     }
                 });
@@ -132,6 +137,47 @@ impl Server {
             thread: Some(thread),
         })
     }
+}
+
+/// How long a client may take to ask for something; as long it may ask for nothing.
+const HEAD_PATIENCE: Duration = Duration::from_secs(10);
+
+/// Answers whoever connects, for as long as it is asked.
+async fn accept(listener: tokio::net::TcpListener, router: Router) {
+    let connections = Connections::new();
+    loop {
+        match listener.accept().await {
+            Ok((stream, from)) => {
+                // Snapshots are small and are to be there at once.
+                let _ = stream.set_nodelay(true);
+                if let Some(stream) = connections.enter(stream, from) {
+                    tokio::spawn(answer(stream, router.clone()));
+                }
+            }
+            // No descriptor is free, or the client has gone again.
+            Err(_) => {
+                connections.make_room();
+                tokio::time::sleep(Duration::from_millis(5)).await;
+            }
+        }
+    }
+}
+
+/// Answers one connection to its end.
+async fn answer(stream: Watched, router: Router) {
+    let connection = stream.connection.clone();
+    let service = service_fn(move |mut request: hyper::Request<Incoming>| {
+        connection.note();
+        request.extensions_mut().insert(connection.clone());
+        router.clone().call(request.map(Body::new))
+    });
+    let serving = http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(HEAD_PATIENCE)
+        .serve_connection(TokioIo::new(stream), service)
+        .with_upgrades();
+    // How it ended is nobody's concern: the client has gone, or was too slow.
+    let _ = serving.await;
 }
 
 impl Drop for Server {

@@ -3,7 +3,10 @@
 //!
 //! Zero says that the sender has heard no word since it was started; words count
 //! 1 … 15 and then 1 again. So a sender that was started anew, whose count falls
-//! back to zero, is no word.
+//! back to zero, is no word. A watch begins anew with each process at the other end,
+//! and after a gap: the first count that it sees is no word.
+
+use crate::planted::{Planted, Rule};
 
 /// Words of the operator to arm again, counted by the sender.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,9 +32,23 @@ impl ArmingCount {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArmingWatch {
     last: Option<u8>,
+    planted: Planted,
 }
 
 impl ArmingWatch {
+    /// The same with a planted bug.
+    pub fn planted(self, planted: Planted) -> ArmingWatch {
+        ArmingWatch { planted, ..self }
+    }
+
+    /// Another process is at the other end, or frames cease to flow: the first count that
+    /// is seen then is no word.
+    pub fn restart(&mut self) {
+        if !self.planted.lacks(Rule::RestartIsNoWord) {
+            self.last = None;
+        }
+    }
+
     /// Whether `count` of the newest frame is a word that the one before did not have.
     ///
     /// After a sender's restart only its first word counts: a larger count would be
@@ -40,6 +57,7 @@ impl ArmingWatch {
     pub fn observe(&mut self, count: u8) -> bool {
         let word = match self.last {
             None => false,
+            Some(last) if self.planted.lacks(Rule::RestartIsNoWord) => count != last,
             Some(0) => count == 1,
             Some(last) => count != last && count != 0,
         };

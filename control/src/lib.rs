@@ -13,6 +13,7 @@ pub mod haptics;
 pub mod link;
 pub mod meter;
 pub mod operating;
+pub mod planted;
 pub mod playout;
 pub mod servo;
 pub mod switching;

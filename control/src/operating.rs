@@ -14,6 +14,8 @@
 
 use std::fmt;
 
+use crate::planted::{Planted, Rule};
+
 /// The operating states of CRTK.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OperatingState {
@@ -66,6 +68,10 @@ pub enum StateCommand {
     Pause,
     /// PAUSED → ENABLED: arms again.
     Resume,
+    /// PAUSED → ENABLED where it paused because commands fell silent, and for
+    /// nothing else: the arm's end of the link says so after a gap that a scenario
+    /// allows to be bridged. No person's word.
+    ResumeAfterGap,
 }
 
 impl StateCommand {
@@ -76,6 +82,7 @@ impl StateCommand {
             StateCommand::Disable => "disable",
             StateCommand::Pause => "pause",
             StateCommand::Resume => "resume",
+            StateCommand::ResumeAfterGap => "resume_after_gap",
         }
     }
 
@@ -86,6 +93,7 @@ impl StateCommand {
             StateCommand::Disable,
             StateCommand::Pause,
             StateCommand::Resume,
+            StateCommand::ResumeAfterGap,
         ]
         .into_iter()
         .find(|command| command.name() == name)
@@ -101,6 +109,10 @@ pub enum Event {
     MeasurementSilent,
     /// A measurement that is not finite, or not of as many joints: fault.
     MeasurementInvalid,
+    /// A joint (counted from 1) is measured to stand still when it cannot: fault.
+    MeasurementFrozen(u8),
+    /// A joint (counted from 1) is measured where it cannot have got to: fault.
+    MeasurementJumped(u8),
     /// A joint (counted from 1) left its position limits: fault.
     JointLimit(u8),
     /// A joint (counted from 1) is faster than allowed: fault.
@@ -135,6 +147,14 @@ impl fmt::Display for Reason {
                     "a measurement is not finite; disable, then enable"
                 )
             }
+            Reason::Event(Event::MeasurementFrozen(joint)) => write!(
+                formatter,
+                "joint {joint} measures the same again and again; mend that, disable, then enable"
+            ),
+            Reason::Event(Event::MeasurementJumped(joint)) => write!(
+                formatter,
+                "joint {joint} was measured elsewhere at once; check its encoder and zero, disable, then enable"
+            ),
             Reason::Event(Event::JointLimit(joint)) => {
                 write!(
                     formatter,
@@ -175,6 +195,7 @@ pub enum StateRefusal {
 fn hint(command: StateCommand, state: OperatingState) -> &'static str {
     match (command, state) {
         (_, OperatingState::Fault) => "send disable first, then enable",
+        (StateCommand::ResumeAfterGap, _) => "it did not pause for silent commands",
         (StateCommand::Enable, OperatingState::Paused) => "send resume",
         (_, OperatingState::Disabled) => "send enable first",
         (StateCommand::Resume, _) => "it follows commands already",
@@ -187,6 +208,7 @@ fn hint(command: StateCommand, state: OperatingState) -> &'static str {
 pub struct StateMachine {
     state: OperatingState,
     reason: Reason,
+    planted: Planted,
 }
 
 impl Default for StateMachine {
@@ -194,11 +216,24 @@ impl Default for StateMachine {
         StateMachine {
             state: OperatingState::Disabled,
             reason: Reason::Started,
+            planted: Planted::NONE,
         }
     }
 }
 
 impl StateMachine {
+    /// The same with a planted bug.
+    pub fn planted(self, planted: Planted) -> StateMachine {
+        StateMachine {
+            state: match planted.lacks(Rule::StartsDisabled) {
+                true => OperatingState::Enabled,
+                false => self.state,
+            },
+            planted,
+            ..self
+        }
+    }
+
     /// The state.
     pub fn state(&self) -> OperatingState {
         self.state
@@ -221,10 +256,22 @@ impl StateMachine {
     pub fn command(&mut self, command: StateCommand, ready: bool) -> Result<bool, StateRefusal> {
         use OperatingState::{Disabled, Enabled, Paused};
         let next = match (command, self.state) {
+            (StateCommand::Disable, state) if self.planted.lacks(Rule::DisableObeyed) => state,
+            (StateCommand::Pause, state) if self.planted.lacks(Rule::PauseObeyed) => state,
+            (StateCommand::Resume, OperatingState::Fault)
+                if self.planted.lacks(Rule::FaultLatched) =>
+            {
+                Enabled
+            }
             (StateCommand::Disable, _) => Disabled,
             (StateCommand::Enable, Disabled | Enabled) => Enabled,
             (StateCommand::Pause, Enabled | Paused) => Paused,
             (StateCommand::Resume, Paused | Enabled) => Enabled,
+            (StateCommand::ResumeAfterGap, Paused)
+                if self.reason == Reason::Event(Event::CommandSilent) =>
+            {
+                Enabled
+            }
             (command, state) => return Err(StateRefusal::NotAllowed { command, state }),
         };
         if next == self.state {
@@ -236,6 +283,15 @@ impl StateMachine {
         self.state = next;
         self.reason = Reason::Commanded(command);
         Ok(true)
+    }
+
+    /// Takes note of a valid command.
+    pub(crate) fn heard(&mut self) {
+        let silent = self.reason == Reason::Event(Event::CommandSilent);
+        if self.planted.lacks(Rule::PauseLatched) && silent {
+            self.state = OperatingState::Enabled;
+            self.reason = Reason::Commanded(StateCommand::Resume);
+        }
     }
 
     /// Takes note of `event`. In DISABLED nothing follows from it; in FAULT
@@ -304,6 +360,7 @@ mod tests {
             Just(Ok(StateCommand::Disable)),
             Just(Ok(StateCommand::Pause)),
             Just(Ok(StateCommand::Resume)),
+            Just(Ok(StateCommand::ResumeAfterGap)),
             Just(Err(Event::CommandSilent)),
             Just(Err(Event::MeasurementSilent)),
             Just(Err(Event::JointLimit(2))),
@@ -316,13 +373,19 @@ mod tests {
         fn events_never_enable(inputs in proptest::collection::vec(any_input(), 0..60)) {
             let mut machine = StateMachine::default();
             for input in inputs {
-                let before = machine.state();
+                let (before, reason) = (machine.state(), machine.reason());
                 match input {
                     Ok(command) => { let _ = machine.command(command, true); }
                     Err(event) => { machine.event(event); }
                 }
                 if machine.state() == OperatingState::Enabled && before != OperatingState::Enabled {
-                    prop_assert!(matches!(input, Ok(StateCommand::Enable | StateCommand::Resume)));
+                    let silent = reason == Reason::Event(Event::CommandSilent);
+                    let allowed = match input {
+                        Ok(StateCommand::Enable | StateCommand::Resume) => true,
+                        Ok(StateCommand::ResumeAfterGap) => silent,
+                        _ => false,
+                    };
+                    prop_assert!(allowed, "{input:?} from {before:?}, {reason:?}");
                 }
                 if before == OperatingState::Fault && machine.state() != OperatingState::Fault {
                     prop_assert_eq!(input, Ok(StateCommand::Disable));

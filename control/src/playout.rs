@@ -54,8 +54,8 @@ pub struct PlayOut {
     base_ns: Option<i64>,
     late_since_ns: Option<i64>,
     arrived_ns: Option<i64>,
-    /// Acted on last: sequence number, sent [ns].
-    last: Option<(u32, i64)>,
+    /// Sequence number of the frame acted on last.
+    last: Option<u32>,
 }
 
 impl PlayOut {
@@ -78,19 +78,22 @@ impl PlayOut {
         self.waiting
     }
 
+    /// The sender was started anew, or is another one: what waits is dropped.
+    pub fn restart(&mut self) {
+        self.clear();
+        self.base_ns = None;
+        self.late_since_ns = None;
+        self.last = None;
+    }
+
     /// A frame arrived at `now_ns`.
     pub fn offer(&mut self, frame: &LinkFrame, now_ns: i64) -> Offered {
         self.after_outage(now_ns);
         self.arrived_ns = Some(now_ns);
-        if let Some((sequence, sent_ns)) = self.last {
-            let older = !behind(sequence, frame.sequence);
-            if older && frame.sent_ns > sent_ns {
-                // The sender started over.
-                self.clear();
-                self.base_ns = None;
-            } else if frame.sequence == sequence {
+        if let Some(sequence) = self.last {
+            if frame.sequence == sequence {
                 return Offered::Replayed;
-            } else if older {
+            } else if !behind(sequence, frame.sequence) {
                 return Offered::Late;
             }
         }
@@ -136,20 +139,24 @@ impl PlayOut {
             let due_ns = frame.sent_ns.saturating_add(base_ns);
             buffer_ns == 0 || due_ns.saturating_add(buffer_ns) <= now_ns
         };
-        let mut newest: Option<LinkFrame> = None;
-        for frame in self.slots.iter().flatten().filter(|frame| due(frame)) {
+        let waiting = self.slots.iter().flatten().take(self.waiting);
+        let mut newest: Option<&LinkFrame> = None;
+        for frame in waiting.filter(|frame| due(frame)) {
             if newest.is_none_or(|own| behind(own.sequence, frame.sequence)) {
-                newest = Some(*frame);
+                newest = Some(frame);
             }
         }
-        let newest = newest?;
+        let newest = *newest?;
         for slot in self.slots.iter_mut() {
+            if self.waiting == 0 {
+                break;
+            }
             if slot.is_some_and(|own| !behind(newest.sequence, own.sequence)) {
                 *slot = None;
                 self.waiting -= 1;
             }
         }
-        self.last = Some((newest.sequence, newest.sent_ns));
+        self.last = Some(newest.sequence);
         Some(newest)
     }
 
@@ -180,8 +187,8 @@ mod tests {
 
     fn frame(sequence: u32, sent_ms: i64) -> LinkFrame {
         LinkFrame {
-            session: 1,
             sequence,
+            stamp_ns: START + sent_ms * MS,
             sent_ns: START + sent_ms * MS,
             echo: None,
             hold: false,
@@ -278,6 +285,7 @@ mod tests {
         let mut playout = PlayOut::new(0.0);
         offered(&mut playout, 1000, 0, 20);
         assert_eq!(taken(&mut playout, 20), Some(1000));
+        playout.restart();
         assert_eq!(offered(&mut playout, 0, 50, 70), Offered::Waiting);
         assert_eq!(taken(&mut playout, 70), Some(0));
     }

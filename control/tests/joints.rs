@@ -3,6 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "../../tests/shared/allocations.rs"]
+mod allocations;
+
+use allocations::allocations;
 use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{
     Command, CommandRefusal, Measurement, Servo, ServoConfig, ServoInput, ServoOutput, Target,
@@ -11,35 +15,7 @@ use ferntast_model::friction::FrictionParameters;
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, MAX_JOINTS};
 use nalgebra::Complex;
-use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    cell::Cell,
-    f64::consts::TAU,
-};
-
-/// The system's allocator, counting what this thread asks of it.
-struct Counting;
-
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-// SAFETY: hands everything on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
+use std::f64::consts::TAU;
 
 const TICK: f64 = 1e-3;
 const TICK_NS: i64 = 1_000_000;
@@ -136,10 +112,10 @@ impl Bench {
             }),
             command: target.map(|target| Command { stamp_ns, target }),
             state_command: state,
+            weight: None,
         };
-        let before = ALLOCATIONS.get();
-        let output = self.servo.step(self.now, &input);
-        self.allocations += ALLOCATIONS.get() - before;
+        let (output, allocated) = allocations(|| self.servo.step(self.now, &input));
+        self.allocations += allocated;
         for (joint, acceleration) in output.torque.iter().enumerate() {
             let velocity = self.velocity[joint];
             self.position[joint] += TICK * (velocity + 0.5 * TICK * acceleration);
@@ -234,9 +210,8 @@ fn whatever_happens_a_step_allocates_nothing() {
     assert_eq!(bench.servo.state(), OperatingState::Fault);
     assert_eq!(bench.allocations, 0);
     // The counter counts.
-    let before = ALLOCATIONS.get();
-    drop(std::hint::black_box(vec![1]));
-    assert!(ALLOCATIONS.get() > before);
+    let ((), counted) = allocations(|| drop(std::hint::black_box(vec![1])));
+    assert!(counted >= 1);
 }
 
 #[test]

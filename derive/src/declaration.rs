@@ -19,6 +19,8 @@ pub struct Declaration {
     pub wire: Wire,
     /// Looks at several fields together.
     pub check: Option<Path>,
+    /// Tells whether all that the command can do is stop something.
+    pub stops: Option<Path>,
     /// Where comments begin in the `.msg` text.
     pub comment_column: Option<usize>,
 }
@@ -50,6 +52,7 @@ impl Declaration {
             fields: fields?,
             wire: Wire::ByHand,
             check: None,
+            stops: None,
             comment_column: None,
         })
     }
@@ -76,6 +79,8 @@ impl Declaration {
             self.wire = Wire::Standard(meta.value()?.parse()?);
         } else if meta.path.is_ident("check") {
             self.check = Some(meta.value()?.parse()?);
+        } else if meta.path.is_ident("stops") {
+            self.stops = Some(meta.value()?.parse()?);
         } else if meta.path.is_ident("comment_column") {
             let column: LitInt = meta.value()?.parse()?;
             self.comment_column = Some(column.base10_parse()?);

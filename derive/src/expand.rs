@@ -42,6 +42,14 @@ pub fn message(declaration: &Declaration) -> Result<TokenStream> {
     };
     let layout = layout(declaration, &[String::new(), interface]);
     let initial = initial(declaration);
+    let stops = declaration.stops.iter().map(|function| {
+        quote! {
+            fn stops(&self) -> bool {
+                #function(self)
+            }
+        }
+    });
+    let stops = quote!(#(#stops)*);
     let (to_ros, from_ros, check) = (
         to_ros(declaration),
         from_ros(declaration),
@@ -84,6 +92,8 @@ pub fn message(declaration: &Declaration) -> Result<TokenStream> {
                 #check
                 Ok(())
             }
+
+            #stops
         }
     })
 }
@@ -303,7 +313,7 @@ fn check(declaration: &Declaration) -> TokenStream {
             Kind::Named => quote!(crate::sample::Named::check(self.#name, #word)?;),
             Kind::Text if field.whole.is_some() => {
                 let known = &field.whole;
-                quote!(crate::sample::checks::not_empty(#word, self.#name.as_str(), #known)?;)
+                quote!(crate::sample::checks::not_empty(#word, self.#name, #known)?;)
             }
             Kind::Text | Kind::Texts(_) | Kind::Identity | Kind::Integer | Kind::Stamp => quote!(),
         }

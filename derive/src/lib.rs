@@ -19,7 +19,8 @@
 //! `#[message(Name)]` is a message of ferntast's own, `ferntast_msgs/msg/Name`;
 //! `#[message(standard = path::Type)]` one that ROS 2 has, whose fields have
 //! the same names. Further arguments: `check = function` looks at several
-//! fields together; `comment_column = N` is where comments begin in the `.msg`
+//! fields together; `stops = function` tells of a command whether all it can do is stop
+//! something, which anybody may; `comment_column = N` is where comments begin in the `.msg`
 //! text. `#[sample]` is the layout alone, for samples whose conversions are
 //! written by hand.
 //!

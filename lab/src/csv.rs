@@ -1,9 +1,11 @@
 //! Signals from CSV: columns by the names in the first line.
 
 use std::{
+    cell::Cell,
     fs::File,
     io::{self, BufReader, Read},
     path::{Path, PathBuf},
+    rc::Rc,
 };
 
 use crate::message_path::{Function, MessagePathError, functions_of};
@@ -11,6 +13,12 @@ use crate::message_path::{Function, MessagePathError, functions_of};
 /// Names of the column that is time \[s\], where none is given; the first
 /// column of the file that has one of them is it.
 pub const TIME_COLUMNS: [&str; 3] = ["t_s", "time", "timestamp"];
+
+/// Numbers of one file that are held at once, at most: almost two hours of eight
+/// columns at 1 kHz.
+const MOST_NUMBERS: usize = 64_000_000;
+/// The longest row \[bytes\]: what has none would be taken into memory whole.
+const LONGEST_ROW: u64 = 1 << 20;
 
 /// Why a CSV file gives no signals.
 #[derive(Debug, thiserror::Error)]
@@ -22,6 +30,21 @@ pub enum CsvError {
         path: PathBuf,
         /// What the system said.
         source: io::Error,
+    },
+    /// More numbers than are held at once.
+    #[error(
+        "{} is too large to be held in memory ({} MiB): more than {rows} rows of {columns} columns, with time and line, are not read ({} MiB). Cut the file into parts by time, or keep every n-th row",
+        path.display(), bytes >> 20, (MOST_NUMBERS * 8) >> 20
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size \[bytes\].
+        bytes: u64,
+        /// Rows that were read.
+        rows: usize,
+        /// Columns that are read, with time and line.
+        columns: usize,
     },
     /// The file is not CSV: lines of different length, not UTF-8, cut off.
     #[error("{}: {reason}; correct the line, or export the file again", path.display())]
@@ -125,7 +148,11 @@ pub fn read_file(
 /// [`CsvError`].
 pub fn column_names(path: &Path) -> Result<Vec<String>, CsvError> {
     let file = File::open(path).map_err(|source| open_error(path, source))?;
-    Ok(open(BufReader::new(file), path)?.1)
+    let file = Rows {
+        source: BufReader::new(file),
+        row: Rc::default(),
+    };
+    Ok(open(file, path)?.1)
 }
 
 fn open_error(path: &Path, source: io::Error) -> CsvError {
@@ -151,6 +178,21 @@ pub fn read(
     time: Option<&str>,
     wanted: &[(&str, &str)],
 ) -> Result<Columns, CsvError> {
+    read_at_most(MOST_NUMBERS, source, path, time, wanted)
+}
+
+fn read_at_most(
+    most: usize,
+    source: impl Read,
+    path: &Path,
+    time: Option<&str>,
+    wanted: &[(&str, &str)],
+) -> Result<Columns, CsvError> {
+    let row = Rc::new(Cell::new(0));
+    let source = Rows {
+        source,
+        row: row.clone(),
+    };
     let (mut reader, names) = open(source, path)?;
     let columns = Selected::new(path, &names, time, wanted)?;
     let mut read = Columns {
@@ -163,6 +205,15 @@ pub fn read(
         .read_record(&mut record)
         .map_err(|error| format_error(path, &error))?
     {
+        row.set(0);
+        if (read.time.len() + 1) * (wanted.len() + 2) > most {
+            return Err(CsvError::TooLarge {
+                path: path.to_owned(),
+                bytes: path.metadata().map_or(0, |data| data.len()),
+                rows: read.time.len(),
+                columns: wanted.len() + 2,
+            });
+        }
         let line = record.position().map_or(0, csv::Position::line);
         columns.take(path, &record, line, &mut read)?;
     }
@@ -171,6 +222,28 @@ pub fn read(
             path: path.to_owned(),
         }),
         false => Ok(read),
+    }
+}
+
+/// A source whose rows have an end: what is read since the last row is counted.
+struct Rows<R> {
+    source: R,
+    row: Rc<Cell<u64>>,
+}
+
+impl<R: Read> Read for Rows<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        if self.row.get() > LONGEST_ROW {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                format!(
+                    "a row has more than {LONGEST_ROW} bytes: is a quotation mark open, or is this no CSV?"
+                ),
+            ));
+        }
+        let count = self.source.read(bytes)?;
+        self.row.set(self.row.get() + count as u64);
+        Ok(count)
     }
 }
 
@@ -395,6 +468,37 @@ mod tests {
                 .to_string()
                 .contains("one of the functions")
         );
+    }
+
+    #[test]
+    fn a_row_without_an_end_is_not_taken_into_memory() {
+        for start in ["t_s,q\n0,\"", "t_s,q\n0,", "t_s"] {
+            let endless = start.as_bytes().chain(io::repeat(b'1'));
+            let refused = read(endless, Path::new("a.csv"), None, &[("position", "q")]);
+            let text = refused.unwrap_err().to_string();
+            assert!(text.contains("more than 1048576 bytes"), "{text}");
+        }
+    }
+
+    #[test]
+    fn more_numbers_than_are_held_are_refused_by_number() {
+        let wanted = [("position", "q")];
+        let rows = "t_s,q\n0,1\n1,1\n2,1\n";
+        let read = |most| read_at_most(most, rows.as_bytes(), Path::new("a.csv"), None, &wanted);
+        assert_eq!(read(9).unwrap().time.len(), 3);
+        let refused = read(8).unwrap_err();
+        assert!(
+            matches!(
+                refused,
+                CsvError::TooLarge {
+                    rows: 2,
+                    columns: 3,
+                    ..
+                }
+            ),
+            "{refused}"
+        );
+        assert!(refused.to_string().contains("keep every n-th row"));
     }
 
     proptest! {

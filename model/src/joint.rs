@@ -1,7 +1,7 @@
 //! A flexible joint as it is believed: motor, gear, elasticity, sensor, limits.
 
 use crate::friction::FrictionParameters;
-use crate::{ParameterError, Section, parameters};
+use crate::{ParameterError, parameters};
 
 parameters! {
     /// Parameters of one joint, on the joint side of the gear unless they say otherwise.
@@ -30,12 +30,6 @@ parameters! {
         pub friction: FrictionParameters [section],
     }
     check JointParameters::range_is_not_empty;
-}
-
-impl Section for FrictionParameters {
-    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
-        self.validate().map_err(|error| error.within(key))
-    }
 }
 
 impl JointParameters {

@@ -30,6 +30,12 @@ pub trait Message: Sample {
     /// message has a place for that.
     fn set_source(&mut self, _source: u64) {}
 
+    /// Whether all that this command can do is stop something: whoever asks for that
+    /// is heard.
+    fn stops(&self) -> bool {
+        false
+    }
+
     /// The ROS 2 form. Allocates: not for the control path.
     fn to_ros(&self) -> Self::Ros;
 

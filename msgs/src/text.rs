@@ -55,7 +55,23 @@ impl<const N: usize> Text<N> {
 
     /// Whether there is no text.
     pub fn is_empty(&self) -> bool {
-        self.as_str().is_empty()
+        match self.0.first() {
+            None | Some(0) => true,
+            Some(byte) => !byte.is_ascii() && self.as_str().is_empty(),
+        }
+    }
+}
+
+impl Text<16> {
+    /// Whether it is ASCII with nothing but zeros behind it, as [`Text::new`] makes it of
+    /// ASCII: then two texts are equal exactly if their bytes are.
+    pub(crate) fn is_plain(&self) -> bool {
+        const HIGH: u128 = u128::from_le_bytes([0x80; 16]);
+        let bytes = u128::from_le_bytes(self.0);
+        // The highest bit of each byte that is not zero; bytes below 0x80 do not carry.
+        let used = bytes.wrapping_add(HIGH - (HIGH >> 7)) & HIGH;
+        // Each of them follows another one, but for the first.
+        bytes & HIGH == 0 && used & !((used << 8) | 0x80) == 0
     }
 }
 
@@ -92,5 +108,28 @@ impl<const N: usize> fmt::Debug for Text<N> {
 impl<const N: usize> fmt::Display for Text<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain_texts_are_ascii_and_then_zeros() {
+        for name in ["", "a", "joint_1", "0123456789abcdef"] {
+            assert!(Text::<16>::new(name).is_plain(), "{name}");
+        }
+        assert!(!Text::<16>::new("gelenk_ä").is_plain());
+        for place in 0..16 {
+            let mut bytes = [b'x'; 16];
+            bytes[place] = 0;
+            assert_eq!(Text(bytes).is_plain(), place == 15, "{place}");
+            let mut bytes = [0; 16];
+            bytes[place] = 1;
+            assert_eq!(Text(bytes).is_plain(), place == 0, "{place}");
+            bytes[place] = 0x80;
+            assert!(!Text(bytes).is_plain(), "{place}");
+        }
     }
 }

@@ -18,6 +18,7 @@ pub mod twin;
 
 use bridge::{foxglove, gateway, player, recorder};
 use graph::{Graph, NodeRow, always, never};
+use process::Priority;
 
 /// The nodes of a session in the order in which they are stopped: first what
 /// moves the arm, last the recorder. `arm` is the row of the arm's driver.
@@ -28,26 +29,43 @@ use graph::{Graph, NodeRow, always, never};
 pub fn session_graph(arm: NodeRow) -> Graph {
     Graph::new(vec![
         NodeRow {
-            // 250 Hz for the hand of the page, where 100 Hz would do. Asks for
-            // real-time priority itself, after its server's threads.
+            // 250 Hz for the hand of the page, where 100 Hz would do. The server's
+            // threads hear the stop; the loop asks for real time itself, after them.
             period_nanos: 4_000_000,
             in_session: |session| session.console.is_some(),
-            ..NodeRow::service("console", "Serves the page", console::run)
+            ..NodeRow::service(
+                "console",
+                "Serves the page",
+                Priority::Supervision,
+                console::run,
+            )
         },
         NodeRow {
             in_session: |session| session.foxglove.is_some(),
             in_playback: |session| session.foxglove.is_some(),
-            ..NodeRow::service("foxglove", "Shows every topic to Foxglove", foxglove::run)
+            ..NodeRow::service(
+                "foxglove",
+                "Shows every topic to Foxglove",
+                Priority::Display,
+                foxglove::run,
+            )
         },
-        NodeRow::step::<master::MasterPorts>("master", "The haptic master bridge", master::make),
+        NodeRow::step::<master::MasterPorts>(
+            "master",
+            "The haptic master bridge",
+            Priority::Master,
+            master::make,
+        ),
         NodeRow::step::<link::LeaderLinkPorts>(
             "link_leader",
             "The operator's end of the link",
+            Priority::Link,
             link::make_leader,
         ),
         NodeRow::step::<link::FollowerLinkPorts>(
             "link_follower",
             "The arm's end of the link",
+            Priority::Link,
             link::make_follower,
         ),
         NodeRow {
@@ -55,6 +73,7 @@ pub fn session_graph(arm: NodeRow) -> Graph {
             ..NodeRow::step::<servo::ServoPorts>(
                 "servo",
                 "The 1 kHz joint servo with CRTK operating states",
+                Priority::Servo,
                 servo::make,
             )
         },
@@ -64,6 +83,7 @@ pub fn session_graph(arm: NodeRow) -> Graph {
             ..NodeRow::step::<estimator::EstimatorPorts>(
                 "estimator",
                 "The contact-force estimator (equations 5 and 6)",
+                Priority::Estimator,
                 estimator::make,
             )
         },
@@ -73,27 +93,28 @@ pub fn session_graph(arm: NodeRow) -> Graph {
             ..NodeRow::service(
                 "gateway",
                 "Carries the topics to and from ROS 2",
+                Priority::Gateway,
                 gateway::run,
             )
         },
         NodeRow {
             period_nanos: 10_000_000,
-            realtime: false,
             in_session: |session| session.loaded.scenario.limits.is_some(),
             ..NodeRow::step::<limits::LimitsPorts>(
                 "limits",
                 "Warns before the arm comes to its limits",
+                Priority::Advice,
                 limits::make,
             )
         },
         NodeRow {
-            realtime: false,
             in_session: |session| session.twin.is_some(),
             in_playback: |session| session.twin.is_some(),
             in_replay: |session| session.twin.is_some(),
             ..NodeRow::step::<twin::TwinPorts>(
                 twin::NAME,
                 "The model of a joint held against it while it moves",
+                Priority::Advice,
                 twin::make,
             )
         },
@@ -101,7 +122,12 @@ pub fn session_graph(arm: NodeRow) -> Graph {
             period_nanos: 10_000_000,
             // The page can have it record at any time.
             in_session: |session| session.bag.is_some() || session.console.is_some(),
-            ..NodeRow::service(recorder::NAME, "Writes a rosbag2 directory", recorder::run)
+            ..NodeRow::service(
+                recorder::NAME,
+                "Writes a rosbag2 directory",
+                Priority::Recording,
+                recorder::run,
+            )
         },
         NodeRow {
             // A playback starts it once all others are ready.
@@ -109,6 +135,7 @@ pub fn session_graph(arm: NodeRow) -> Graph {
             ..NodeRow::service(
                 player::NAME,
                 "Puts a recording back on the topics",
+                Priority::Gateway,
                 player::run,
             )
         },

@@ -5,7 +5,7 @@ use ferntast_control::delay::{
     FollowerEnd, FollowerInput, Law, LeaderEnd, LeaderInput, Motion, Packet, PositionForce,
     Received,
 };
-use ferntast_control::frame::{self, FRAME_LENGTH, LinkFrame};
+use ferntast_control::frame::{self, FRAME_LENGTH, LinkFrame, WIRE_LENGTH};
 use ferntast_control::haptics::{HandCommand, Master, MasterConfig};
 use ferntast_control::meter::{Arrival, LinkMeasurement, LinkMeter};
 use ferntast_control::operating::{OperatingState, StateCommand};
@@ -60,8 +60,8 @@ impl End {
 
     fn send(&mut self, now: i64, state: OperatingState, packet: Packet) {
         let frame = LinkFrame {
-            session: 1,
             sequence: self.sequence,
+            stamp_ns: now,
             sent_ns: now,
             echo: self.meter.echo(now),
             hold: state != OperatingState::Enabled,
@@ -74,15 +74,19 @@ impl End {
         frame::encode(&frame, &mut bytes);
         self.sequence += 1;
         self.meter.sent();
-        self.channel.push(now, &bytes);
+        // With room for the seal, which a channel of limited rate counts.
+        let mut sealed = [0; WIRE_LENGTH];
+        sealed[..FRAME_LENGTH].copy_from_slice(&bytes);
+        self.channel.push(now, &sealed);
     }
 
     /// Receives what the other end sent.
     fn receive(&mut self, now: i64, other: &mut Channel) {
-        let mut buffer = [0; FRAME_LENGTH];
-        while let Some((length, arrived)) = other.pop(now, &mut buffer) {
-            match frame::decode(&buffer[..length], 1, arrived) {
-                Ok(frame) => {
+        let mut buffer = [0; WIRE_LENGTH];
+        while let Some((_, arrived)) = other.pop(now, &mut buffer) {
+            match frame::decode(&buffer[..FRAME_LENGTH], arrived, 0) {
+                Ok(mut frame) => {
+                    self.meter.synchronise(&mut frame, arrived);
                     if self.meter.received(&frame, arrived) == Arrival::Newest {
                         self.newest = Some(frame.packet);
                         self.fresh = true;
@@ -239,6 +243,8 @@ impl Chain {
                 }),
                 command: self.command,
                 state_command,
+                // In orbit nothing weighs anything.
+                weight: Some([0.0; 2].into()),
             },
         );
         assert_eq!(servo.refused, None);
@@ -355,5 +361,21 @@ fn a_blackout_holds_the_arm_within_30_ms_and_resume_brings_it_back() {
         // Nowhere faster than the approach (0.2 rad/s a joint) or the hand.
         assert!(step < 0.25e-3, "{step} m in a tick");
         before = now;
+    }
+}
+
+#[test]
+fn a_hold_releases_what_it_presses() {
+    let link = preset(include_str!("../../config/links/rokviss_20ms.toml"));
+    let mut chain = Chain::new(link);
+    chain.tick(Some(StateCommand::Enable));
+    let pressing = chain.run(3500)[3499].normal_force;
+    chain.tick(Some(StateCommand::Pause));
+    let sights = chain.run(1000);
+    assert!(pressing > 25.0, "{pressing} N");
+    // Friction of the gear would keep all of it.
+    for (ms, sight) in sights.iter().enumerate().skip(150) {
+        let force = sight.normal_force;
+        assert!((0.0..=5.0).contains(&force), "{force} N after {ms} ms");
     }
 }

@@ -57,6 +57,7 @@ impl Bench {
                 measurement: Some(self.measured),
                 command,
                 state_command: state,
+                weight: None,
             },
         );
         self.arm.advance([self.torque[0], self.torque[1]], TICK);

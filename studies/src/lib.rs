@@ -1,7 +1,9 @@
 //! What is run for its result, in virtual time: identification experiments and
-//! campaigns, the paper's items, sweeps over delay laws, the lab's challenges.
+//! campaigns, the paper's items, sweeps over delay laws, schedules of
+//! faults, the lab's challenges.
 
 pub mod challenge;
 pub mod experiment;
+pub mod faults;
 pub mod paper;
 pub mod sweep;

@@ -7,7 +7,7 @@
 use std::{
     fs,
     os::unix::process::CommandExt,
-    path::Path,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     time::Duration,
 };
@@ -16,6 +16,9 @@ use crate::{Process, Session, wait_until};
 
 /// How long a namespace may take to be there.
 const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Names the folder with the keys of a host.
+pub const LINK_KEYS: &str = "FERNTAST_LINK_KEYS";
 
 /// One of the two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +36,11 @@ impl Host {
             Host::Operator => "10.77.0.1",
             Host::Arm => "10.77.0.2",
         }
+    }
+
+    /// Where it has its keys of the link.
+    pub fn keys(self, session: &Session) -> PathBuf {
+        session.folder().join(format!("keys-{}", self.device()))
     }
 
     /// Its network device.
@@ -61,18 +69,26 @@ impl Drop for Holder {
 pub struct TwoHosts {
     operator: Holder,
     arm: Holder,
-    /// Where each host has its own shared memory.
-    memory: String,
     rootless: bool,
 }
 
 impl TwoHosts {
-    /// Makes them for `session`: an empty line without loss or limit.
+    /// Makes them: an empty line without loss or limit.
     ///
-    /// # Errors
+    /// # Panics
     ///
-    /// Why this machine does not allow it.
-    pub fn new(session: &Session) -> Result<TwoHosts, String> {
+    /// This machine does not allow it.
+    #[expect(clippy::new_without_default, reason = "it makes what is outside")]
+    pub fn new() -> TwoHosts {
+        TwoHosts::made().unwrap_or_else(|error| {
+            panic!(
+                "this machine does not allow network namespaces ({error}); \
+                 './tests/run --without-netns' does without this test"
+            )
+        })
+    }
+
+    fn made() -> Result<TwoHosts, String> {
         for tool in ["unshare", "nsenter", "ip", "tc", "nft"] {
             let found = Command::new("sh")
                 .args(["-c", "command -v \"$0\"", tool])
@@ -86,8 +102,6 @@ impl TwoHosts {
         }
         // SAFETY: takes nothing, always succeeds.
         let rootless = unsafe { libc::geteuid() } != 0;
-        let memory = format!("/tmp/ferntast.{}", session.name());
-        fs::create_dir_all(&memory).map_err(|error| format!("{memory}: {error}"))?;
         let mut first = Command::new("unshare");
         if rootless {
             first.args(["--user", "--map-root-user"]);
@@ -101,7 +115,6 @@ impl TwoHosts {
         let hosts = TwoHosts {
             operator,
             arm,
-            memory,
             rootless,
         };
         hosts.wire()?;
@@ -116,12 +129,12 @@ impl TwoHosts {
             &format!("ip link add {here} type veth peer name {there} netns {arm}"),
         )?;
         for host in [Host::Operator, Host::Arm] {
-            let (device, address, memory) = (host.device(), host.address(), &self.memory);
+            let (device, address) = (host.device(), host.address());
             self.shell(
                 host,
                 &format!(
                     "ip addr add {address}/24 dev {device} && ip link set {device} up && ip link set lo up \
-                     && mount -t tmpfs tmpfs /dev/shm && mount -t tmpfs tmpfs {memory}"
+                     && mount -t tmpfs tmpfs /dev/shm"
                 ),
             )?;
         }
@@ -169,14 +182,87 @@ impl TwoHosts {
     /// What `nft` said.
     pub fn lose(&self, host: Host, thousandths: u32) -> Result<(), String> {
         let device = host.device();
+        let which = match thousandths {
+            // What `numgen` cannot say.
+            1000.. => String::new(),
+            some => format!("numgen random mod 1000 '<' {some}"),
+        };
         self.shell(
             host,
             &format!(
                 "nft add table inet line && nft add chain inet line come '{{ type filter hook input priority 0; }}' \
-                 && nft add rule inet line come iifname {device} numgen random mod 1000 '<' {thousandths} counter drop"
+                 && nft add rule inet line come iifname {device} {which} counter drop"
             ),
         )
         .map(drop)
+    }
+
+    /// Pulls the plug at `host`: its network device is down.
+    ///
+    /// # Errors
+    ///
+    /// What `ip` said.
+    pub fn unplug(&self, host: Host) -> Result<(), String> {
+        self.shell(host, &format!("ip link set {} down", host.device()))
+            .map(drop)
+    }
+
+    /// Puts the plug in again.
+    ///
+    /// # Errors
+    ///
+    /// What `ip` said.
+    pub fn plug(&self, host: Host) -> Result<(), String> {
+        self.shell(host, &format!("ip link set {} up", host.device()))
+            .map(drop)
+    }
+
+    /// From now on a share of the datagrams that `host` sends, in hundredths, goes out twice
+    /// or, since the copy passes here too, more often.
+    ///
+    /// # Errors
+    ///
+    /// What `nft` said.
+    pub fn duplicate(&self, host: Host, hundredths: u32) -> Result<(), String> {
+        let device = host.device();
+        self.shell(
+            host,
+            &format!(
+                "nft 'add table netdev twice; \
+                 add chain netdev twice go {{ type filter hook egress device {device} priority 0; }}; \
+                 add rule netdev twice go ip protocol udp numgen random mod 100 < {hundredths} dup to {device}'"
+            ),
+        )
+        .map(drop)
+    }
+
+    /// Nothing is lost or sent twice at `host` any more.
+    ///
+    /// # Errors
+    ///
+    /// What `nft` said.
+    pub fn heal(&self, host: Host) -> Result<(), String> {
+        self.shell(host, "nft flush ruleset").map(drop)
+    }
+
+    /// Each host makes its key and is told the other's, as people would do it.
+    ///
+    /// # Panics
+    ///
+    /// `ferntast link keys` fails.
+    pub fn exchange_keys(&self, session: &Session) {
+        let keys = |host: Host, arguments: &[&str]| {
+            let mut command = session.ferntast(&["--json", "link", "keys"]);
+            command.args(arguments).env(LINK_KEYS, host.keys(session));
+            let output = command.output().expect("ferntast runs");
+            assert!(output.status.success(), "{output:?}");
+            let shown: serde_json::Value =
+                serde_json::from_slice(&output.stdout).expect("JSON of link keys");
+            shown["key"].as_str().expect("a key").to_owned()
+        };
+        let [operator, arm] = [Host::Operator, Host::Arm].map(|host| keys(host, &["new"]));
+        keys(Host::Operator, &["add", "arm", &arm]);
+        keys(Host::Arm, &["add", "operator", &operator]);
     }
 
     /// `command` as it is run on `host`, with its environment and folder.
@@ -210,13 +296,6 @@ impl TwoHosts {
     }
 }
 
-impl Drop for TwoHosts {
-    fn drop(&mut self) {
-        // Empty: what was mounted on it is seen by the hosts alone.
-        let _ = fs::remove_dir(&self.memory);
-    }
-}
-
 fn enter(holder: &Holder, rootless: bool) -> Command {
     let mut command = Command::new("nsenter");
     command.args(["--target", &holder.0.id().to_string(), "--net", "--mount"]);
@@ -229,7 +308,7 @@ fn enter(holder: &Holder, rootless: bool) -> Command {
 
 /// Starts `command`, which makes a namespace and sleeps in it; waits until it
 /// is neither in this one nor in one of `others`.
-fn hold(mut command: Command, others: &[std::path::PathBuf]) -> Result<Holder, String> {
+fn hold(mut command: Command, others: &[PathBuf]) -> Result<Holder, String> {
     command
         .stdin(Stdio::null())
         .stdout(Stdio::null())

@@ -7,28 +7,38 @@
 //! milliseconds hold the [`Machine`], which measures when it stalled.
 
 mod browser;
+mod busy;
 mod command;
 mod deadline;
+mod deputy;
 mod domain;
 mod hosts;
 mod laws;
 mod live;
 mod machine;
+mod memory;
+mod pair;
 mod places;
 mod process;
 mod session;
+mod stranger;
 
 pub use browser::Browser;
+pub use busy::BusyLoops;
 pub use command::{JOINT_2, PATIENCE, experiment_on_joint_2, messages, number, refused, run};
 pub use deadline::{wait_for, wait_until};
+pub use deputy::{Deputy, Sight};
 pub use domain::Domain;
-pub use hosts::{Host, TwoHosts};
+pub use hosts::{Host, LINK_KEYS, TwoHosts};
 pub use laws::{force_steps, laws, switches};
 pub use live::{
     await_enabled, hand_of_strokes, hand_through, human_hand, keep_enabled, node, operated, rearm,
     rearmed, recording, set_parameter, signal, start, state, state_of_follower,
 };
 pub use machine::{Machine, Window, now};
+pub use memory::{MemoryLog, own_memory};
+pub use pair::{Member, Pair, PairOptions, Word};
 pub use places::{data, ferntast, peer, python, root};
-pub use process::{Ended, Process};
+pub use process::{Ended, Process, limit_files};
 pub use session::{Session, free_tcp_port};
+pub use stranger::{Stranger, certificate_of};

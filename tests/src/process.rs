@@ -5,6 +5,7 @@ use std::{
     io::{BufRead, BufReader, Read},
     os::unix::process::CommandExt,
     process::{Child, Command, ExitStatus, Stdio},
+    ptr,
     sync::{Arc, Mutex, PoisonError},
     thread::{self, JoinHandle},
     time::Duration,
@@ -45,6 +46,16 @@ impl Ended {
             .unwrap_or_else(|error| panic!("not one JSON value ({error}):\n{self:#?}"))
     }
 
+    /// The same, if it ended with exit code 1: something failed on the way.
+    ///
+    /// # Panics
+    ///
+    /// It did not.
+    pub fn failure(self) -> Ended {
+        assert_eq!(self.status.code(), Some(1), "{self:#?}");
+        self
+    }
+
     /// The same, if it ended with exit code 0.
     ///
     /// # Panics
@@ -63,6 +74,24 @@ impl Ended {
 }
 
 impl Process {
+    /// Starts it with a disk that seems small: no file of it, or of what it starts,
+    /// grows beyond that many bytes. Shared memory counts as files too.
+    ///
+    /// # Panics
+    ///
+    /// It cannot be started.
+    pub fn spawn_on_a_small_disk(mut command: Command, bytes: u64) -> Process {
+        // SAFETY: as `limit_files` says; it may be called after fork.
+        unsafe {
+            command.pre_exec(move || {
+                // A write beyond the limit is to fail, not to kill.
+                libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
+                limit_files(0, bytes)
+            });
+        }
+        Process::spawn(command)
+    }
+
     /// Starts it.
     ///
     /// # Panics
@@ -200,6 +229,31 @@ impl Drop for Process {
         if thread::panicking() {
             eprintln!("{}", self.describe());
         }
+    }
+}
+
+/// No file of `process` (0: this one) grows beyond that many bytes from now on.
+/// It has to be deaf to SIGXFSZ ([`Process::spawn_on_a_small_disk`]).
+///
+/// # Errors
+///
+/// It is gone, or another's.
+pub fn limit_files(process: libc::pid_t, bytes: u64) -> std::io::Result<()> {
+    let limit = libc::rlimit {
+        rlim_cur: bytes,
+        rlim_max: libc::RLIM_INFINITY,
+    };
+    // SAFETY: the limit lives through the call, and no other is asked for.
+    match unsafe {
+        libc::prlimit(
+            process,
+            libc::RLIMIT_FSIZE,
+            &raw const limit,
+            ptr::null_mut(),
+        )
+    } {
+        0 => Ok(()),
+        _ => Err(std::io::Error::last_os_error()),
     }
 }
 

@@ -87,6 +87,25 @@ impl Session {
         format!("tcp/127.0.0.1:{}", self.link_port)
     }
 
+    /// Where they meet over QUIC, on the port of that number.
+    pub fn quic_endpoint(&self) -> String {
+        format!("quic/127.0.0.1:{}", self.link_port)
+    }
+
+    /// The secret of both ends of its link, while it runs with this session's folder as
+    /// `XDG_RUNTIME_DIR`.
+    ///
+    /// # Panics
+    ///
+    /// It does not run so.
+    pub fn link_secret(&self) -> String {
+        let folder = self.folder().join("ferntast").join(self.name());
+        let text = fs::read_to_string(folder.join("session.json")).expect("the session's file");
+        let file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let secret = file["link_access"]["secret"].as_str();
+        secret.expect("a secret").to_owned()
+    }
+
     /// Where the Zenoh router for ROS 2 listens.
     pub fn router_endpoint(&self) -> String {
         format!("tcp/127.0.0.1:{}", self.router_port)
@@ -124,6 +143,7 @@ impl Session {
         command
             .env("ROS_DOMAIN_ID", self.domain().to_string())
             .env("ROS_LOG_DIR", self.folder().join("ros-log"))
+            .env("FERNTAST_LINK_KEYS", self.folder().join("link-keys"))
             .env("FERNTAST_TEST_SESSION", self.name())
             .current_dir(self.folder());
         command

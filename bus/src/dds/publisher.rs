@@ -3,9 +3,15 @@
 use std::fmt;
 
 use ferntast_msgs::{Message, Time, topics::Topic};
-use ros2_client::Publisher;
+use ros2_client::{
+    Publisher,
+    dds::rustdds::{TopicDescription, TopicKind, dds::CreateError as CreateDdsError},
+};
 
-use super::{DdsBus, create_topic, middleware, qos::qos};
+use super::{
+    DdsBus, create_topic, middleware,
+    qos::{offered, qos},
+};
 use crate::{
     cdr,
     error::{CreateError, PublishError},
@@ -22,9 +28,18 @@ pub struct DdsPublisher<M: Message> {
 impl<M: Message> DdsPublisher<M> {
     pub(super) fn create(bus: &DdsBus, topic: Topic<M>) -> Result<DdsPublisher<M>, CreateError> {
         let mut node = bus.node();
+        let failed =
+            |error: CreateDdsError| middleware(&topic.name, "publisher", error.to_string());
         let ros_topic = create_topic(&node, topic, &qos(topic.delivery), "publisher")?;
+        // The same once more, with the limits that the node's has not.
+        let (name, kind) = (ros_topic.name(), ros_topic.get_type());
+        let policies = offered(topic.delivery);
+        let limited = bus
+            .participant
+            .create_topic(name, kind.name().to_owned(), &policies, TopicKind::NoKey)
+            .map_err(failed)?;
         let writer = node
-            .create_publisher(&ros_topic, None)
+            .create_publisher(&limited, None)
             .map_err(|error| middleware(&topic.name, "publisher", error.to_string()))?;
         Ok(DdsPublisher {
             topic,

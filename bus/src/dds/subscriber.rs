@@ -79,8 +79,8 @@ impl<M: Message> DdsSubscriber<M> {
 
     /// What was handed out, refused and dropped so far. Dropped are those that
     /// found the queue full, and the numbers missing from each sender's sequence.
-    pub fn counts(&self) -> SubscriberCounts {
-        self.counts
+    pub fn counts(&self) -> &SubscriberCounts {
+        &self.counts
     }
 
     /// Moves what RustDDS holds into the queue. RustDDS keeps more than a

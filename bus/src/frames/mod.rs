@@ -4,15 +4,20 @@
 //! into it. Two variants: in memory, in virtual time, for lockstep and tests
 //! ([`memory`]); over Zenoh, between two hosts ([`ZenohLink`]).
 
+mod door;
 mod queue;
+mod tls;
 mod zenoh_link;
 
 use std::sync::Arc;
 
 use ferntast_msgs::Time;
 
+pub use door::{Door, Reason};
+pub use tls::LinkTls;
 pub use zenoh_link::{Clock, LinkDirection, LinkEndpoint, ZenohLink, ZenohLinkConfig};
 
+pub use crate::endpoint::{check_link as check_endpoint, is_loopback};
 use crate::error::SendError;
 use queue::Queue;
 use zenoh_link::ZenohFrameSender;

@@ -4,9 +4,10 @@
 //! whenever the connection breaks. Nothing scouts, nothing is batched, and what
 //! does not get through is dropped.
 //!
-//! Over TCP (`tcp/…`) a packet that the network loses is sent again, and holds
-//! up all frames behind it: loss becomes delay. Over UDP (`udp/…`) a frame that
-//! is lost stays lost, which the delay laws are made for.
+//! Beyond this host frames go as datagrams of QUIC (`quic/…`), within TLS 1.3 to which
+//! both ends show certificates ([`LinkTls`]); a frame that is lost stays lost, which the
+//! delay laws are made for. On the loopback it may be plain UDP (`udp/…`), or TCP
+//! (`tcp/…`), where what is lost would be sent again and hold up all frames behind it.
 
 use std::{fmt, sync::Arc};
 
@@ -18,7 +19,12 @@ use zenoh::{
     qos::{CongestionControl, Priority},
 };
 
-use super::{FrameReceiver, FrameSender, MAX_FRAME, SenderKind, queue::Queue};
+use super::{
+    FrameReceiver, FrameSender, MAX_FRAME, SenderKind,
+    door::Door,
+    queue::Queue,
+    tls::{self, LinkTls},
+};
 use crate::{
     endpoint,
     error::{OpenError, SendError},
@@ -56,9 +62,9 @@ impl LinkDirection {
 /// What an end does to meet the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkEndpoint {
-    /// Listens on `tcp/HOST:PORT` or `udp/HOST:PORT`.
+    /// Listens on `quic/HOST:PORT`, on the loopback also on `tcp/…` and `udp/…`.
     Listen(String),
-    /// Connects to `tcp/HOST:PORT` or `udp/HOST:PORT`, again and again until it succeeds.
+    /// Connects to one of those, again and again until it succeeds.
     Connect(String),
 }
 
@@ -71,6 +77,8 @@ pub struct ZenohLinkConfig {
     pub endpoint: LinkEndpoint,
     /// The way that this end sends.
     pub sends: LinkDirection,
+    /// By what it is known and whom it trusts; over QUIC there has to be some.
+    pub tls: Option<LinkTls>,
     /// Gives the time of arrival.
     pub clock: Clock,
 }
@@ -82,6 +90,8 @@ pub struct ZenohLink {
     pub sender: FrameSender,
     /// Receives from the other way.
     pub receiver: FrameReceiver,
+    /// Who did not come in.
+    pub door: Door,
 }
 
 impl ZenohLink {
@@ -91,12 +101,17 @@ impl ZenohLink {
     /// # Errors
     ///
     /// [`OpenError::PortTaken`], [`OpenError::BadEndpoint`],
+    /// [`OpenError::Unprotected`], [`OpenError::NoCertificate`],
     /// [`OpenError::BadName`], [`OpenError::Middleware`].
     pub fn open(config: ZenohLinkConfig) -> Result<ZenohLink, OpenError> {
         check_session(&config.session)?;
         let (LinkEndpoint::Listen(endpoint) | LinkEndpoint::Connect(endpoint)) = &config.endpoint;
         endpoint::check_link(endpoint)?;
-        let settings = settings(&config.endpoint).map_err(middleware)?;
+        if matches!(config.endpoint, LinkEndpoint::Connect(_)) {
+            endpoint::check_server(endpoint)?;
+        }
+        let settings = settings(&config)?;
+        let door = Door::of_process();
         let session = zenoh::open(settings)
             .wait()
             .map_err(|error| endpoint::open_error(endpoint, "the link", &error))?;
@@ -127,6 +142,7 @@ impl ZenohLink {
                 queue,
                 in_virtual_time: false,
             },
+            door,
         })
     }
 }
@@ -175,9 +191,41 @@ fn key(session: &str, direction: LinkDirection) -> String {
     format!("ferntast/{session}/link/{}", direction.name())
 }
 
-fn settings(endpoint: &LinkEndpoint) -> Result<zenoh::Config, zenoh::Error> {
+fn settings(link: &ZenohLinkConfig) -> Result<zenoh::Config, OpenError> {
+    let (LinkEndpoint::Listen(endpoint) | LinkEndpoint::Connect(endpoint)) = &link.endpoint;
+    let protected = endpoint::is_protected(endpoint);
+    let tls = link.tls.as_ref().filter(|_| protected);
+    if protected && tls.is_none_or(|own| own.known.is_empty()) {
+        return Err(OpenError::NoCertificate {
+            endpoint: endpoint.clone(),
+        });
+    }
+    let certificates = tls.map(tls::settings).transpose();
+    let certificates = certificates.map_err(|error| OpenError::Middleware {
+        transport: "the link",
+        reason: format!("no certificate can be made of the key: {error}"),
+    })?;
+    let [sends, receives] = [link.sends, link.sends.opposite()].map(|way| key(&link.session, way));
+    let access = tls::access(tls, &sends, &receives);
+    zenoh_settings(&link.endpoint, certificates, &access).map_err(middleware)
+}
+
+fn zenoh_settings(
+    endpoint: &LinkEndpoint,
+    certificates: Option<serde_json::Value>,
+    access: &serde_json::Value,
+) -> Result<zenoh::Config, zenoh::Error> {
     let mut config = zenoh::Config::default();
     let mut set = |key: &str, value: &str| config.insert_json5(key, value);
+    if let Some(certificates) = certificates {
+        set("transport/link/tls", &certificates.to_string())?;
+    }
+    set("access_control", &access.to_string())?;
+    // What a peer may cost, known or not.
+    set("transport/unicast/max_sessions", "8")?;
+    set("transport/unicast/accept_pending", "16")?;
+    set("transport/unicast/accept_timeout", "5000")?;
+    set("transport/link/rx/max_message_size", "2097152")?;
     set("mode", r#""peer""#)?;
     set("scouting/multicast/enabled", "false")?;
     set("scouting/gossip/enabled", "false")?;
@@ -185,11 +233,13 @@ fn settings(endpoint: &LinkEndpoint) -> Result<zenoh::Config, zenoh::Error> {
     set("transport/link/tx/lease", "2000")?;
     match endpoint {
         LinkEndpoint::Listen(endpoint) => {
+            let endpoint = endpoint::of_zenoh(endpoint);
             set("listen/endpoints", &format!("[{endpoint:?}]"))?;
             set("listen/exit_on_failure", "true")?;
             set("listen/timeout_ms", "0")?;
         }
         LinkEndpoint::Connect(endpoint) => {
+            let endpoint = endpoint::of_zenoh(endpoint);
             set("listen/endpoints", "[]")?;
             set("connect/endpoints", &format!("[{endpoint:?}]"))?;
             set("connect/exit_on_failure", "false")?;

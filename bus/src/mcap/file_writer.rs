@@ -13,10 +13,11 @@ use mcap::{
 };
 
 use super::{
+    definitions::{DefinitionWriter, Definitions},
     error::WriteBagError,
     metadata::FileEntry,
     options::{BagOptions, ChunkCompression},
-    sink::{Sink, Storage},
+    sink::{Sink, Storage, Stored},
 };
 
 /// The tool named in the file's header. It holds no version: the same
@@ -30,7 +31,10 @@ const MESSAGE_OVERHEAD: u64 = 31;
 pub(super) struct FileWriter<S: Storage = File> {
     /// `None` once closed.
     writer: Option<mcap::Writer<Sink<S>>>,
+    definitions: Definitions,
+    definition_writer: DefinitionWriter,
     path: PathBuf,
+    stored: Stored,
     chunk_size: u64,
     flush_interval: u64,
     /// Bytes of messages since the last chunk was closed.
@@ -54,6 +58,10 @@ impl FileWriter<File> {
 impl<S: Storage> FileWriter<S> {
     /// A file over any store.
     pub(super) fn over(store: S, path: &Path, options: &BagOptions) -> io::Result<FileWriter<S>> {
+        let definitions = Definitions::default();
+        let definition_writer = DefinitionWriter::new(definitions.clone()).map_err(into_io)?;
+        let sink = Sink::new(store, definitions.clone());
+        let stored = sink.stored();
         let writer = mcap::WriteOptions::new()
             .profile("ros2")
             .library(LIBRARY)
@@ -67,11 +75,16 @@ impl<S: Storage> FileWriter<S> {
             // Chunks are closed here, so that the disk sees whole ones only.
             .chunk_size(None)
             .disable_seeking(true)
-            .create(Sink::new(store))
+            // Counted by the sink, which puts copies of the definitions in.
+            .calculate_data_section_crc(false)
+            .create(sink)
             .map_err(into_io)?;
         let mut file = FileWriter {
             writer: Some(writer),
+            definitions,
+            definition_writer,
             path: path.to_owned(),
+            stored,
             chunk_size: options.chunk_size,
             flush_interval: options.flush_interval_ns,
             pending: 0,
@@ -89,6 +102,11 @@ impl<S: Storage> FileWriter<S> {
 
     pub(super) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Bytes in the file.
+    pub(super) fn stored(&self) -> u64 {
+        self.stored.bytes()
     }
 
     /// Messages by channel.
@@ -116,7 +134,10 @@ impl<S: Storage> FileWriter<S> {
         encoding: &str,
         text: &[u8],
     ) -> Result<u16, WriteBagError> {
-        self.with(|writer| writer.add_schema(name, encoding, text))
+        let id = self.with(|writer| writer.add_schema(name, encoding, text))?;
+        let copy = self.definition_writer.writer();
+        let copied = copy.add_schema_with_id(id, name, encoding, text);
+        copied.map_err(|error| self.error(error))
     }
 
     /// Registers a channel; the same content gives the same number.
@@ -127,7 +148,11 @@ impl<S: Storage> FileWriter<S> {
         message_encoding: &str,
         metadata: &BTreeMap<String, String>,
     ) -> Result<u16, WriteBagError> {
-        self.with(|writer| writer.add_channel(schema, topic, message_encoding, metadata))
+        let id =
+            self.with(|writer| writer.add_channel(schema, topic, message_encoding, metadata))?;
+        let copy = self.definition_writer.writer();
+        let copied = copy.add_channel_with_id(id, schema, topic, message_encoding, metadata);
+        copied.map_err(|error| self.error(error))
     }
 
     /// Writes a metadata record; closes the chunk.
@@ -189,6 +214,7 @@ impl<S: Storage> FileWriter<S> {
     pub(super) fn finish(&mut self) -> Result<u64, WriteBagError> {
         // With the chunks on disk first, a summary that finds no space leaves
         // a file that can be repaired.
+        self.definitions.end();
         self.flush()?;
         let Some(mut writer) = self.writer.take() else {
             return Err(self.format("it is closed"));
@@ -199,7 +225,7 @@ impl<S: Storage> FileWriter<S> {
         io::Write::flush(&mut sink)
             .and_then(|()| sink.sync())
             .map_err(|error| self.error(McapError::Io(error)))?;
-        Ok(sink.stored())
+        Ok(self.stored())
     }
 
     fn with<T>(

@@ -1,7 +1,7 @@
 //! Recordings: rosbag2 directories with MCAP inside, and a bus over them.
 //!
-//! A recording is a directory `NAME/` with `NAME_0.mcap` and `metadata.yaml`,
-//! in the form that rosbag2 writes and reads: MCAP profile `ros2`, schemas as
+//! A recording is a directory `NAME/` with `NAME_0.mcap`, after 128 MiB
+//! `NAME_1.mcap` and so on, and `metadata.yaml`, in the form that rosbag2 writes and reads: MCAP profile `ros2`, schemas as
 //! `ros2msg`, messages as CDR, `metadata.yaml` of version 9. rosbag2,
 //! Foxglove, PlotJuggler and the Python packages `rosbags` and
 //! `mcap-ros2-support` open it as it is.
@@ -11,7 +11,8 @@
 //! * [`BagReader`] reads any rosbag2 directory or MCAP file, its own or not,
 //!   in the order of log time and a chunk at a time,
 //! * [`info`] says what a recording holds, [`repair`] restores one that was cut
-//!   off,
+//!   off; schemas and channels are repeated between chunks, so that a damaged
+//!   chunk takes no other along,
 //! * [`McapBus`] is a way across like the others: publish into a recording,
 //!   subscribe to one.
 //!
@@ -27,11 +28,14 @@
 
 mod block;
 mod bus;
+mod chunk_search;
 mod copy;
 mod cursor;
+mod definitions;
 mod directory;
 mod error;
 mod file_writer;
+mod full_files;
 mod info;
 mod layout;
 mod messages;

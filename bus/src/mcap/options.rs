@@ -27,6 +27,9 @@ pub struct BagOptions {
     /// first message is that old in log time \[ns\]: more than that is not
     /// lost when the process is killed.
     pub flush_interval_ns: u64,
+    /// When a file has grown so large \[bytes\] the recording goes on in another, as
+    /// rosbag2's `max_bagfile_size` has it; a file's index is kept in memory until then.
+    pub max_file_size: u64,
     /// How chunks are compressed.
     pub compression: ChunkCompression,
     /// Metadata records by name, each a map: the scenario's text, the
@@ -38,11 +41,12 @@ pub struct BagOptions {
 }
 
 impl Default for BagOptions {
-    /// Chunks of 1 MiB or half a second, zstd, Jazzy.
+    /// Chunks of 1 MiB or half a second, zstd, files of 128 MiB, Jazzy.
     fn default() -> Self {
         BagOptions {
             chunk_size: 1 << 20,
             flush_interval_ns: 500_000_000,
+            max_file_size: 128 << 20,
             compression: ChunkCompression::Zstd,
             custom: BTreeMap::new(),
             ros_distro: "jazzy".to_owned(),
@@ -55,7 +59,7 @@ impl Default for BagOptions {
 pub struct BagSummary {
     /// The rosbag2 directory.
     pub path: PathBuf,
-    /// Size of its MCAP file \[bytes\].
+    /// Size of its MCAP files \[bytes\].
     pub bytes: u64,
     /// Messages on all topics.
     pub messages: u64,

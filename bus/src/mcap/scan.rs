@@ -14,6 +14,7 @@ use super::{
     block::{
         Block, BlockError, BlockKind, FRAME, Fault, MESSAGE_HEADER, decode, frame, message_header,
     },
+    chunk_search::next_chunk,
     error::OpenBagError,
     layout::{Layout, read_metadata},
 };
@@ -24,6 +25,8 @@ const PLAIN_BLOCK: u64 = 1 << 20;
 /// Goes through the records of `layout`'s file from the front; what it finds
 /// replaces what the layout holds. Every chunk is unpacked once: one that is
 /// broken is left out, and what is left of a last one that was cut is kept.
+/// Schemas and channels in chunks, which have a checksum, come before those
+/// outside.
 pub(super) fn scan(mut layout: Layout) -> Result<Layout, OpenBagError> {
     let file = match layout.file.try_clone() {
         Ok(file) => file,
@@ -33,9 +36,13 @@ pub(super) fn scan(mut layout: Layout) -> Result<Layout, OpenBagError> {
     let mut scanner = Scanner {
         offset: MAGIC.len() as u64,
         plain: None,
+        plain_definitions: Vec::new(),
     };
     if let Err(error) = scanner.run(&mut layout, &mut reader) {
         return Err(layout.io_error(&error));
+    }
+    for (offset, definitions) in scanner.plain_definitions {
+        define(&mut layout, offset, definitions);
     }
     Ok(layout)
 }
@@ -44,6 +51,8 @@ struct Scanner {
     offset: u64,
     /// The messages outside chunks that are being gathered.
     plain: Option<Block>,
+    /// Schemas and channels outside chunks, and where they stand.
+    plain_definitions: Vec<(u64, Vec<Record<'static>>)>,
 }
 
 impl Scanner {
@@ -65,16 +74,23 @@ impl Scanner {
                 return Ok(());
             };
             let whole = body <= left - FRAME as u64;
-            if opcode == 0 || (op::DATA_END < opcode && opcode < 0x80) {
-                self.stop(layout, "this is no record");
-                return Ok(());
-            }
-            if !whole {
+            let no_record = opcode == 0 || (op::DATA_END < opcode && opcode < 0x80);
+            if no_record || !whole {
                 if opcode == op::CHUNK {
                     self.chunk(layout, left, BlockKind::CutChunk)?;
                 }
-                self.stop(layout, "the file ends in the middle of a record");
-                return Ok(());
+                let reason = match no_record {
+                    true => "this is no record",
+                    false => "the file ends in the middle of a record",
+                };
+                self.stop(layout, reason);
+                // Where only a record's head is damaged, whole chunks follow.
+                let Some(next) = next_chunk(&layout.file, self.offset + 1, layout.length)? else {
+                    return Ok(());
+                };
+                self.offset = next;
+                reader.seek(SeekFrom::Start(next))?;
+                continue;
             }
             let length = body + FRAME as u64;
             if !matches!(opcode, op::MESSAGE | op::SCHEMA | op::CHANNEL) {
@@ -110,7 +126,7 @@ impl Scanner {
                     let record = block(offset, length, BlockKind::Plain);
                     let mut definitions = Vec::new();
                     match decode(&layout.file, &record, &mut definitions) {
-                        Ok(_) => define(layout, offset, definitions),
+                        Ok(_) => self.plain_definitions.push((offset, definitions)),
                         Err(error) => note(layout, error)?,
                     }
                 }

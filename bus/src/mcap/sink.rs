@@ -3,6 +3,17 @@
 use std::{
     fs::File,
     io::{self, Seek, SeekFrom, Write},
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use mcap::records::op;
+
+use super::{
+    block::{FRAME, frame},
+    definitions::Definitions,
 };
 
 /// A file, as far as a recording needs one.
@@ -24,29 +35,58 @@ impl Storage for File {
     }
 }
 
+/// How many bytes a store holds, for whoever gave the store away.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Stored(Arc<AtomicU64>);
+
+impl Stored {
+    /// \[bytes\]
+    pub(super) fn bytes(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
 /// Gathers bytes in memory and hands them to the store at [`Write::flush`],
 /// all of them or, when the store refuses, none: then they wait for the next
-/// flush, and the store ends behind the last chunk that is whole.
+/// flush, and the store ends behind the last chunk that is whole. Behind a
+/// flush, where no chunk is open, copies of the definitions are put in; so the
+/// checksum of all data is counted here.
 pub(super) struct Sink<S: Storage> {
     store: S,
-    stored: u64,
+    stored: Stored,
     staged: Vec<u8>,
     torn: bool,
+    /// Of what is stored.
+    checksum: crc32fast::Hasher,
+    definitions: Definitions,
 }
 
 impl<S: Storage> Sink<S> {
-    pub(super) fn new(store: S) -> Sink<S> {
+    pub(super) fn new(store: S, definitions: Definitions) -> Sink<S> {
         Sink {
             store,
-            stored: 0,
+            stored: Stored::default(),
             staged: Vec::new(),
             torn: false,
+            checksum: crc32fast::Hasher::new(),
+            definitions,
+        }
+    }
+
+    /// Notes the checksum of all data in the record that ends the data, where
+    /// that comes first of what is staged.
+    fn seal(&mut self) {
+        if let Some((op::DATA_END, 4)) = frame(&self.staged)
+            && let Some(place) = self.staged.get_mut(FRAME..FRAME + 4)
+        {
+            let checksum = self.checksum.clone().finalize();
+            place.copy_from_slice(&checksum.to_le_bytes());
         }
     }
 
     /// Bytes that the store holds.
-    pub(super) fn stored(&self) -> u64 {
-        self.stored
+    pub(super) fn stored(&self) -> Stored {
+        self.stored.clone()
     }
 
     /// See [`Storage::sync`].
@@ -66,9 +106,10 @@ impl<S: Storage> Write for Sink<S> {
             return Ok(());
         }
         if self.torn {
-            self.store.cut(self.stored)?;
+            self.store.cut(self.stored.bytes())?;
             self.torn = false;
         }
+        self.seal();
         let written = self
             .store
             .write_all(&self.staged)
@@ -76,11 +117,16 @@ impl<S: Storage> Write for Sink<S> {
         if let Err(error) = written {
             // What the store took of the chunk would be a broken end. Should
             // the cut fail too, it is tried again before the next write.
-            self.torn = self.store.cut(self.stored).is_err();
+            self.torn = self.store.cut(self.stored.bytes()).is_err();
             return Err(error);
         }
-        self.stored += self.staged.len() as u64;
+        let stored = self.stored.bytes() + self.staged.len() as u64;
+        self.stored.0.store(stored, Ordering::Relaxed);
+        self.checksum.update(&self.staged);
         self.staged.clear();
+        if let Some(copy) = self.definitions.copy_due(stored) {
+            self.staged = copy;
+        }
         Ok(())
     }
 }
@@ -89,7 +135,9 @@ impl<S: Storage> Write for Sink<S> {
 impl<S: Storage> Seek for Sink<S> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         match to {
-            SeekFrom::Current(0) | SeekFrom::End(0) => Ok(self.stored + self.staged.len() as u64),
+            SeekFrom::Current(0) | SeekFrom::End(0) => {
+                Ok(self.stored.bytes() + self.staged.len() as u64)
+            }
             _ => Err(io::Error::from(io::ErrorKind::Unsupported)),
         }
     }
@@ -148,7 +196,7 @@ pub(super) mod tests {
     #[test]
     fn a_refused_chunk_leaves_no_trace_and_waits() {
         let disk = SmallDisk::new(10);
-        let mut sink = Sink::new(disk.clone());
+        let mut sink = Sink::new(disk.clone(), Definitions::default());
         sink.write_all(b"12345678").unwrap();
         sink.flush().unwrap();
         sink.write_all(b"abcdef").unwrap();
@@ -158,6 +206,6 @@ pub(super) mod tests {
         *disk.size.lock().unwrap() = 100;
         sink.flush().unwrap();
         assert_eq!(*disk.content.lock().unwrap(), b"12345678abcdef");
-        assert_eq!(sink.stored(), 14);
+        assert_eq!(sink.stored().bytes(), 14);
     }
 }

@@ -84,8 +84,8 @@ impl<M: Message> McapSubscriber<M> {
 
     /// What was handed out, refused and dropped so far. A part of the
     /// recording that is damaged counts as one undecodable message.
-    pub fn counts(&self) -> SubscriberCounts {
-        self.counts
+    pub fn counts(&self) -> &SubscriberCounts {
+        &self.counts
     }
 
     /// Lets the messages published before `now` wait, the last `places` of them.

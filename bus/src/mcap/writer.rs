@@ -16,7 +16,8 @@ use mcap::records::{MessageHeader, Metadata};
 use super::{
     error::{CreateBagError, FinishBagError, WriteBagError},
     file_writer::FileWriter,
-    metadata::{BagMetadata, METADATA_FILE, TopicEntry},
+    full_files::FullFiles,
+    metadata::{BagMetadata, METADATA_FILE, TopicEntry, join_bounds},
     options::{BagOptions, BagSummary, TopicCount},
     qos::{QosProfile, to_yaml},
 };
@@ -29,17 +30,50 @@ pub struct ChannelId(pub(super) u16);
 struct Channel {
     topic: TopicName,
     interface: &'static str,
+    schema: String,
     type_hash: String,
     qos: QosProfile,
     id: u16,
     sequence: u32,
 }
 
+impl Channel {
+    /// Registers it with `file`; gives its number there.
+    fn register(&self, file: &mut FileWriter) -> Result<u16, WriteBagError> {
+        let metadata = BTreeMap::from([
+            (
+                "offered_qos_profiles".to_owned(),
+                to_yaml(std::slice::from_ref(&self.qos))
+                    .trim_end()
+                    .to_owned(),
+            ),
+            ("topic_type_hash".to_owned(), self.type_hash.clone()),
+        ]);
+        let schema = file.schema(self.interface, "ros2msg", self.schema.as_bytes())?;
+        file.channel(schema, &self.topic, "cdr", &metadata)
+    }
+
+    fn entry(&self, messages: u64) -> TopicEntry {
+        TopicEntry {
+            name: self.topic.into(),
+            schema_name: self.interface.to_owned(),
+            message_encoding: "cdr".to_owned(),
+            qos: vec![self.qos.clone()],
+            type_hash: self.type_hash.clone(),
+            messages,
+        }
+    }
+}
+
 /// Writes a recording. Dropping it closes it as well as it can; only
 /// [`BagWriter::finish`] says whether that went well.
 pub struct BagWriter {
     directory: PathBuf,
+    name: String,
     file: FileWriter,
+    full: FullFiles,
+    /// Where the file is full \[bytes\].
+    full_at: u64,
     channels: Vec<Channel>,
     options: BagOptions,
     buffer: Vec<u8>,
@@ -70,31 +104,12 @@ impl BagWriter {
                 path: directory.to_owned(),
             });
         }
-        let path = directory.join(format!("{name}_0.mcap"));
-        let mut file =
-            FileWriter::create(&path, &options).map_err(|error| io_error(&path, error))?;
-        // Like rosbag2, the record comes first without counts and last with
-        // them: a recording that is cut off still says what it is.
-        let mut records = vec![rosbag2_record(&BagMetadata {
-            custom_data: custom_data(&options.custom),
-            ros_distro: options.ros_distro.clone(),
-            ..BagMetadata::default()
-        })];
-        records.extend(options.custom.iter().map(|(name, entries)| Metadata {
-            name: name.clone(),
-            metadata: entries.clone(),
-        }));
-        for record in &records {
-            file.metadata(record)
-                .and_then(|()| file.flush())
-                .map_err(|error| CreateBagError::Format {
-                    path: path.clone(),
-                    reason: error.to_string(),
-                })?;
-        }
         Ok(BagWriter {
             directory: directory.to_owned(),
-            file,
+            name: name.to_owned(),
+            file: begin_file(&file_path(directory, name, 0), &options)?,
+            full: FullFiles::default(),
+            full_at: options.max_file_size,
             channels: Vec::new(),
             options,
             buffer: Vec::new(),
@@ -127,26 +142,17 @@ impl BagWriter {
             interface,
             reason: error.to_string(),
         };
-        let schema = interface::schema(interface).map_err(no_schema)?;
-        let type_hash = interface::type_hash(interface).map_err(no_schema)?;
-        let qos = QosProfile::for_delivery(topic.delivery);
-        let metadata = BTreeMap::from([
-            (
-                "offered_qos_profiles".to_owned(),
-                to_yaml(std::slice::from_ref(&qos)).trim_end().to_owned(),
-            ),
-            ("topic_type_hash".to_owned(), type_hash.clone()),
-        ]);
-        let schema = self.file.schema(interface, "ros2msg", schema.as_bytes())?;
-        let id = self.file.channel(schema, &topic.name, "cdr", &metadata)?;
-        self.channels.push(Channel {
+        let mut channel = Channel {
             topic: topic.name,
             interface,
-            type_hash,
-            qos,
-            id,
+            schema: interface::schema(interface).map_err(no_schema)?,
+            type_hash: interface::type_hash(interface).map_err(no_schema)?,
+            qos: QosProfile::for_delivery(topic.delivery),
+            id: 0,
             sequence: 0,
-        });
+        };
+        channel.id = channel.register(&mut self.file)?;
+        self.channels.push(channel);
         Ok(ChannelId((self.channels.len() - 1) as u16))
     }
 
@@ -182,7 +188,50 @@ impl BagWriter {
         })?;
         // MCAP's sequence numbers have 32 bits and begin again.
         channel.sequence = channel.sequence.wrapping_add(1);
-        self.file.message(&header, &self.buffer)
+        self.file.message(&header, &self.buffer)?;
+        if self.file.stored() >= self.full_at && self.begin_next().is_err() {
+            // Whatever keeps a file from being made, this one may still take more; if
+            // not, the next message says so.
+            self.full_at += self.options.max_file_size / 8 + 1;
+        }
+        Ok(())
+    }
+
+    /// The file is full: goes on in another one.
+    fn begin_next(&mut self) -> Result<(), WriteBagError> {
+        let number = self.full.count() + 1;
+        let path = file_path(&self.directory, &self.name, number);
+        let begun = begin_file(&path, &self.options).and_then(|mut file| {
+            let ids = self.channels.iter().map(|own| own.register(&mut file));
+            match ids.collect::<Result<Vec<_>, _>>() {
+                Ok(ids) => Ok((file, ids)),
+                Err(error) => Err(cannot_begin(&path, &error)),
+            }
+        });
+        let (next, ids) = begun.map_err(|error| WriteBagError::Io {
+            path: path.clone(),
+            reason: error.to_string(),
+        })?;
+        let metadata = self.metadata();
+        let full = std::mem::replace(&mut self.file, next);
+        for (channel, id) in self.channels.iter_mut().zip(ids) {
+            channel.id = id;
+        }
+        self.full.close(full, metadata);
+        self.full_at = self.options.max_file_size;
+        Ok(())
+    }
+
+    /// Of the present file alone.
+    fn metadata(&self) -> BagMetadata {
+        let counts = self.file.counts();
+        let count = |own: &Channel| counts.get(&own.id).copied().unwrap_or(0);
+        let topics = self.channels.iter().map(|own| own.entry(count(own)));
+        BagMetadata {
+            files: vec![self.file.entry()],
+            topics: topics.collect(),
+            ..first_metadata(&self.options)
+        }
     }
 
     /// Hands what was recorded to the system. Needed only where log time
@@ -207,23 +256,23 @@ impl BagWriter {
 
     fn close(&mut self) -> Result<BagSummary, FinishBagError> {
         self.finished = true;
-        let metadata = self.metadata();
-        let path = self.file.path().to_owned();
-        let record = rosbag2_record(&metadata);
-        let bytes = self
-            .file
-            .metadata(&record)
-            .and_then(|()| self.file.finish())
-            .map_err(|source| FinishBagError::File { path, source })?;
+        let mut metadata = self.metadata();
+        let last = finish_file(&mut self.file, &metadata);
+        let (files, counts, full) = self.full.end();
+        metadata.files.splice(0..0, files);
+        for topic in &mut metadata.topics {
+            topic.messages += counts.get(&topic.name).copied().unwrap_or(0);
+        }
+        let bytes = full? + last?;
         write_metadata(&self.directory, &metadata)?;
-        let entry = self.file.entry();
         let time = |nanos: u64| Time::from_nanos(i64::try_from(nanos).unwrap_or(i64::MAX));
+        let bounds = join_bounds(metadata.files.iter().map(|file| file.bounds));
         Ok(BagSummary {
             path: self.directory.clone(),
             bytes,
-            messages: entry.messages,
-            start: entry.bounds.map(|(first, _)| time(first)),
-            end: entry.bounds.map(|(_, last)| time(last)),
+            messages: metadata.files.iter().map(|file| file.messages).sum(),
+            start: bounds.map(|(first, _)| time(first)),
+            end: bounds.map(|(_, last)| time(last)),
             topics: metadata
                 .topics
                 .into_iter()
@@ -234,27 +283,6 @@ impl BagWriter {
                 })
                 .collect(),
         })
-    }
-
-    fn metadata(&self) -> BagMetadata {
-        let counts = self.file.counts();
-        BagMetadata {
-            files: vec![self.file.entry()],
-            topics: self
-                .channels
-                .iter()
-                .map(|channel| TopicEntry {
-                    name: channel.topic.into(),
-                    schema_name: channel.interface.to_owned(),
-                    message_encoding: "cdr".to_owned(),
-                    qos: vec![channel.qos.clone()],
-                    type_hash: channel.type_hash.clone(),
-                    messages: counts.get(&channel.id).copied().unwrap_or(0),
-                })
-                .collect(),
-            custom_data: custom_data(&self.options.custom),
-            ros_distro: self.options.ros_distro.clone(),
-        }
     }
 
     fn check_type<M: Message>(&self, index: usize) -> Result<(), WriteBagError> {
@@ -277,6 +305,62 @@ impl Drop for BagWriter {
             let _ = self.close();
         }
     }
+}
+
+fn file_path(directory: &Path, name: &str, number: usize) -> PathBuf {
+    directory.join(format!("{name}_{number}.mcap"))
+}
+
+/// Begins a file. Like rosbag2, its record comes first without counts and last with
+/// them: a recording that is cut off still says what it is.
+fn begin_file(path: &Path, options: &BagOptions) -> Result<FileWriter, CreateBagError> {
+    let mut file = FileWriter::create(path, options).map_err(|source| CreateBagError::Io {
+        path: path.to_owned(),
+        source,
+    })?;
+    let mut records = vec![rosbag2_record(&first_metadata(options))];
+    records.extend(options.custom.iter().map(|(name, entries)| Metadata {
+        name: name.clone(),
+        metadata: entries.clone(),
+    }));
+    for record in &records {
+        let written = file.metadata(record).and_then(|()| file.flush());
+        if let Err(error) = written {
+            // Nothing is lost with it; it would only be in the way.
+            let _ = fs::remove_file(path);
+            return Err(cannot_begin(path, &error));
+        }
+    }
+    Ok(file)
+}
+
+/// What is known of a file before there is a message in it.
+fn first_metadata(options: &BagOptions) -> BagMetadata {
+    BagMetadata {
+        custom_data: custom_data(&options.custom),
+        ros_distro: options.ros_distro.clone(),
+        ..BagMetadata::default()
+    }
+}
+
+fn cannot_begin(path: &Path, error: &WriteBagError) -> CreateBagError {
+    CreateBagError::Format {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    }
+}
+
+/// Writes what `metadata` says of the file into it, and closes it; gives its bytes.
+pub(super) fn finish_file(
+    file: &mut FileWriter,
+    metadata: &BagMetadata,
+) -> Result<u64, FinishBagError> {
+    file.metadata(&rosbag2_record(metadata))
+        .and_then(|()| file.finish())
+        .map_err(|source| FinishBagError::File {
+            path: file.path().to_owned(),
+            source,
+        })
 }
 
 /// rosbag2's own record inside the MCAP file.

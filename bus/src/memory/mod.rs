@@ -11,7 +11,10 @@ use std::{
     any::Any,
     collections::HashMap,
     fmt,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
 };
 
 use ferntast_msgs::{
@@ -32,12 +35,42 @@ pub const MAX_QUEUE: usize = 1 << 20;
 #[derive(Clone, Default)]
 pub struct MemoryBus {
     topics: Arc<Mutex<HashMap<TopicName, Entry>>>,
+    refuses: Arc<AtomicBool>,
 }
 
-/// A topic by name; the channel is an `Arc<Mutex<Ring<M>>>` of the type named.
+/// The messages of a topic.
+#[derive(Debug)]
+struct Channel<M> {
+    ring: Mutex<Ring<M>>,
+    /// Number that the next message will get: who has seen all need not take the lock.
+    end: AtomicU64,
+}
+
+impl<M: Copy> Channel<M> {
+    fn new() -> Channel<M> {
+        Channel {
+            ring: Mutex::new(Ring::new()),
+            end: AtomicU64::new(0),
+        }
+    }
+
+    fn end(&self) -> u64 {
+        self.end.load(Ordering::Acquire)
+    }
+
+    fn push(&self, now: Time, message: &M) {
+        let mut ring = lock(&self.ring);
+        ring.push(now, message);
+        self.end.store(ring.end(), Ordering::Release);
+    }
+}
+
+/// A topic by name; the channel is an `Arc<Channel<M>>` of the type named.
 struct Entry {
     type_name: String,
     channel: Box<dyn Any + Send>,
+    /// How many messages were published.
+    published: Box<dyn Fn() -> u64 + Send>,
 }
 
 impl MemoryBus {
@@ -57,7 +90,19 @@ impl MemoryBus {
     ) -> Result<MemoryPublisher<M>, CreateError> {
         Ok(MemoryPublisher {
             channel: self.channel(topic)?,
+            refuses: self.refuses.clone(),
         })
+    }
+
+    /// Refuses every message from now on, as a full disk does, or none.
+    pub fn refuse(&self, all: bool) {
+        self.refuses.store(all, Ordering::Relaxed);
+    }
+
+    /// Messages published since it was made, on all topics.
+    pub fn published(&self) -> u64 {
+        let topics = lock(&self.topics);
+        topics.values().map(|entry| (entry.published)()).sum()
     }
 
     /// A subscriber on `topic`.
@@ -79,7 +124,7 @@ impl MemoryBus {
         }
         let channel = self.channel(topic)?;
         let next = {
-            let mut ring = lock(&channel);
+            let mut ring = lock(&channel.ring);
             ring.reserve(depth.places());
             match topic.delivery {
                 Delivery::State => ring.last(),
@@ -94,13 +139,17 @@ impl MemoryBus {
         })
     }
 
-    fn channel<M: Message>(&self, topic: Topic<M>) -> Result<Arc<Mutex<Ring<M>>>, CreateError> {
+    fn channel<M: Message>(&self, topic: Topic<M>) -> Result<Arc<Channel<M>>, CreateError> {
         let mut topics = lock(&self.topics);
-        let entry = topics.entry(topic.name).or_insert_with(|| Entry {
-            type_name: type_name::<M>(),
-            channel: Box::new(Arc::new(Mutex::new(Ring::<M>::new()))),
+        let entry = topics.entry(topic.name).or_insert_with(|| {
+            let channel = Arc::new(Channel::<M>::new());
+            Entry {
+                type_name: type_name::<M>(),
+                channel: Box::new(channel.clone()),
+                published: Box::new(move || channel.end()),
+            }
         });
-        match entry.channel.downcast_ref::<Arc<Mutex<Ring<M>>>>() {
+        match entry.channel.downcast_ref::<Arc<Channel<M>>>() {
             Some(channel) => Ok(channel.clone()),
             None => Err(CreateError::WrongType {
                 topic: topic.name.into(),
@@ -120,7 +169,8 @@ impl fmt::Debug for MemoryBus {
 /// Sends on one topic in memory.
 #[derive(Debug)]
 pub struct MemoryPublisher<M: Message> {
-    channel: Arc<Mutex<Ring<M>>>,
+    channel: Arc<Channel<M>>,
+    refuses: Arc<AtomicBool>,
 }
 
 impl<M: Message> MemoryPublisher<M> {
@@ -128,9 +178,12 @@ impl<M: Message> MemoryPublisher<M> {
     ///
     /// # Errors
     ///
-    /// None; the signature is the same for all ways across.
+    /// Only where the bus [refuses](MemoryBus::refuse) all.
     pub fn publish(&mut self, now: Time, message: &M) -> Result<(), PublishError> {
-        lock(&self.channel).push(now, message);
+        if self.refuses.load(Ordering::Relaxed) {
+            return Err(PublishError::Refused);
+        }
+        self.channel.push(now, message);
         Ok(())
     }
 }
@@ -138,7 +191,7 @@ impl<M: Message> MemoryPublisher<M> {
 /// Receives from one topic in memory.
 #[derive(Debug)]
 pub struct MemorySubscriber<M: Message> {
-    channel: Arc<Mutex<Ring<M>>>,
+    channel: Arc<Channel<M>>,
     /// Number of the message to be taken next, counted since the topic began.
     next: u64,
     depth: Depth,
@@ -149,14 +202,17 @@ impl<M: Message> MemorySubscriber<M> {
     /// The newest message published before `now` and not taken yet.
     pub fn newest(&mut self, now: Time) -> Option<Received<M>> {
         let from = self.next;
-        let ring = lock(&self.channel);
+        if self.channel.end() <= from {
+            return None;
+        }
+        let ring = lock(&self.channel.ring);
         let mut number = ring.newest_before(now, from, u64::MAX)?;
         self.next = number + 1;
         loop {
-            let &(published, message) = ring.get(number)?;
-            if self.counts.valid(&message) {
+            let (published, message) = ring.get(number)?;
+            if self.counts.valid(message) {
                 self.counts.delivered += 1;
-                return Some(received(published, message));
+                return Some(received(*published, *message));
             }
             number = ring.newest_before(now, from, number)?;
         }
@@ -164,7 +220,10 @@ impl<M: Message> MemorySubscriber<M> {
 
     /// The oldest message published before `now` and not taken yet.
     pub fn next(&mut self, now: Time) -> Option<Received<M>> {
-        let ring = lock(&self.channel);
+        if self.channel.end() <= self.next {
+            return None;
+        }
+        let ring = lock(&self.channel.ring);
         loop {
             let newest = ring.newest_before(now, self.next, u64::MAX)?;
             // Only `depth` messages wait: what is older was dropped.
@@ -174,17 +233,17 @@ impl<M: Message> MemorySubscriber<M> {
                 self.counts.overflowed += number - self.next;
             }
             self.next = number + 1;
-            let &(published, message) = ring.get(number)?;
-            if self.counts.valid(&message) {
+            let (published, message) = ring.get(number)?;
+            if self.counts.valid(message) {
                 self.counts.delivered += 1;
-                return Some(received(published, message));
+                return Some(received(*published, *message));
             }
         }
     }
 
     /// What was handed out, refused and dropped so far.
-    pub fn counts(&self) -> SubscriberCounts {
-        self.counts
+    pub fn counts(&self) -> &SubscriberCounts {
+        &self.counts
     }
 }
 

@@ -19,8 +19,11 @@ use ferntast_msgs::{
     topics::{Delivery, EVENT_QUEUE, Topic},
 };
 use iceoryx2::{
+    config::Config,
     node::{NodeBuilder, NodeCreationFailure},
-    prelude::{LogLevel, Node, SignalHandlingMode, ipc_threadsafe, set_log_level_from_env_or},
+    prelude::{
+        LogLevel, Node, NodeName, SignalHandlingMode, ipc_threadsafe, set_log_level_from_env_or,
+    },
 };
 
 pub use publisher::SharedMemoryPublisher;
@@ -68,15 +71,42 @@ impl SharedMemoryBus {
     /// [`OpenError::BadName`], [`OpenError::NoPermission`],
     /// [`OpenError::NoRoom`], [`OpenError::Middleware`].
     pub fn open(config: &SharedMemoryConfig) -> Result<SharedMemoryBus, OpenError> {
-        // iceoryx2 logs to stderr; its errors come back as ours, so of its
-        // own accord only what it considers fatal is worth a line.
-        set_log_level_from_env_or(LogLevel::Fatal);
         let session = &config.session;
         let settings = session::config(session)?;
         session::check_access(session)?;
+        let bus = SharedMemoryBus::join(session, &settings, "member")?;
+        session::remove_dead(&settings);
+        Ok(bus)
+    }
+
+    /// Joins a session that others run, to look or to give a word. A visitor
+    /// is in nobody's way: it does not count for [`SharedMemoryBus::clean_up`],
+    /// and leaves the dead to the members. `None` where there is no session.
+    ///
+    /// # Errors
+    ///
+    /// As [`SharedMemoryBus::open`].
+    pub fn visit(session: &str) -> Result<Option<SharedMemoryBus>, OpenError> {
+        let settings = session::config(session)?;
+        session::check_access(session)?;
+        match session::is_there(session) {
+            true => SharedMemoryBus::join(session, &settings, session::VISITOR).map(Some),
+            false => Ok(None),
+        }
+    }
+
+    fn join(session: &str, settings: &Config, role: &str) -> Result<SharedMemoryBus, OpenError> {
+        // iceoryx2 logs to stderr; its errors come back as ours, so of its
+        // own accord only what it considers fatal is worth a line.
+        set_log_level_from_env_or(LogLevel::Fatal);
         free_memory::check_for_session()?;
+        let role = NodeName::new(role).map_err(|error| OpenError::Middleware {
+            transport: "shared memory",
+            reason: format!("{role:?} is no name of a node: {error}"),
+        })?;
         let node = NodeBuilder::new()
-            .config(&settings)
+            .name(&role)
+            .config(settings)
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Service>()
             .map_err(|failure| match failure {
@@ -92,9 +122,8 @@ impl SharedMemoryBus {
                     ),
                 },
             })?;
-        session::remove_dead(&settings);
         Ok(SharedMemoryBus {
-            session: session.clone(),
+            session: session.to_owned(),
             node: Arc::new(node),
             connections: Arc::new(ConnectionUpdater::default()),
         })
@@ -115,12 +144,22 @@ impl SharedMemoryBus {
         session::processes(session)
     }
 
-    /// Removes everything that a dead session left in shared memory and in
-    /// its directory; the number of segments and files removed.
+    /// The same without visitors ([`SharedMemoryBus::visit`]).
     ///
     /// # Errors
     ///
-    /// [`CleanUpError::InUse`] when a process of the session lives; nothing is removed then.
+    /// As [`SharedMemoryBus::processes`].
+    pub fn members(session: &str) -> Result<Vec<u32>, OpenError> {
+        session::members(session)
+    }
+
+    /// Removes everything that a dead session left in shared memory and in
+    /// its directory; the number of segments and files removed. While visitors
+    /// are in it nothing is.
+    ///
+    /// # Errors
+    ///
+    /// [`CleanUpError::InUse`] when a member of the session lives; nothing is removed then.
     pub fn clean_up(session: &str) -> Result<usize, CleanUpError> {
         session::clean_up(session)
     }

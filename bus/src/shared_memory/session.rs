@@ -1,7 +1,7 @@
 //! Sessions: where each keeps its shared memory, who is in it, and how to
 //! remove what a dead one left.
 
-use std::{ffi::CString, fs, io, path::Path, time::Duration};
+use std::{ffi::CString, fs, io, os::unix::fs::MetadataExt, path::Path, time::Duration};
 
 use iceoryx2::{
     config::Config,
@@ -18,9 +18,14 @@ const MAX_NAME: usize = 48;
 /// Where Linux shows POSIX shared memory as files.
 const SHARED_MEMORY: &str = "/dev/shm";
 
-/// Directory of a session's management files.
+/// Name of the nodes that only visit a session.
+pub(super) const VISITOR: &str = "visitor";
+
+/// Directory of a session's management files: in memory, too, since every one of
+/// them is brought to the disk before anybody goes on, which takes long where
+/// the disk is busy.
 pub(super) fn directory(session: &str) -> String {
-    format!("/tmp/ferntast.{session}")
+    format!("{SHARED_MEMORY}/ferntast.{session}")
 }
 
 /// What the names of all of a session's segments begin with. A session's name
@@ -49,9 +54,31 @@ pub(super) fn config(session: &str) -> Result<Config, OpenError> {
     Ok(config)
 }
 
-/// Whether the session's directory, where there is one, can be used.
+/// Whether the session has a directory, in use or left behind.
+pub(super) fn is_there(session: &str) -> bool {
+    Path::new(&directory(session)).is_dir()
+}
+
+/// Whether the session's directory, where there is one, can be used: anybody
+/// may have put something there under its name.
 pub(super) fn check_access(session: &str) -> Result<(), OpenError> {
     let path = directory(session);
+    if let Ok(found) = fs::symlink_metadata(&path) {
+        // SAFETY: geteuid cannot fail.
+        let user = unsafe { libc::geteuid() };
+        let reason = match () {
+            () if !found.is_dir() => Some("it is not a directory".to_owned()),
+            () if found.uid() != user => Some(format!(
+                "it belongs to another user (number {}, you are {user})",
+                found.uid()
+            )),
+            () if found.mode() & 0o022 != 0 => Some("others may write into it".to_owned()),
+            () => None,
+        };
+        if let Some(reason) = reason {
+            return Err(OpenError::NoPermission { path, reason });
+        }
+    }
     let Ok(text) = CString::new(path.as_str()) else {
         // A session's name holds no zero byte.
         return Ok(());
@@ -70,7 +97,7 @@ pub(super) fn check_access(session: &str) -> Result<(), OpenError> {
 
 /// The sessions that have a directory, in use or left behind; sorted.
 pub(super) fn sessions() -> Vec<String> {
-    let Ok(entries) = fs::read_dir("/tmp") else {
+    let Ok(entries) = fs::read_dir(SHARED_MEMORY) else {
         return Vec::new();
     };
     let mut sessions: Vec<String> = entries
@@ -87,6 +114,16 @@ pub(super) fn sessions() -> Vec<String> {
 
 /// The processes that are in the session now, by id, sorted; this one too when it is.
 pub(super) fn processes(session: &str) -> Result<Vec<u32>, OpenError> {
+    list(session, |_| true)
+}
+
+/// The same without visitors.
+pub(super) fn members(session: &str) -> Result<Vec<u32>, OpenError> {
+    list(session, |name| name != VISITOR)
+}
+
+/// The processes of nodes whose name counts.
+fn list(session: &str, counts: impl Fn(&str) -> bool) -> Result<Vec<u32>, OpenError> {
     let config = config(session)?;
     check_access(session)?;
     if !Path::new(&directory(session)).exists() {
@@ -96,7 +133,11 @@ pub(super) fn processes(session: &str) -> Result<Vec<u32>, OpenError> {
     Node::<Service>::list(&config, |state| {
         // A node whose state cannot be read belongs to somebody: alive.
         let id = match &state {
-            NodeState::Alive(node) => Some(*node.id()),
+            NodeState::Alive(node) => {
+                let name = node.details().as_ref().map(|details| details.name());
+                let counted = name.is_none_or(|name| counts(name.as_str()));
+                counted.then(|| *node.id())
+            }
             NodeState::Inaccessible(id) => Some(*id),
             NodeState::Dead(_) | NodeState::Undefined(_) => None,
         };
@@ -117,12 +158,15 @@ pub(super) fn processes(session: &str) -> Result<Vec<u32>, OpenError> {
 /// Removes everything that a dead session left; see
 /// [`SharedMemoryBus::clean_up`](super::SharedMemoryBus::clean_up).
 pub(super) fn clean_up(session: &str) -> Result<usize, CleanUpError> {
-    let processes = processes(session)?;
-    if !processes.is_empty() {
+    let members = members(session)?;
+    if !members.is_empty() {
         return Err(CleanUpError::InUse {
             session: session.into(),
-            processes,
+            processes: members,
         });
+    }
+    if !processes(session)?.is_empty() {
+        return Ok(0);
     }
     let directory = directory(session);
     let mut removed = count_files(Path::new(&directory));

@@ -93,8 +93,8 @@ impl<M: Message> SharedMemorySubscriber<M> {
     }
 
     /// What was handed out, refused and dropped so far.
-    pub fn counts(&self) -> SubscriberCounts {
-        self.counts
+    pub fn counts(&self) -> &SubscriberCounts {
+        &self.counts
     }
 
     fn receive(&mut self) -> Option<Payload<M>> {

@@ -7,10 +7,11 @@
 mod publisher;
 mod qos;
 mod raw;
+mod router;
 mod session;
 mod subscriber;
 
-use std::{fmt, sync::Arc};
+use std::{fmt, path::PathBuf, sync::Arc};
 
 use ferntast_msgs::{Message, topics::Topic};
 use hiroz::{context::ZContext, node::ZNode};
@@ -33,6 +34,12 @@ pub enum ZenohMode {
     Router {
         /// Where to listen, `tcp/HOST:PORT`; rmw_zenoh looks at `tcp/localhost:7447`.
         listen: String,
+    },
+    /// As the router, inside this process, set up by a file as rmw_zenoh's router takes
+    /// it: TLS, access control, where to listen.
+    RouterOf {
+        /// The file, in Zenoh's own format.
+        config: PathBuf,
     },
     /// Connected to a router that runs.
     Connect {
@@ -66,13 +73,23 @@ impl ZenohBus {
     ///
     /// [`OpenError::PortTaken`], [`OpenError::Unreachable`] after 3 s,
     /// [`OpenError::BadEndpoint`], [`OpenError::DomainOutOfRange`],
-    /// [`OpenError::BadName`], [`OpenError::Middleware`].
+    /// [`OpenError::BadName`], [`OpenError::RouterConfig`], [`OpenError::Middleware`].
     pub fn open(config: &ZenohConfig) -> Result<ZenohBus, OpenError> {
         let (context, node) = session::open(config)?;
         Ok(ZenohBus {
             node: Arc::new(node),
             context: Arc::new(context),
         })
+    }
+
+    /// Where a router of that mode lets in whoever comes from another host, without TLS
+    /// that asks for a certificate; `None` where it lets in nobody so.
+    ///
+    /// # Errors
+    ///
+    /// As [`ZenohBus::open`], of a mode that cannot be used.
+    pub fn unprotected(mode: &ZenohMode) -> Result<Option<String>, OpenError> {
+        Ok(router::unprotected(&session::settings(mode)?))
     }
 
     /// For further nodes of this session.

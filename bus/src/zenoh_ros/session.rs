@@ -13,7 +13,7 @@ use hiroz::{
 };
 use zenoh::Wait;
 
-use super::{ZenohConfig, ZenohMode};
+use super::{ZenohConfig, ZenohMode, router};
 use crate::{endpoint, error::OpenError};
 
 /// Highest ROS domain.
@@ -28,32 +28,19 @@ pub(super) fn open(config: &ZenohConfig) -> Result<(ZContext, ZNode), OpenError>
         });
     }
     check_name(&config.node_name)?;
-    let (endpoint, settings) = match &config.mode {
-        ZenohMode::Router { listen } => {
-            endpoint::check(listen)?;
-            let settings = RouterConfigBuilder::new()
-                .with_listen_endpoint(listen)
-                .build_config();
-            (listen, settings)
+    let settings = settings(&config.mode)?;
+    let endpoint = match &config.mode {
+        ZenohMode::Router { listen: endpoint } | ZenohMode::Connect { endpoint } => {
+            endpoint.clone()
         }
-        ZenohMode::Connect { endpoint } => {
-            endpoint::check(endpoint)?;
-            let settings = SessionConfigBuilder::new()
-                .with_router_endpoint(endpoint)
-                .build_config();
-            (endpoint, settings)
-        }
-    };
-    let middleware = |error: zenoh::Error| OpenError::Middleware {
-        transport: "Zenoh",
-        reason: error.to_string(),
+        ZenohMode::RouterOf { .. } => router::endpoints(&settings).join(", "),
     };
     let context = ZContextBuilder::default()
-        .with_zenoh_config(settings.map_err(middleware)?)
+        .with_zenoh_config(settings)
         .with_domain_id(config.domain_id as usize)
         .disable_multicast_scouting()
         .build()
-        .map_err(|error| endpoint::open_error(endpoint, "Zenoh", &error))?;
+        .map_err(|error| endpoint::open_error(&endpoint, "Zenoh", &error))?;
     let node = context
         .create_node(&config.node_name)
         .without_parameters()
@@ -63,6 +50,33 @@ pub(super) fn open(config: &ZenohConfig) -> Result<(ZContext, ZNode), OpenError>
         wait_for_router(&node, endpoint)?;
     }
     Ok((context, node))
+}
+
+/// Zenoh's settings of a mode.
+pub(super) fn settings(mode: &ZenohMode) -> Result<zenoh::Config, OpenError> {
+    let settings = match mode {
+        ZenohMode::Router { listen } => {
+            endpoint::check(listen)?;
+            RouterConfigBuilder::new()
+                .with_listen_endpoint(listen)
+                .build_config()
+        }
+        ZenohMode::RouterOf { config } => return router::settings(config),
+        ZenohMode::Connect { endpoint } => {
+            endpoint::check(endpoint)?;
+            SessionConfigBuilder::new()
+                .with_router_endpoint(endpoint)
+                .build_config()
+        }
+    };
+    settings.map_err(middleware)
+}
+
+fn middleware(error: zenoh::Error) -> OpenError {
+    OpenError::Middleware {
+        transport: "Zenoh",
+        reason: error.to_string(),
+    }
 }
 
 /// The session goes on trying for ever by itself; whoever starts a node wants

@@ -88,8 +88,8 @@ impl<M: Message> ZenohSubscriber<M> {
 
     /// What was handed out, refused and dropped so far. Dropped counts the
     /// numbers missing from each sender's sequence: a full queue, or loss on the way.
-    pub fn counts(&self) -> SubscriberCounts {
-        self.counts
+    pub fn counts(&self) -> &SubscriberCounts {
+        &self.counts
     }
 
     /// The topic's full name.

@@ -21,6 +21,7 @@ fn frames_cross_a_link_and_bad_ones_keep_their_length() {
             session: world.name.clone(),
             endpoint,
             sends,
+            tls: None,
             clock: Arc::new(|| Time::from_nanos(42)),
         })
     };
@@ -76,6 +77,7 @@ fn oversized_payloads_are_cut() {
         session: world.name.clone(),
         endpoint: LinkEndpoint::Listen(world.endpoint.clone()),
         sends: LinkDirection::Back,
+        tls: None,
         clock: Arc::new(|| Time::from_nanos(1)),
     })
     .unwrap();

@@ -103,7 +103,7 @@ fn shared_memory(world: &World) {
 
     let mut config = iceoryx2::config::Config::default();
     config.global.prefix = FileName::new(format!("ferntast.{}.", world.name).as_bytes()).unwrap();
-    let root = format!("/tmp/ferntast.{}", world.name);
+    let root = format!("/dev/shm/ferntast.{}", world.name);
     config
         .global
         .set_root_path(&iceoryx2::prelude::Path::new(root.as_bytes()).unwrap());

@@ -14,7 +14,7 @@ fn left_behind(session: &str) -> Vec<String> {
         .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
         .filter(|name| name.starts_with(&format!("ferntast.{session}.")))
         .collect();
-    let directory = format!("/tmp/ferntast.{session}");
+    let directory = format!("/dev/shm/ferntast.{session}");
     if fs::exists(&directory).unwrap() {
         names.push(directory);
     }

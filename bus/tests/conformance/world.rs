@@ -237,7 +237,7 @@ impl<M: Message> Reader<'_, M> {
     }
 
     pub fn counts(&mut self) -> SubscriberCounts {
-        self.subscriber().counts()
+        *self.subscriber().counts()
     }
 
     /// Waits until the counts say so.

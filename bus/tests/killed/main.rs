@@ -171,5 +171,5 @@ fn a_killed_session_is_cleaned_up() {
         })
         .count();
     assert_eq!(left, 0);
-    assert!(!std::fs::exists(format!("/tmp/ferntast.{session}")).unwrap());
+    assert!(!std::fs::exists(format!("/dev/shm/ferntast.{session}")).unwrap());
 }

@@ -2,13 +2,13 @@
 
 use std::{process::ExitCode, thread, time::Duration};
 
-use ferntast_bus::{Bus, Depth, SharedMemoryBus, SharedMemoryConfig};
+use ferntast_bus::{Bus, Depth};
 use ferntast_msgs::{
     Time,
     sample::{FrictionCommand, FrictionCommandSample, FrictionStatusSample, JointNames},
     topics,
 };
-use ferntast_nodes::{process::Clock, servo::FrictionSummary};
+use ferntast_nodes::{process::Clock, servo::FrictionSummary, session::Visit};
 
 use super::super::{Failure, output::print_json};
 
@@ -31,18 +31,13 @@ pub fn run(
     command: Option<FrictionCommand>,
     json: bool,
 ) -> Result<ExitCode, Failure> {
-    let bus = Bus::SharedMemory(
-        SharedMemoryBus::open(&SharedMemoryConfig {
-            session: arguments.session.clone(),
-        })
-        .map_err(Failure::refused)?,
-    );
-    let told = ask(&bus, command);
-    drop(bus);
-    // Where no session runs, this process is the only one that was in its
-    // shared memory; where one runs, this is refused.
-    let _ = SharedMemoryBus::clean_up(&arguments.session);
-    let Some(told) = told? else {
+    let visit = Visit::open(&arguments.session).map_err(Failure::refused)?;
+    let told = match visit.as_ref().and_then(Visit::bus) {
+        Some(bus) => ask(bus, command)?,
+        None => None,
+    };
+    drop(visit);
+    let Some(told) = told else {
         return Err(Failure::failed(format!(
             "the servo of session {:?} does not answer: is it running on this host? (ferntast session, or --session NAME)",
             arguments.session

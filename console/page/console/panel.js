@@ -94,7 +94,11 @@ export function build() {
       slider("link-jitter", "jitter, ±", { max: 20, step: 0.5, value: about.link.jitter * 1e3, unit: "ms", decimals: 1 }),
       slider("link-loss", "loss each way", { max: 30, step: 0.1, value: about.link.loss * 100, unit: "%", decimals: 1 }),
       make("div", { className: "row", style: "margin-top:8px" }, make("label", { className: "quiet small", for: "law", textContent: "law" }), make("div", { className: "grow" }, parts.law)),
-      make("p", { id: "measured", className: "quiet small number", style: "margin-top:8px" })),
+      about.link.rearm_after_gap > 0
+        ? make("p", { id: "rearms", className: "quiet small", style: "margin-top:8px", textContent: `After gaps of up to ${fixed(about.link.rearm_after_gap, 1)} s in the link the arm goes on by itself, slowly: this scenario says so.` })
+        : null,
+      make("p", { id: "measured", className: "quiet small number", style: "margin-top:8px" }),
+      make("p", { id: "told", className: "small told", role: "status" })),
     section("Recording",
       make("div", { className: "row" }, button("record", "Record", () => send(session.now?.recorder.on ? { type: "end_record" } : { type: "record", folder: "" }))),
       make("div", { className: "row" }, make("div", { className: "grow" }, parts.label), button("mark", "Mark", mark, { style: "flex:none" })),
@@ -142,6 +146,22 @@ function chip(tone, name, value) {
   return make("span", { className: `chip ${tone}` }, make("i", { className: "dot", "aria-hidden": "true" }), name, " ", make("b", { textContent: value }));
 }
 
+/** How long a node's word stays [ms]: it may be true for a moment only. */
+const TOLD_FOR = 10_000;
+const told = new Map();
+
+/** What link, gateway and hand have to say: who was refused, and why there is nothing to hear. */
+function words() {
+  for (const node of session.nodes) {
+    if (node.message && ["link_leader", "link_follower", "gateway", "master"].includes(node.name)) {
+      const what = node.faults.find((fault) => fault.startsWith("stranger")) || "";
+      told.set(node.name, { text: `${node.name}: ${what}${what && " – "}${node.message}`, until: Date.now() + TOLD_FOR });
+    }
+  }
+  for (const [name, { until }] of told) if (until < Date.now()) told.delete(name);
+  return [...told.values()].map(({ text }) => text).join(" · ");
+}
+
 let chipsShown = "";
 
 /** Shows what is slow: a few times a second. */
@@ -164,6 +184,7 @@ export function slow(snapshot) {
   write(byId("measured"), link
     ? `measured: ${fixed(link.round_trip && link.round_trip * 1e3, 1)} ms, ±${fixed(link.jitter * 1e3, 1)} ms, ${percent(link.loss)} lost`
     : "measured: –");
+  write(byId("told"), words());
   // A change takes a round trip; until then the choice stands.
   if (link?.law && link.law !== parts.law.value && Date.now() - lawAsked > 5000) parts.law.value = link.law;
   const { recorder } = snapshot;

@@ -29,7 +29,7 @@ use ferntast_lab::work::{Opened, WorkError};
 use serde::Deserialize;
 use tokio::sync::Semaphore;
 
-use crate::ServerError;
+use crate::{ServerError, bodies::UPLOAD};
 
 /// Why a request to the lab fails.
 #[derive(Debug, thiserror::Error)]
@@ -54,6 +54,18 @@ pub enum LabError {
     /// An upload was cut off.
     #[error("the file did not arrive whole: {0}")]
     CutOff(String),
+    /// An upload is too large.
+    #[error(
+        "a recording of more than {} GiB is not taken here: copy it into the lab's folder, or cut it into parts",
+        most >> 30
+    )]
+    TooLarge {
+        /// The largest that is taken \[bytes\].
+        most: u64,
+    },
+    /// Others are being uploaded.
+    #[error("other recordings are on their way here: try again when they have arrived")]
+    Busy,
     /// There are fewer joints.
     #[error("{path} has no joint {number}")]
     Joint {
@@ -79,7 +91,12 @@ pub enum LabError {
 impl IntoResponse for LabError {
     fn into_response(self) -> Response {
         let body = Json(serde_json::json!({ "error": self.to_string() }));
-        (StatusCode::UNPROCESSABLE_ENTITY, body).into_response()
+        let status = match self {
+            LabError::TooLarge { .. } => StatusCode::PAYLOAD_TOO_LARGE,
+            LabError::Busy => StatusCode::SERVICE_UNAVAILABLE,
+            _ => StatusCode::UNPROCESSABLE_ENTITY,
+        };
+        (status, body).into_response()
     }
 }
 
@@ -95,6 +112,7 @@ pub struct Lab {
     root: PathBuf,
     kept: Mutex<Option<Kept>>,
     turn: Arc<Semaphore>,
+    uploads: Semaphore,
 }
 
 impl Lab {
@@ -118,6 +136,7 @@ impl Lab {
             root,
             kept: Mutex::new(None),
             turn: Arc::new(Semaphore::new(1)),
+            uploads: Semaphore::new(upload::AT_ONCE),
         })
     }
 
@@ -185,12 +204,24 @@ impl Lab {
     }
 }
 
+/// Has all else on the computer come before this thread: a fit can wait, and
+/// the server's threads that hear a stop cannot.
+fn step_back() {
+    const NICE: libc::c_int = 10;
+    // SAFETY: takes no pointers; 0 means the calling thread. Where it is refused,
+    // which it is not, the work goes on all the same.
+    unsafe { libc::setpriority(libc::PRIO_PROCESS, 0, NICE) };
+}
+
 /// Does `work` beside the server's own, so that it answers others meanwhile.
 async fn aside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, LabError> + Send + 'static,
 ) -> Result<Json<T>, LabError> {
-    let done = tokio::task::spawn_blocking(work).await;
-    done.unwrap_or(Err(LabError::Broken)).map(Json)
+    let done = tokio::task::spawn_blocking(|| {
+        step_back();
+        work()
+    });
+    done.await.unwrap_or(Err(LabError::Broken)).map(Json)
 }
 
 /// A file in the folder.
@@ -224,7 +255,7 @@ pub fn routes(lab: Arc<Lab>) -> Router {
         .route("/api/lab/add", post(work::add))
         .route("/api/lab/report", post(work::report))
         .route(
-            "/api/lab/upload",
+            UPLOAD,
             post(upload::take).layer(DefaultBodyLimit::disable()),
         )
         .with_state(lab)

@@ -22,6 +22,7 @@ use tokio::sync::mpsc;
 use super::{
     Joint, Lab, LabError,
     drawing::{Drawing, MAX_POINTS},
+    step_back,
 };
 
 /// Says how much is done.
@@ -42,6 +43,7 @@ fn in_lines<T: Serialize>(
         };
         let broken = lines.clone();
         let done = tokio::task::spawn_blocking(move || {
+            step_back();
             let mut told = 0.0;
             let result = work(&lab, &mut |share: f64| {
                 if share - told >= 0.01 {

@@ -14,7 +14,7 @@ pub mod shared_session;
 use std::sync::Arc;
 
 use axum::{
-    Json, Router,
+    Extension, Json, Router,
     extract::{
         State,
         ws::{Message, WebSocket, WebSocketUpgrade},
@@ -27,6 +27,7 @@ pub use hand::{GripModel, PageHand};
 pub use ports::SessionPorts;
 pub use shared_session::SharedSession;
 
+use crate::connections::Connection;
 use message::{Answer, Request};
 
 /// Longest request of a page \[bytes\].
@@ -50,12 +51,20 @@ pub fn routes(shared: Option<Arc<SharedSession>>) -> Router {
     }
 }
 
-async fn connect(State(shared): State<Arc<SharedSession>>, upgrade: WebSocketUpgrade) -> Response {
+async fn connect(
+    State(shared): State<Arc<SharedSession>>,
+    Extension(connection): Extension<Arc<Connection>>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
     upgrade
         .max_message_size(LONGEST_REQUEST)
         .on_upgrade(move |socket| async move {
-            let page = shared.enter();
-            serve(&shared, page, socket).await;
+            connection.keep();
+            let (page, put_out) = shared.enter();
+            tokio::select! {
+                () = serve(&shared, page, socket) => {}
+                () = put_out.notified() => {}
+            }
             shared.leave(page);
         })
 }

@@ -159,7 +159,7 @@ impl SessionPorts {
     }
 
     /// Tells `each` the topic of every queue and what became of its messages.
-    pub fn inputs(&self, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+    pub fn inputs(&self, each: &mut dyn FnMut(&topics::TopicName, &SubscriberCounts)) {
         each(&topics::DIAGNOSTICS.name, self.diagnostics.counts());
     }
 

@@ -1,21 +1,25 @@
 //! What pages and the session's loop share: the operator, wishes, snapshots.
 
 use std::{
-    collections::VecDeque,
+    collections::{BTreeMap, VecDeque},
     sync::{
-        Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU64, AtomicUsize, Ordering},
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
     },
 };
 
 use axum::extract::ws::Utf8Bytes;
 use ferntast_msgs::Time;
-use tokio::sync::watch;
+use tokio::sync::{Notify, watch};
 
 use super::{
     message::{Request, StateRequest},
     operator_lock::{OperatorLock, Taken},
 };
+
+/// Pages that are open at once at most. One more is always let in: the one that
+/// has watched for the longest goes.
+const MAX_PAGES: usize = 32;
 
 /// Wishes that wait at most; a page cannot fill the memory.
 const MAX_WISHES: usize = 64;
@@ -43,7 +47,8 @@ pub struct SharedSession {
     operator: Mutex<OperatorLock>,
     wishes: Mutex<VecDeque<Request>>,
     snapshot: watch::Sender<Utf8Bytes>,
-    pages: AtomicUsize,
+    /// The pages that are open, and how each is told that it has to go.
+    pages: Mutex<BTreeMap<u64, Arc<Notify>>>,
     next_page: AtomicU64,
     /// What the session is made of, for the page.
     pub about: serde_json::Value,
@@ -57,7 +62,7 @@ impl SharedSession {
             operator: Mutex::default(),
             wishes: Mutex::default(),
             snapshot: watch::Sender::new(Utf8Bytes::default()),
-            pages: AtomicUsize::new(0),
+            pages: Mutex::default(),
             next_page: AtomicU64::new(1),
             about,
         }
@@ -67,21 +72,36 @@ impl SharedSession {
         self.operator.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A page that came; its number.
-    pub fn enter(&self) -> u64 {
-        self.pages.fetch_add(1, Ordering::Relaxed);
-        self.next_page.fetch_add(1, Ordering::Relaxed)
+    fn open_pages(&self) -> MutexGuard<'_, BTreeMap<u64, Arc<Notify>>> {
+        self.pages.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A page that came; its number, and what tells it that it has to go. Where
+    /// there are too many the one that has watched for the longest is told.
+    pub fn enter(&self) -> (u64, Arc<Notify>) {
+        let operator = self.look().operator();
+        let page = self.next_page.fetch_add(1, Ordering::Relaxed);
+        let put_out = Arc::new(Notify::new());
+        let mut pages = self.open_pages();
+        if pages.len() >= MAX_PAGES
+            && let Some(oldest) = pages.keys().copied().find(|own| operator != Some(*own))
+            && let Some(told) = pages.remove(&oldest)
+        {
+            told.notify_one();
+        }
+        pages.insert(page, put_out.clone());
+        (page, put_out)
     }
 
     /// A page that went.
     pub fn leave(&self, page: u64) {
         self.lock().leave(page);
-        self.pages.fetch_sub(1, Ordering::Relaxed);
+        self.open_pages().remove(&page);
     }
 
     /// Pages that are open.
     pub fn pages(&self) -> usize {
-        self.pages.load(Ordering::Relaxed)
+        self.open_pages().len()
     }
 
     /// Snapshots as they come; the newest wins.
@@ -162,7 +182,7 @@ mod tests {
     #[test]
     fn watchers_may_stop_and_nothing_else() {
         let shared = shared();
-        let (operator, watcher) = (shared.enter(), shared.enter());
+        let (operator, watcher) = (shared.enter().0, shared.enter().0);
         shared.ask(operator, Request::Operate).unwrap();
         assert_eq!(shared.ask(watcher, Request::Operate), Err(Taken.into()));
         for word in [StateRequest::Arm, StateRequest::Hold, StateRequest::Rearm] {
@@ -193,9 +213,27 @@ mod tests {
     }
 
     #[test]
+    fn the_oldest_watcher_goes_and_never_the_operator() {
+        let shared = shared();
+        let (operator, told) = shared.enter();
+        shared.ask(operator, Request::Operate).unwrap();
+        let others: Vec<_> = (0..MAX_PAGES + 4).map(|_| shared.enter()).collect();
+        assert_eq!(shared.pages(), MAX_PAGES);
+        assert!(shared.open_pages().contains_key(&operator));
+        // The operator is told nothing; the first five watchers hold the last
+        // handle to what told them.
+        assert_eq!(Arc::strong_count(&told), 2);
+        let gone = others
+            .iter()
+            .filter(|(_, told)| Arc::strong_count(told) == 1);
+        assert_eq!(gone.count(), 5);
+        assert_eq!(Arc::strong_count(&others[4].1), 1);
+    }
+
+    #[test]
     fn a_page_cannot_fill_the_memory_and_a_stop_always_gets_through() {
         let shared = shared();
-        let page = shared.enter();
+        let page = shared.enter().0;
         shared.ask(page, Request::Operate).unwrap();
         let mark = || Request::Mark { label: "x".into() };
         let taken = (0..1000)

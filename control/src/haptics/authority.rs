@@ -1,6 +1,7 @@
 //! Who drives: one source at a time.
 
 use crate::nanoseconds;
+use crate::planted::{Planted, Rule};
 
 /// Another source holds the authority.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -22,6 +23,7 @@ pub struct Authority {
     holder: Option<(u64, i64)>,
     refused: Option<u64>,
     refused_count: u64,
+    pub(super) planted: Planted,
 }
 
 impl Authority {
@@ -32,6 +34,7 @@ impl Authority {
             holder: None,
             refused: None,
             refused_count: 0,
+            planted: Planted::NONE,
         }
     }
 
@@ -70,7 +73,7 @@ impl Authority {
     pub fn may(&mut self, now_ns: i64, source: u64) -> Result<(), NotAuthorised> {
         self.age(now_ns);
         match self.holder {
-            Some((holder, _)) if holder != source => {
+            Some((holder, _)) if holder != source && !self.planted.lacks(Rule::OneHand) => {
                 self.refused = Some(source);
                 self.refused_count += 1;
                 Err(NotAuthorised {

@@ -1,5 +1,7 @@
 //! Limits of the force on the hand.
 
+use crate::planted::{Planted, Rule};
+
 /// A force, and whether it was limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LimitedForce {
@@ -15,6 +17,7 @@ pub struct ForceLimiter {
     magnitude: f64,
     rate: f64,
     force: [f64; 3],
+    pub(super) planted: Planted,
 }
 
 impl ForceLimiter {
@@ -24,6 +27,7 @@ impl ForceLimiter {
             magnitude,
             rate,
             force: [0.0; 3],
+            planted: Planted::NONE,
         }
     }
 
@@ -32,9 +36,17 @@ impl ForceLimiter {
     pub fn step(&mut self, dt: f64, wanted: [f64; 3]) -> LimitedForce {
         let finite = wanted.iter().all(|value| value.is_finite());
         let wanted = if finite { wanted } else { [0.0; 3] };
-        let (bounded, too_strong) = shorten(wanted, self.magnitude);
+        let magnitude = match self.planted.lacks(Rule::HandForceLimit) {
+            true => f64::INFINITY,
+            false => self.magnitude,
+        };
+        let (bounded, too_strong) = shorten(wanted, magnitude);
         let change: [f64; 3] = std::array::from_fn(|axis| bounded[axis] - self.force[axis]);
-        let (change, too_fast) = shorten(change, self.rate * dt);
+        let rate = match self.planted.lacks(Rule::HandForceRate) {
+            true => f64::INFINITY,
+            false => self.rate * dt,
+        };
+        let (change, too_fast) = shorten(change, rate);
         self.force = std::array::from_fn(|axis| self.force[axis] + change[axis]);
         LimitedForce {
             force: self.force,

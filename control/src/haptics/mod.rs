@@ -18,6 +18,7 @@ pub use force::{ForceLimiter, LimitedForce};
 
 use crate::delay::Motion;
 use crate::operating::{OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
+use crate::planted::{Planted, Rule};
 use crate::{nanoseconds, seconds};
 use ferntast_model::ParameterError;
 
@@ -146,6 +147,7 @@ pub struct Master {
     hand: Option<Hand>,
     fresh: bool,
     refusals: HandRefusalCounts,
+    planted: Planted,
 }
 
 /// Clocks may disagree by this much [s].
@@ -167,7 +169,17 @@ impl Master {
             hand: None,
             fresh: false,
             refusals: HandRefusalCounts::default(),
+            planted: Planted::NONE,
         })
+    }
+
+    /// The same with a planted bug.
+    pub fn planted(mut self, planted: Planted) -> Master {
+        self.machine = self.machine.planted(planted);
+        self.authority.planted = planted;
+        self.limiter.planted = planted;
+        self.planted = planted;
+        self
     }
 
     /// The operating state.
@@ -313,7 +325,7 @@ impl Master {
             .hand
             .map(|hand| now_ns.saturating_sub(hand.accepted_ns));
         let live = enabled && age_ns.is_some_and(|age| age <= nanoseconds(self.config.silence));
-        let force = if live {
+        let force = if live || self.planted.lacks(Rule::HandLetGo) {
             self.limiter.step(dt, reflected.unwrap_or([0.0; 3]))
         } else {
             self.limiter.stop()

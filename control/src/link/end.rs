@@ -1,9 +1,9 @@
 //! What both ends do with frames.
 
-use super::{CONNECTED, SEND_PERIOD_NS};
+use super::{CONNECTED, RETURN_SILENCE, SEND_PERIOD_NS};
 use crate::delay::Received;
 use crate::frame::{self, FRAME_LENGTH, LinkFrame};
-use crate::meter::{Arrival, LinkMeasurement, LinkMeter, behind};
+use crate::meter::{Arrival, LinkMeasurement, LinkMeter, passed};
 use crate::operating::OperatingState;
 use crate::playout::{Offered, PlayOut};
 use crate::seconds;
@@ -11,11 +11,12 @@ use crate::switching::{MarkedPacket, Outgoing};
 
 /// A step that comes later than this after the one before counts as this long \[s\].
 const LONGEST_STEP: f64 = 0.02;
+/// What a handshake tells of a clock may be wrong by the longest way \[ns\].
+const HANDSHAKE_ERROR_NS: i64 = 2_000_000_000;
 
 /// Frames in, frames out, and what they measure.
 #[derive(Clone, Debug)]
 pub(super) struct End {
-    session: u16,
     meter: LinkMeter,
     sequence: u32,
     /// When the next frame is due [ns].
@@ -23,12 +24,15 @@ pub(super) struct End {
     play_out: PlayOut,
     /// Whether frames that were overtaken may still fall into place.
     buffered: bool,
-    /// Sequence number of the newest frame that arrived.
-    highest: u32,
     /// Frames that came after their time, which the meter took for good.
     late: u64,
+    /// What the frame that arrived last says of arming, of whatever age: as with what is
+    /// echoed, the other end takes it for known.
+    heard_arming: Option<u8>,
     /// The frame that is acted on.
     newest: Option<LinkFrame>,
+    /// When it arrived, or, where frames wait to be played out, was taken from there \[ns\].
+    taken_ns: i64,
     fresh: bool,
     /// Time of the last step [ns].
     last_ns: Option<i64>,
@@ -36,25 +40,44 @@ pub(super) struct End {
 
 impl End {
     /// An end whose frames wait for up to `buffer` \[s\] to be played out evenly.
-    pub fn new(session: u16, buffer: f64) -> End {
+    pub fn new(buffer: f64) -> End {
         End {
-            session,
             meter: LinkMeter::new(),
             sequence: 0,
             send_due_ns: 0,
             play_out: PlayOut::new(buffer),
             buffered: buffer > 0.0,
-            highest: 0,
             late: 0,
+            heard_arming: None,
             newest: None,
+            taken_ns: 0,
             fresh: false,
             last_ns: None,
         }
     }
 
+    /// From `now_ns` on another process is at the other end, whose clock is
+    /// `clock_ahead_ns` ahead as far as a handshake can tell: what came from the one
+    /// before is over.
+    pub fn restart(&mut self, now_ns: i64, clock_ahead_ns: i64) {
+        self.meter
+            .restart(now_ns, clock_ahead_ns, HANDSHAKE_ERROR_NS);
+        self.play_out.restart();
+        self.heard_arming = None;
+        self.newest = None;
+        self.fresh = false;
+    }
+
     /// Bytes arrived at `arrived_ns`.
     pub fn arrived(&mut self, bytes: &[u8], arrived_ns: i64) {
-        match frame::decode(bytes, self.session, arrived_ns) {
+        let ahead_ns = self.meter.clock_ahead_ns(arrived_ns);
+        let decoded = frame::decode(bytes, arrived_ns, ahead_ns).and_then(|mut frame| {
+            self.meter.synchronise(&mut frame, arrived_ns);
+            self.heard_arming = Some(frame.arming);
+            frame.check_age(arrived_ns)?;
+            Ok(frame)
+        });
+        match decoded {
             Ok(frame) => self.decoded(&frame, arrived_ns),
             Err(error) => self.meter.refused(&error),
         }
@@ -63,13 +86,11 @@ impl End {
     fn decoded(&mut self, frame: &LinkFrame, arrived_ns: i64) {
         match self.meter.received(frame, arrived_ns) {
             Arrival::Newest => {
-                self.highest = frame.sequence;
                 if self.play_out.offer(frame, arrived_ns) != Offered::Waiting {
                     self.late += 1;
                 }
             }
-            // With a higher number it would be left from before a restart.
-            Arrival::Late if self.buffered && behind(frame.sequence, self.highest) => {
+            Arrival::Late if self.buffered => {
                 self.play_out.offer(frame, arrived_ns);
             }
             Arrival::Late | Arrival::Replayed => {}
@@ -80,8 +101,40 @@ impl End {
     pub fn take(&mut self, now_ns: i64) -> Option<LinkFrame> {
         let taken = self.play_out.take(now_ns);
         self.fresh = taken.is_some();
-        self.newest = taken.or(self.newest);
+        if self.fresh {
+            self.newest = taken;
+            // One that waited for this end, which was held up, is as old as it is.
+            self.taken_ns = match self.buffered {
+                true => now_ns,
+                false => self
+                    .meter
+                    .arrived_ns()
+                    .map_or(now_ns, |own| own.min(now_ns)),
+            };
+        }
         taken
+    }
+
+    /// What the other end said last of arming.
+    pub fn heard_arming(&self) -> Option<u8> {
+        self.heard_arming
+    }
+
+    /// Time since the frame that is acted on \[s\]; infinite before the first.
+    pub fn silence(&self, now_ns: i64) -> f64 {
+        self.newest
+            .map_or(f64::INFINITY, |_| passed(self.taken_ns, now_ns))
+    }
+
+    /// Whether the other end asks to hold, in what it said last.
+    pub fn is_held(&self) -> bool {
+        self.newest.is_none_or(|frame| frame.hold)
+    }
+
+    /// State of the other end's device, in what it said last.
+    pub fn peer_state(&self) -> OperatingState {
+        self.newest
+            .map_or(OperatingState::Disabled, |frame| frame.state)
     }
 
     /// The packet to act on as the laws want it, and which law made it.
@@ -118,21 +171,25 @@ impl End {
         arming: u8,
         outgoing: Outgoing,
     ) -> Option<[u8; FRAME_LENGTH]> {
-        if now_ns < self.send_due_ns {
+        // Further ahead than a period: a clock jumped back.
+        let due_ns = self.send_due_ns;
+        if now_ns < due_ns && due_ns.saturating_sub(now_ns) <= SEND_PERIOD_NS {
             return None;
         }
         let next_ns = self.send_due_ns.saturating_add(SEND_PERIOD_NS);
-        self.send_due_ns = if next_ns > now_ns {
+        let kept = next_ns > now_ns && next_ns.saturating_sub(now_ns) <= SEND_PERIOD_NS;
+        self.send_due_ns = if kept {
             next_ns
         } else {
             now_ns.saturating_add(SEND_PERIOD_NS)
         };
+        let deaf = self.meter.silence(now_ns) > RETURN_SILENCE;
         let frame = LinkFrame {
-            session: self.session,
             sequence: self.sequence,
+            stamp_ns: now_ns,
             sent_ns: now_ns,
             echo: self.meter.echo(now_ns),
-            hold: state != OperatingState::Enabled,
+            hold: state != OperatingState::Enabled || deaf,
             state,
             arming,
             law: outgoing.law,

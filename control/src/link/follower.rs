@@ -1,12 +1,15 @@
 //! The arm's end of the link.
 
 use super::end::End;
+use super::gap::{Flow, GapWatch};
 use super::velocity::VelocityFilter;
-use super::{LinkState, StampedPosition};
-use crate::arming::ArmingWatch;
+use super::word::{Word, WordWatch};
+use super::{FRESH, LinkState, StampedPosition, WORD_LIFE};
 use crate::delay::Motion;
 use crate::frame::FRAME_LENGTH;
+use crate::nanoseconds;
 use crate::operating::OperatingState;
+use crate::planted::{Planted, Rule};
 use crate::switching::{FollowerSwitch, Laws};
 
 /// A tip or contact force that was estimated longer ago than this \[s\] is not sent.
@@ -22,6 +25,8 @@ pub struct FollowerReadings {
     pub contact_force: Option<[f64; 3]>,
     /// Operating state of the arm.
     pub state: OperatingState,
+    /// Somebody told the arm to stop since the last step.
+    pub told_to_stop: bool,
 }
 
 /// What a step of the arm's end gives.
@@ -29,8 +34,13 @@ pub struct FollowerReadings {
 pub struct FollowerStep {
     /// A new tip command; `None` when there is nothing new.
     pub command: Option<Motion>,
-    /// The operator wished to re-arm since the last step.
-    pub rearm: bool,
+    /// When it counts as made: never the same twice, [`FRESH`] after the newest frame at
+    /// most \[ns since the UNIX epoch\].
+    pub command_ns: i64,
+    /// What the operator says of arming.
+    pub word: Option<Word>,
+    /// A gap in the link was short enough to go on after it.
+    pub resume_after_gap: bool,
     /// To send, when a frame is due.
     pub frame: Option<[u8; FRAME_LENGTH]>,
 }
@@ -41,19 +51,48 @@ pub struct FollowerLink {
     end: End,
     law: FollowerSwitch,
     velocity: VelocityFilter,
-    arming: ArmingWatch,
+    words: WordWatch,
+    gap: GapWatch,
+    planted: Planted,
 }
 
 impl FollowerLink {
     /// An end that starts with the first of `laws` and follows the leader's end to the others.
     /// Frames wait for up to `buffer` \[s\] to be played out evenly.
-    pub fn new(laws: Laws, session: u16, buffer: f64) -> FollowerLink {
+    pub fn new(laws: Laws, buffer: f64) -> FollowerLink {
         FollowerLink {
-            end: End::new(session, buffer),
+            end: End::new(buffer),
             law: FollowerSwitch::new(laws),
             velocity: VelocityFilter::default(),
-            arming: ArmingWatch::default(),
+            words: WordWatch::default(),
+            gap: GapWatch::default(),
+            planted: Planted::NONE,
         }
+    }
+
+    /// The same with a planted bug.
+    pub fn planted(self, planted: Planted) -> FollowerLink {
+        FollowerLink {
+            words: self.words.planted(planted),
+            planted,
+            ..self
+        }
+    }
+
+    /// The same, which asks to arm again by itself after gaps of up to `gap` \[s\].
+    pub fn bridging(self, gap: f64) -> FollowerLink {
+        FollowerLink {
+            gap: GapWatch::new(gap),
+            ..self
+        }
+    }
+
+    /// From `now_ns` on another process is at the other end, whose clock is
+    /// `clock_ahead_ns` ahead.
+    pub fn peer_changed(&mut self, now_ns: i64, clock_ahead_ns: i64) {
+        self.end.restart(now_ns, clock_ahead_ns);
+        self.words.restart();
+        self.gap.restart();
     }
 
     /// Bytes arrived at `arrived_ns`, to be acted on in the next step at the earliest.
@@ -63,19 +102,43 @@ impl FollowerLink {
 
     /// One step at `now_ns`.
     pub fn step(&mut self, now_ns: i64, readings: &FollowerReadings) -> FollowerStep {
+        if self.end.silence(now_ns) > WORD_LIFE {
+            self.words.restart();
+        }
         let taken = self.end.take(now_ns);
-        let rearm = taken.is_some_and(|frame| self.arming.observe(frame.arming));
+        let word = self.words.step(
+            now_ns,
+            readings.state,
+            readings.told_to_stop,
+            taken.as_ref(),
+        );
         let tip = self.velocity.fresh(readings.tip, ESTIMATE_LIFE);
         let dt = self.end.elapsed(now_ns);
-        let connected = self.end.connected(now_ns);
+        let silence = self.end.silence(now_ns);
+        let hold = self.end.is_held() && !self.planted.lacks(Rule::HoldObeyed);
+        let connected = self.end.connected(now_ns) && !hold;
         let newest = self.end.newest(now_ns);
         let step = self
             .law
             .step(dt, tip, readings.contact_force, newest, connected);
+        let flow = Flow {
+            silence,
+            hold,
+            operator: self.end.peer_state(),
+            arm: readings.state,
+        };
+        let age = match self.planted.lacks(Rule::CommandsAge) {
+            true => 0.0,
+            false => stale(silence),
+        };
         FollowerStep {
-            command: step.command,
-            rearm,
-            frame: self.end.send(now_ns, readings.state, 0, step.outgoing),
+            command: step.command.filter(|_| !hold),
+            command_ns: now_ns.saturating_sub(nanoseconds(age)),
+            word,
+            resume_after_gap: self.gap.step(now_ns, &flow),
+            frame: self
+                .end
+                .send(now_ns, readings.state, self.words.stops(), step.outgoing),
         }
     }
 
@@ -83,10 +146,22 @@ impl FollowerLink {
     pub fn state(&mut self, now_ns: i64) -> LinkState {
         LinkState {
             connected: self.end.connected(now_ns),
+            held: self.end.is_held(),
+            peer: self.end.peer_state(),
             measured: self.end.measure(now_ns),
             law: self.law.name(),
             energy: self.law.energy(),
             dissipated: self.law.dissipated(),
         }
+    }
+}
+
+/// How long ago a command counts as made, `silence` \[s\] after a frame was taken \[s\].
+fn stale(silence: f64) -> f64 {
+    // After a frame f: made at f + FRESH s / (FRESH + s), which grows and stays below f + FRESH.
+    let silence = silence.max(0.0);
+    match silence.is_finite() {
+        true => silence - FRESH * silence / (FRESH + silence),
+        false => 0.0,
     }
 }

@@ -8,10 +8,6 @@ use crate::frame::FRAME_LENGTH;
 use crate::operating::OperatingState;
 use crate::switching::{Laws, LeaderSwitch};
 
-/// A hand older than this \[s\] is not sent on: it would only be repeated, and
-/// the arm's watchdog has to see at once that the hand is silent.
-pub const HAND_LIFE: f64 = 0.004;
-
 /// What a step of the operator's end takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeaderReadings {
@@ -37,18 +33,28 @@ pub struct LeaderLink {
     law: LeaderSwitch,
     velocity: VelocityFilter,
     arming: ArmingCount,
+    /// How often the arm has stopped, as its end counts.
+    stops: Option<u8>,
 }
 
 impl LeaderLink {
     /// An end that starts with the first of `laws` and may switch to the others.
     /// Frames wait for up to `buffer` \[s\] to be played out evenly.
-    pub fn new(laws: Laws, session: u16, buffer: f64) -> LeaderLink {
+    pub fn new(laws: Laws, buffer: f64) -> LeaderLink {
         LeaderLink {
-            end: End::new(session, buffer),
+            end: End::new(buffer),
             law: LeaderSwitch::new(laws),
             velocity: VelocityFilter::default(),
             arming: ArmingCount::default(),
+            stops: None,
         }
+    }
+
+    /// From `now_ns` on another process is at the other end, whose clock is
+    /// `clock_ahead_ns` ahead.
+    pub fn peer_changed(&mut self, now_ns: i64, clock_ahead_ns: i64) {
+        self.end.restart(now_ns, clock_ahead_ns);
+        self.stops = None;
     }
 
     /// The operator wishes to re-arm: says so in every frame from now on.
@@ -69,9 +75,15 @@ impl LeaderLink {
     /// One step at `now_ns`.
     pub fn step(&mut self, now_ns: i64, readings: &LeaderReadings) -> LeaderStep {
         self.end.take(now_ns);
-        let hand = self.velocity.fresh(readings.hand, HAND_LIFE);
+        let stops = self.end.heard_arming();
+        if self.stops.is_some() && stops != self.stops {
+            // What was said before is no answer to this stop.
+            self.arming = ArmingCount::default();
+        }
+        self.stops = stops;
+        let hand = self.velocity.fresh_by_its_rate(readings.hand);
         let dt = self.end.elapsed(now_ns);
-        let connected = self.end.connected(now_ns);
+        let connected = self.end.connected(now_ns) && !self.end.is_held();
         let step = self.law.step(dt, hand, self.end.newest(now_ns), connected);
         LeaderStep {
             force: step.force,
@@ -85,6 +97,8 @@ impl LeaderLink {
     pub fn state(&mut self, now_ns: i64) -> LinkState {
         LinkState {
             connected: self.end.connected(now_ns),
+            held: self.end.is_held(),
+            peer: self.end.peer_state(),
             measured: self.end.measure(now_ns),
             law: self.law.name(),
             energy: self.law.energy(),

@@ -6,29 +6,54 @@
 //! frame that is played out and makes the packet of the next one. The nodes of a
 //! session, the lockstep executor and the trials of a sweep run these ends and
 //! no others; what lies between the ends, a wire or an emulated channel, is not
-//! theirs.
+//! theirs. Frames come opened and go to be sealed (crate `ferntast-seal`): whoever
+//! holds the keys tells the end when another process is at the other one
+//! ([`LeaderLink::peer_changed`], [`FollowerLink::peer_changed`]).
+//!
+//! **When the arm is commanded.** A command is stamped with when what it rests on came
+//! in, [`FRESH`] later at most: a law may go on for some milliseconds without frames,
+//! but the servo's watchdog counts from the link's silence and refuses what is too
+//! old. An end that hears nothing for
+//! [`RETURN_SILENCE`], or whose device is not ENABLED, asks the other to hold: the
+//! arm's end then commands nothing either, and the hand's force fades out.
 //!
 //! Times are `i64` nanoseconds since the UNIX epoch. An end allocates when it is
 //! made, never afterwards.
 
 mod end;
 mod follower;
+mod gap;
 mod leader;
+#[cfg(test)]
+mod pair_tests;
 #[cfg(test)]
 mod tests;
 mod velocity;
+mod word;
 
 pub use follower::{ESTIMATE_LIFE, FollowerLink, FollowerReadings, FollowerStep};
-pub use leader::{HAND_LIFE, LeaderLink, LeaderReadings, LeaderStep};
+pub use leader::{LeaderLink, LeaderReadings, LeaderStep};
+pub use velocity::{LONGEST_LIFE as LONGEST_HAND_LIFE, SHORTEST_LIFE as SHORTEST_HAND_LIFE};
+pub use word::Word;
 
 use crate::delay::Energy;
 use crate::meter::LinkMeasurement;
+use crate::operating::OperatingState;
 
 /// Time between two frames \[ns\]: 500 Hz.
 pub const SEND_PERIOD_NS: i64 = 2_000_000;
 /// The other end counts as connected while its newest frame is younger than
 /// this \[s\].
 pub const CONNECTED: f64 = 0.100;
+
+/// A command counts as made this long after the newest frame at most \[s\]: half a period
+/// of frames.
+pub const FRESH: f64 = 0.001;
+/// An end that has heard nothing for this long asks the other to hold \[s\].
+pub const RETURN_SILENCE: f64 = 0.025;
+/// The operator's word to arm again counts only when no gap before it was longer
+/// \[s\]: what was said to a link that was away is not fresh when it comes back.
+pub const WORD_LIFE: f64 = 0.5;
 
 /// A measured position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +71,10 @@ pub struct StampedPosition {
 pub struct LinkState {
     /// Frames from the other end arrive.
     pub connected: bool,
+    /// The other end asks this one to hold.
+    pub held: bool,
+    /// State of the other end's device; DISABLED as long as nothing was heard.
+    pub peer: OperatingState,
     /// Of the link; frames that came too late to be played out count as late.
     pub measured: LinkMeasurement,
     /// Name of the law in force.

@@ -9,11 +9,23 @@ const TIME_CONSTANT: f64 = 0.005;
 /// After a gap longer than this \[s\] the filter starts again at rest.
 const LONGEST_GAP: f64 = 0.050;
 
+/// A hand is good for no less than this \[s\] …
+pub const SHORTEST_LIFE: f64 = 0.004;
+/// … and no longer than this \[s\], however slowly it is measured.
+pub const LONGEST_LIFE: f64 = 0.025;
+/// For how many of its periods a hand is good: the next may be late by half of one.
+const PERIODS: f64 = 1.5;
+/// How many periods are looked at.
+const REMEMBERED: usize = 8;
+
 /// Filtered difference of stamped positions.
 #[derive(Clone, Debug, Default)]
 pub(super) struct VelocityFilter {
     last: Option<(i64, [f64; 3])>,
     velocity: [f64; 3],
+    /// The last times between two measurements, in a ring \[s\].
+    periods: [f64; REMEMBERED],
+    next: usize,
 }
 
 impl VelocityFilter {
@@ -25,10 +37,37 @@ impl VelocityFilter {
         (measured.silence <= life).then_some(motion)
     }
 
+    /// As [`fresh`](Self::fresh), good for as long as the rate of the measurements
+    /// says: a hand at 100 Hz is there between two of them, one at 1 kHz that falls
+    /// silent is not repeated for long, so that the arm's watchdog sees it.
+    pub fn fresh_by_its_rate(&mut self, measured: Option<StampedPosition>) -> Option<Motion> {
+        let measured = measured?;
+        let mut motion = self.step(&measured);
+        let life = self.life();
+        if life > SHORTEST_LIFE {
+            // It goes on moving between two measurements: in steps a law would feel each.
+            let since = measured.silence.clamp(0.0, life);
+            let axes = motion.position.iter_mut().zip(motion.velocity);
+            axes.for_each(|(position, velocity)| *position += velocity * since);
+        }
+        (measured.silence <= life).then_some(motion)
+    }
+
+    /// How long a measurement is good \[s\].
+    fn life(&self) -> f64 {
+        let longest = self.periods.iter().copied().fold(0.0, f64::max);
+        (PERIODS * longest).clamp(SHORTEST_LIFE, LONGEST_LIFE)
+    }
+
     /// Position and velocity at the newest measurement; a repeated stamp changes nothing.
     fn step(&mut self, measured: &StampedPosition) -> Motion {
         if let Some((stamp_ns, position)) = self.last {
             let dt = seconds_between(stamp_ns, measured.stamp_ns);
+            // What is longer was a silence, not a period.
+            if dt > 0.0 && dt <= LONGEST_LIFE {
+                self.periods[self.next % REMEMBERED] = dt;
+                self.next = self.next.wrapping_add(1);
+            }
             if !(0.0..=LONGEST_GAP).contains(&dt) {
                 self.velocity = [0.0; 3];
             } else if dt > 0.0 {
@@ -50,6 +89,38 @@ impl VelocityFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Milliseconds of silence until a hand of that period is no longer there.
+    fn lives(period: i64) -> i64 {
+        let mut filter = VelocityFilter::default();
+        let at = |ms: i64, silence: f64| {
+            Some(StampedPosition {
+                stamp_ns: 1_000_000_000_000 + ms * 1_000_000,
+                position: [0.0; 3],
+                silence,
+            })
+        };
+        for tick in 0..20 {
+            filter.fresh_by_its_rate(at(period * tick, 0.0));
+        }
+        let last = period * 19;
+        (0..100)
+            .find(|ms| {
+                filter
+                    .fresh_by_its_rate(at(last, *ms as f64 * 1e-3))
+                    .is_none()
+            })
+            .unwrap()
+    }
+
+    #[test]
+    fn a_slow_hand_is_there_between_two_measurements_and_a_quick_one_is_missed_soon() {
+        assert_eq!(lives(1), 5);
+        assert_eq!(lives(2), 5);
+        assert_eq!(lives(4), 7);
+        assert_eq!(lives(10), 16);
+        assert_eq!(lives(16), 25);
+    }
 
     #[test]
     fn a_steady_motion_has_its_velocity_and_a_gap_begins_anew() {

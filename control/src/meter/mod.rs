@@ -2,13 +2,16 @@
 //! what is configured.
 //!
 //! * round trip: now − echo − held, exact to the nanosecond, no clocks need agree;
-//! * one way: now − sent, true as far as both clocks agree;
+//! * how far the clocks are apart, from the echoes ([`ClockEstimate`]);
+//! * one way: now − sent, with that offset taken out;
 //! * jitter: RFC 3550, section 6.4.1, J ← J + (|D| − J)/16;
 //! * loss: by sequence number over a sliding second;
 //! * order: only frames newer than the newest acted on are acted on.
 
+mod clock;
 mod loss;
 
+pub use clock::ClockEstimate;
 pub use loss::{Fate, LossWindow};
 
 use crate::frame::{Echo, FrameError, LinkFrame};
@@ -30,12 +33,6 @@ pub enum Arrival {
 pub struct RefusedCounts {
     /// Not as long as a frame is.
     pub length: u64,
-    /// Of another version of the format.
-    pub version: u64,
-    /// Of another session.
-    pub session: u64,
-    /// Checksum wrong.
-    pub checksum: u64,
     /// From the future, or too old.
     pub time: u64,
     /// Not finite or out of range.
@@ -49,14 +46,7 @@ pub struct RefusedCounts {
 impl RefusedCounts {
     /// All of them.
     pub fn total(&self) -> u64 {
-        self.length
-            + self.version
-            + self.session
-            + self.checksum
-            + self.time
-            + self.value
-            + self.replayed
-            + self.late
+        self.length + self.time + self.value + self.replayed + self.late
     }
 }
 
@@ -78,6 +68,8 @@ pub struct LinkMeasurement {
     /// Time since the newest frame was sent: age of what is acted on \[s\];
     /// infinite before the first.
     pub age: f64,
+    /// The other end's clock, as far as it is known.
+    pub clock: ClockMeasurement,
     /// Frames sent since the start.
     pub sent: u64,
     /// Frames received and acted on since the start.
@@ -88,9 +80,21 @@ pub struct LinkMeasurement {
     pub refused: RefusedCounts,
 }
 
+/// What is known of the other end's clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClockMeasurement {
+    /// It is ahead of this one by so much \[s\].
+    pub offset: f64,
+    /// It is faster than this one by so much \[1\].
+    pub drift: f64,
+    /// By how much the offset can be wrong \[s\]; infinite before the first echo.
+    pub error: f64,
+    /// How often one of both jumped.
+    pub jumps: u64,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Newest {
-    sequence: u32,
     sent_ns: i64,
     arrived_ns: i64,
 }
@@ -99,6 +103,10 @@ struct Newest {
 #[derive(Clone, Debug)]
 pub struct LinkMeter {
     newest: Option<Newest>,
+    /// What is echoed: the sender's stamp of the frame that arrived last, of whatever
+    /// age, and when it arrived. Without an echo of frames that are refused for
+    /// their time two clocks that jumped apart would never meet again \[ns\].
+    heard: Option<(i64, i64)>,
     /// Arrival minus sending of the frame that arrived last, in whatever order [ns].
     transit_ns: Option<i64>,
     round_trip_ns: Option<i64>,
@@ -106,6 +114,7 @@ pub struct LinkMeter {
     /// [ns]
     jitter: f64,
     window: LossWindow,
+    clock: ClockEstimate,
     sent: u64,
     received: u64,
     refused: RefusedCounts,
@@ -122,11 +131,13 @@ impl LinkMeter {
     pub fn new() -> Self {
         LinkMeter {
             newest: None,
+            heard: None,
             transit_ns: None,
             round_trip_ns: None,
             delay_ns: None,
             jitter: 0.0,
             window: LossWindow::new(),
+            clock: ClockEstimate::default(),
             sent: 0,
             received: 0,
             refused: RefusedCounts::default(),
@@ -142,36 +153,42 @@ impl LinkMeter {
     pub fn refused(&mut self, error: &FrameError) {
         let counter = match error {
             FrameError::Length { .. } => &mut self.refused.length,
-            FrameError::Checksum { .. } => &mut self.refused.checksum,
-            FrameError::Version { .. } => &mut self.refused.version,
-            FrameError::Session { .. } => &mut self.refused.session,
             FrameError::Time { .. } => &mut self.refused.time,
             FrameError::Value { .. } => &mut self.refused.value,
         };
         *counter += 1;
     }
 
+    /// The sender was started anew, or is another one: its numbers, its clock and what
+    /// it echoes begin again. Its clock is `clock_ahead_ns` ahead, to `error_ns`.
+    pub fn restart(&mut self, now_ns: i64, clock_ahead_ns: i64, error_ns: i64) {
+        self.window.restart();
+        self.newest = None;
+        self.heard = None;
+        self.transit_ns = None;
+        self.clock.begin(now_ns, clock_ahead_ns, error_ns);
+    }
+
+    /// How far the sender's clock is ahead at `now_ns` \[ns\].
+    pub fn clock_ahead_ns(&self, now_ns: i64) -> i64 {
+        self.clock.offset_ns(now_ns)
+    }
+
+    /// Learns what a frame tells of the sender's clock, and puts into it when it was
+    /// sent by the clock of this end.
+    pub fn synchronise(&mut self, frame: &mut LinkFrame, now_ns: i64) {
+        self.heard = Some((frame.stamp_ns, now_ns));
+        if let Some(echo) = frame.echo {
+            let held_ns = i64::from(echo.held_ns);
+            let there_ns = frame.stamp_ns.saturating_sub(held_ns);
+            self.clock
+                .observe(echo.sent_ns, there_ns, frame.stamp_ns, now_ns);
+        }
+        frame.sent_ns = frame.stamp_ns.saturating_sub(self.clock.offset_ns(now_ns));
+    }
+
     /// A frame was decoded at `now_ns`. Says whether to act on it.
-    ///
-    /// A sender that started again counts from zero: its sequence numbers go
-    /// back while its clock goes on. Such a frame is the newest, and counting
-    /// of losses starts again with it. A frame with a higher number that was
-    /// sent earlier is left from before the restart, or replayed: late.
     pub fn received(&mut self, frame: &LinkFrame, now_ns: i64) -> Arrival {
-        let left_over = self.newest.is_some_and(|newest| {
-            behind(newest.sequence, frame.sequence) && frame.sent_ns < newest.sent_ns
-        });
-        if left_over {
-            self.refused.late += 1;
-            return Arrival::Late;
-        }
-        let restarted = self.newest.is_some_and(|newest| {
-            behind(frame.sequence, newest.sequence) && frame.sent_ns > newest.sent_ns
-        });
-        if restarted {
-            self.window.restart();
-            self.transit_ns = None;
-        }
         match self.window.arrived(frame.sequence, now_ns) {
             Fate::Replayed => {
                 self.refused.replayed += 1;
@@ -195,7 +212,6 @@ impl LinkMeter {
                     }
                 }
                 self.newest = Some(Newest {
-                    sequence: frame.sequence,
                     sent_ns: frame.sent_ns,
                     arrived_ns: now_ns,
                 });
@@ -216,19 +232,23 @@ impl LinkMeter {
     /// What to echo in a frame sent at `now_ns`; `None` before the first
     /// arrival, and once it has been held for longer than the field can say (4.3 s).
     pub fn echo(&self, now_ns: i64) -> Option<Echo> {
-        let newest = self.newest?;
-        let held = now_ns.saturating_sub(newest.arrived_ns);
+        let (stamp_ns, arrived_ns) = self.heard?;
+        let held = now_ns.saturating_sub(arrived_ns);
         Some(Echo {
-            sent_ns: newest.sent_ns,
+            sent_ns: stamp_ns,
             held_ns: u32::try_from(held).ok()?,
         })
     }
 
+    /// When the newest frame arrived \[ns\].
+    pub fn arrived_ns(&self) -> Option<i64> {
+        self.newest.map(|newest| newest.arrived_ns)
+    }
+
     /// Time since the newest frame arrived \[s\]; infinite before the first.
     pub fn silence(&self, now_ns: i64) -> f64 {
-        self.newest.map_or(f64::INFINITY, |newest| {
-            seconds(now_ns.saturating_sub(newest.arrived_ns))
-        })
+        self.newest
+            .map_or(f64::INFINITY, |newest| passed(newest.arrived_ns, now_ns))
     }
 
     /// What is known at `now_ns`.
@@ -243,11 +263,30 @@ impl LinkMeter {
             age: self.newest.map_or(f64::INFINITY, |newest| {
                 seconds(now_ns.saturating_sub(newest.sent_ns))
             }),
+            clock: ClockMeasurement {
+                offset: seconds(self.clock.offset_ns(now_ns)),
+                drift: self.clock.drift(),
+                error: self.clock.error(),
+                jumps: self.clock.jumps(),
+            },
             sent: self.sent,
             received: self.received,
             lost: self.window.lost(),
             refused: self.refused,
         }
+    }
+}
+
+/// Frames may arrive by so much after the step that takes them began \[ns\].
+const LATEST_ARRIVAL: i64 = 50_000_000;
+
+/// Time since then \[s\]; infinite where then is ahead: the clock jumped back, and
+/// nobody knows.
+pub(crate) fn passed(then_ns: i64, now_ns: i64) -> f64 {
+    let passed_ns = now_ns.saturating_sub(then_ns);
+    match passed_ns < -LATEST_ARRIVAL {
+        true => f64::INFINITY,
+        false => seconds(passed_ns),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What can be tuned about the servo.
 
 use super::TakeOverConfig;
-use ferntast_model::{JointCount, Joints, ParameterError, Section, check, parameters};
+use ferntast_model::{JointCount, Joints, ParameterError, check, parameters};
 
 parameters! {
     /// Tuning of the servo. Limits of the arm itself (position, velocity, torque)
@@ -31,8 +31,10 @@ parameters! {
         /// Largest acceleration of the setpoint \[rad/s²\].
         pub acceleration_limit: Vec<f64> [0.1..=1e4, "rad/s²"] = vec![40.0, 40.0],
         /// Joint speed on the way from rest to the first command after enable or
-        /// resume \[rad/s\].
-        pub approach_speed: f64 [0.001..=10.0, "rad/s"] = 0.2,
+        /// resume, above that of the hand \[rad/s\]. What the arm runs into on that way it hits
+        /// with some 100 N for each rad/s, stiff surface and gear of ROKVISS. After two
+        /// seconds it grows, so that a hand that does not wait is caught.
+        pub approach_speed: f64 [0.001..=10.0, "rad/s"] = 0.06,
         /// Natural frequency ω of the tracker that smooths commands \[rad/s\].
         pub tracker_frequency: f64 [1.0..=300.0, "rad/s"] = 80.0,
         /// Proportional gain k_P on the motor position \[Nm/rad\].
@@ -46,6 +48,8 @@ parameters! {
         pub hold_stiffness: Vec<f64> [0.0..=1e6, "Nm/rad"] = vec![1000.0, 1000.0],
         /// k_D while paused \[Nm·s/rad\].
         pub hold_damping: Vec<f64> [0.0..=1e6, "Nm·s/rad"] = vec![40.0, 40.0],
+        /// How a paused arm lets go of what it presses against.
+        pub release: ReleaseConfig [section] = ReleaseConfig::default(),
         /// Share of the modelled friction that is fed forward \[-\].
         pub friction_compensation: f64 [0.0..=1.0, "-"] = 0.9,
         /// Setpoint speed below which the friction fed forward fades out \[rad/s\].
@@ -59,6 +63,19 @@ parameters! {
         pub overspeed_share: f64 [1.0..=10.0, "-"] = 1.5,
     }
     check ServoConfig::workspace_is_not_empty;
+}
+
+parameters! {
+    /// How a paused joint lets go of what it presses against. Every key may be left out.
+    #[derive(Copy)]
+    pub struct ReleaseConfig {
+        /// Torque that it keeps \[Nm\]: above the noise and the zero error of its sensor.
+        pub torque: f64 [0.01..=1e3, "Nm"] = 0.7,
+        /// How fast it gives way \[rad/s\].
+        pub speed: f64 [0.001..=1.0, "rad/s"] = 0.15,
+        /// How far at most \[rad\]; 0: it keeps what it presses with.
+        pub distance: f64 [0.0..=0.2, "rad"] = 0.02,
+    }
 }
 
 /// What is tuned joint by joint.
@@ -112,11 +129,5 @@ impl ServoConfig {
             check(&key, self.workspace_lower[axis], -10.0, upper, "m")?;
         }
         Ok(())
-    }
-}
-
-impl Section for TakeOverConfig {
-    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
-        self.validate().map_err(|error| error.within(key))
     }
 }

@@ -2,11 +2,16 @@
 
 use super::{
     FeedForward, JointTuning, LimitedTorque, PositionLaw, ServoConfig, Setpoint, SetpointGenerator,
-    SetpointLimits,
+    SetpointLimits, config::ReleaseConfig, release::Release,
 };
 use crate::operating::{Event, OperatingState};
+use crate::planted::{Planted, Rule};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{ParameterError, check};
+
+/// After enabling the torque is led over within this time from what the motor gave
+/// before [s].
+const LEAD_TIME: f64 = 0.05;
 
 /// What one joint measures.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +22,8 @@ pub(super) struct Seen {
     pub(super) velocity: f64,
     /// Joint torque \[Nm\].
     pub(super) torque: f64,
+    /// What of it is not the arm's own weight, where that is known \[Nm\].
+    pub(super) external: f64,
 }
 
 /// What one joint is to do.
@@ -35,13 +42,22 @@ pub(super) struct Driven {
 pub(super) struct JointServo {
     law: PositionLaw,
     generator: SetpointGenerator,
-    /// Where it was paused [rad].
+    /// Where it is held while paused [rad].
     hold: f64,
+    release: Release,
+    release_config: ReleaseConfig,
+    /// What the motor gave last [Nm].
+    torque: f64,
+    /// What it gave when it was enabled, and how far that is led over, 0 … 1.
+    before: f64,
+    led: f64,
     limits: [f64; 2],
     limit_margin: f64,
     /// Measured positions outside this are a fault [rad].
     fault_range: [f64; 2],
     overspeed: f64,
+    torque_limit: f64,
+    planted: Planted,
 }
 
 impl JointServo {
@@ -67,11 +83,26 @@ impl JointServo {
                 },
             ),
             hold: 0.0,
+            release: Release::default(),
+            torque: 0.0,
+            before: 0.0,
+            led: 1.0,
+            release_config: config.release,
             limits,
             limit_margin: config.limit_margin,
             fault_range: limits,
             overspeed: config.overspeed_share * joint.velocity_limit,
+            torque_limit: joint.motor_torque_limit,
+            planted: Planted::NONE,
         })
+    }
+
+    /// The same with a planted bug.
+    pub(super) fn planted(mut self, planted: Planted) -> JointServo {
+        self.law.planted = planted;
+        self.generator.planted = planted;
+        self.planted = planted;
+        self
     }
 
     pub(super) fn feed_forward(&self) -> &FeedForward {
@@ -86,6 +117,16 @@ impl JointServo {
         self.generator.setpoint()
     }
 
+    /// Whether its setpoint is where the commands are.
+    pub(super) fn is_near(&self) -> bool {
+        self.generator.is_near()
+    }
+
+    /// The arm has come to the first command.
+    pub(super) fn end_approach(&mut self) {
+        self.generator.end_approach();
+    }
+
     pub(super) fn set_target(&mut self, target: f64) {
         self.generator.set_target(target);
     }
@@ -94,13 +135,33 @@ impl JointServo {
     /// be brought back: only further out is a fault then.
     pub(super) fn start(&mut self, position: f64) {
         self.generator.start(position);
+        self.release = Release::begin(&self.release_config);
+        (self.before, self.led) = (self.torque, 0.0);
         let ([lower, upper], margin) = (self.limits, self.limit_margin);
         self.fault_range = [position.min(lower) - margin, position.max(upper) + margin];
     }
 
+    /// What the motor was given last \[Nm\].
+    pub(super) fn motor_torque(&self) -> f64 {
+        self.torque
+    }
+
+    /// The most that it gives \[Nm\].
+    pub(super) fn torque_limit(&self) -> f64 {
+        self.torque_limit
+    }
+
+    /// Faster than this is a fault \[rad/s\].
+    pub(super) fn overspeed(&self) -> f64 {
+        self.overspeed
+    }
+
     /// Where to be while paused \[rad\].
     pub(super) fn hold_at(&mut self, position: f64) {
-        self.hold = position;
+        self.release = Release::begin(&self.release_config);
+        if !self.planted.lacks(Rule::HoldWhereMeasured) {
+            self.hold = position;
+        }
     }
 
     /// What is wrong with what joint number `number` (from 1) measures.
@@ -115,6 +176,23 @@ impl JointServo {
 
     /// One step of `dt` \[s\].
     pub(super) fn drive(&mut self, state: OperatingState, dt: f64, seen: &Seen) -> Driven {
+        let mut driven = self.law(state, dt, seen);
+        if state == OperatingState::Enabled && self.led < 1.0 {
+            self.led = (self.led + dt / LEAD_TIME).min(1.0);
+            let own = &mut driven.torque.torque;
+            *own = (1.0 - self.led) * self.before + self.led * *own;
+        }
+        self.torque = driven.torque.torque;
+        driven
+    }
+
+    /// Where to go from `hold`, if it lets go of what it presses against.
+    fn give_way(&mut self, hold: f64, dt: f64, seen: &Seen) -> Option<Setpoint> {
+        self.release
+            .step(&self.release_config, dt, hold, seen.external)
+    }
+
+    fn law(&mut self, state: OperatingState, dt: f64, seen: &Seen) -> Driven {
         let (position, velocity) = (seen.position, seen.velocity);
         match state {
             OperatingState::Disabled | OperatingState::Fault => {
@@ -122,13 +200,26 @@ impl JointServo {
                 Driven::default()
             }
             OperatingState::Paused => {
+                let way_out = self.give_way(self.hold, dt, seen);
+                self.hold = way_out.map_or(self.hold, |own| own.position);
                 self.generator.start(self.hold);
+                let torque = match way_out {
+                    Some(setpoint) => self.law.follow(&setpoint, position, velocity, seen.torque),
+                    None => self.law.hold(self.hold, position, velocity),
+                };
                 Driven {
-                    torque: self.law.hold(self.hold, position, velocity),
+                    torque,
                     ..Driven::default()
                 }
             }
             OperatingState::Enabled => {
+                // Nobody feels yet what it presses with.
+                let at = self.generator.setpoint().position;
+                if self.generator.is_waiting()
+                    && let Some(setpoint) = self.give_way(at, dt, seen)
+                {
+                    self.generator.start(setpoint.position);
+                }
                 let velocity_limited = self.generator.step(dt);
                 let setpoint = self.generator.setpoint();
                 Driven {

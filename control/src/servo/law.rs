@@ -15,6 +15,7 @@
 //! friction: about 165 Nm·s/rad against 1000 · 0.001 / 2 + 40.
 
 use super::{FeedForward, JointTuning, ServoConfig, Setpoint};
+use crate::planted::{Planted, Rule};
 use ferntast_model::ParameterError;
 use ferntast_model::joint::JointParameters;
 
@@ -31,6 +32,7 @@ pub struct PositionLaw {
     torque_limit: f64,
     compensation: f64,
     smoothing: f64,
+    pub(super) planted: Planted,
 }
 
 /// A motor torque, and whether it was limited.
@@ -64,6 +66,7 @@ impl PositionLaw {
             torque_limit: joint.motor_torque_limit,
             compensation: config.friction_compensation,
             smoothing: config.friction_smoothing,
+            planted: Planted::NONE,
         })
     }
 
@@ -88,8 +91,11 @@ impl PositionLaw {
     ) -> LimitedTorque {
         let pressing = self.stiffness * (setpoint.position - position);
         let limited = pressing.abs() > self.pressing_limit;
-        let feedback = pressing.clamp(-self.pressing_limit, self.pressing_limit)
-            + self.damping * (setpoint.velocity - velocity);
+        let bounded = match self.planted.lacks(Rule::PressingLimit) {
+            true => pressing,
+            false => pressing.clamp(-self.pressing_limit, self.pressing_limit),
+        };
+        let feedback = bounded + self.damping * (setpoint.velocity - velocity);
         let feed_forward = self.inertia * setpoint.acceleration + self.friction(setpoint, load);
         let torque = self.limit(feedback + feed_forward);
         LimitedTorque {
@@ -121,8 +127,12 @@ impl PositionLaw {
                 limited: true,
             };
         }
+        let bounded = match self.planted.lacks(Rule::TorqueLimit) {
+            true => torque,
+            false => torque.clamp(-self.torque_limit, self.torque_limit),
+        };
         LimitedTorque {
-            torque: torque.clamp(-self.torque_limit, self.torque_limit),
+            torque: bounded,
             limited: torque.abs() > self.torque_limit,
         }
     }

@@ -15,14 +15,19 @@
 //! approach speed, and never jumps. Commands that arrive while the arm is not
 //! enabled are neither acted on nor remembered. Time in which the servo itself
 //! was held up does not count as silence of others, if they are heard again
-//! within 5 ms.
+//! within 5 ms; but after more than 10 ms of it the arm is no longer where it was
+//! commanded to be, and what it is commanded then counts as a first command. It stands
+//! until then, and waits as long as for any other command.
 
 mod command;
 mod compliance;
 mod config;
 mod feed_forward;
+mod frozen;
 mod joint;
+mod jumped;
 mod law;
+mod release;
 mod setpoint;
 mod stall;
 mod take_over;
@@ -32,19 +37,26 @@ mod tip;
 
 pub use command::{Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target};
 pub use compliance::{stiffest, tip_compliance};
-pub use config::{JointTuning, ServoConfig};
+pub use config::{JointTuning, ReleaseConfig, ServoConfig};
 pub use feed_forward::{FedForward, FedTorque, FeedForward, MAX_TERMS};
 pub use law::{LimitedTorque, PositionLaw};
 pub use setpoint::{Setpoint, SetpointGenerator, SetpointLimits};
 pub use take_over::{FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, TakenOver};
 
+use self::frozen::FrozenWatch;
 use self::joint::{JointServo, Seen};
-use self::stall::Stall;
+use self::jumped::JumpWatch;
+use self::stall::{BEGINS_ANEW, Stall};
 use crate::operating::{Event, OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
+use crate::planted::{Planted, Rule};
 use crate::{nanoseconds, seconds};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::kinematics::Kinematics;
 use ferntast_model::{JointCount, Joints, ParameterError};
+
+/// After the servo was held up a measurement is of the time after that when it is not
+/// older than this \[periods\].
+const MEASURED_AFTER: f64 = 3.0;
 
 /// What the arm measures, on the joint side of the gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,14 +79,17 @@ impl Measurement {
             .all(|own| own.count() == count && own.iter().all(|value| value.is_finite()))
     }
 
-    /// What each joint measures.
-    fn joints(&self) -> impl Iterator<Item = Seen> + '_ {
+    /// What each joint measures, of which `weight` \[Nm\] is the arm's own.
+    fn joints(&self, weight: Option<Joints<f64>>) -> impl Iterator<Item = Seen> + '_ {
         let both = self.position.iter().zip(self.velocity.iter());
-        let all = both.zip(self.torque.iter());
-        all.map(|((&position, &velocity), &torque)| Seen {
+        let all = both.zip(self.torque.iter()).enumerate();
+        all.map(move |(joint, ((&position, &velocity), &torque))| Seen {
             position,
             velocity,
             torque,
+            external: weight
+                .and_then(|own| own.get(joint).copied())
+                .map_or(0.0, |own| torque - own),
         })
     }
 }
@@ -88,6 +103,9 @@ pub struct ServoInput {
     pub command: Option<Command>,
     /// A state command that came since the last step.
     pub state_command: Option<StateCommand>,
+    /// What the joints carry of the arm's own weight where they are \[Nm\]; `None` where
+    /// that is not known: then a paused arm keeps what it presses with.
+    pub weight: Option<Joints<f64>>,
 }
 
 /// What a step of the servo gives.
@@ -135,8 +153,13 @@ pub struct Servo {
     joints: Vec<JointServo>,
     last_command_ns: Option<i64>,
     stall: Stall,
+    /// The servo has not begun again since it was held up.
+    was_held_up: bool,
+    frozen: FrozenWatch,
+    jumped: JumpWatch,
     refusals: RefusalCounts,
     accepted: u64,
+    planted: Planted,
 }
 
 impl Servo {
@@ -172,9 +195,25 @@ impl Servo {
             joints: each.collect::<Result<_, _>>()?,
             last_command_ns: None,
             stall: Stall::default(),
+            was_held_up: false,
+            frozen: FrozenWatch::default(),
+            jumped: JumpWatch::default(),
             refusals: RefusalCounts::default(),
             accepted: 0,
+            planted: Planted::NONE,
         })
+    }
+
+    /// The same with a planted bug.
+    pub fn planted(mut self, planted: Planted) -> Servo {
+        self.machine = self.machine.planted(planted);
+        self.stall.planted = planted;
+        self.frozen.planted = planted;
+        self.jumped.planted = planted;
+        let joints = self.joints.into_iter();
+        self.joints = joints.map(|joint| joint.planted(planted)).collect();
+        self.planted = planted;
+        self
     }
 
     /// How many joints it moves.
@@ -208,6 +247,13 @@ impl Servo {
     /// One period at `now_ns` \[ns since the UNIX epoch\].
     pub fn step(&mut self, now_ns: i64, input: &ServoInput) -> ServoOutput {
         let stalled_ns = self.stall.step(now_ns);
+        if self.stall.has_just_ended(BEGINS_ANEW) && !self.planted.lacks(Rule::BeginAfterStall) {
+            self.was_held_up = true;
+            // It stands: those who were held up as well have the time of a watchdog to be heard.
+            self.last_command_ns = self.last_command_ns.map(|_| now_ns);
+        }
+        // What was said while the servo was held up is not where the arm is to go now.
+        let listens = !self.was_held_up;
         for joint in &mut self.joints {
             joint.feed_forward_mut().step(self.period);
         }
@@ -221,15 +267,23 @@ impl Servo {
                 self.machine.event(*event);
             }
             Ok(measured) => {
-                if was != OperatingState::Enabled && self.state() == OperatingState::Enabled {
-                    self.arm(measured);
+                if self.state() == OperatingState::Enabled {
+                    if was != OperatingState::Enabled {
+                        self.last_command_ns = None;
+                        self.was_held_up = false;
+                        self.begin(measured);
+                    } else if self.was_held_up {
+                        // Until it is measured again: where it was measured last.
+                        self.begin(measured);
+                        self.was_held_up = !self.is_fresh(measured, now_ns);
+                    }
                 }
                 self.supervise(measured);
             }
         }
         let refused = input
             .command
-            .and_then(|command| self.take(&command, now_ns).err());
+            .and_then(|command| self.take(&command, now_ns, listens).err());
         self.watch(now_ns - stalled_ns);
         if was == OperatingState::Enabled
             && self.state() == OperatingState::Paused
@@ -260,7 +314,7 @@ impl Servo {
                 .map_or(f64::NAN, |own| seconds(now_ns.saturating_sub(own.stamp_ns))),
         };
         if let Ok(measured) = measurement {
-            self.drive(&measured, &mut output);
+            self.drive(&measured, input.weight, &mut output);
         }
         output.setpoint = self.setpoint();
         output
@@ -271,7 +325,8 @@ impl Servo {
         let Some(measured) = newest else {
             return Err(Event::MeasurementSilent);
         };
-        let silent = now_ns.saturating_sub(measured.stamp_ns) > self.measurement_watchdog_ns;
+        let silent = now_ns.saturating_sub(measured.stamp_ns) > self.measurement_watchdog_ns
+            && !self.planted.lacks(Rule::MeasurementWatchdog);
         if measured.stamp_ns <= 0 || silent {
             return Err(Event::MeasurementSilent);
         }
@@ -281,9 +336,14 @@ impl Servo {
         Ok(*measured)
     }
 
+    /// Whether it was measured after the servo was held up.
+    fn is_fresh(&self, measured: &Measurement, now_ns: i64) -> bool {
+        let age_ns = now_ns.saturating_sub(measured.stamp_ns);
+        age_ns <= nanoseconds(MEASURED_AFTER * self.period)
+    }
+
     /// Starts from where the arm is.
-    fn arm(&mut self, measured: &Measurement) {
-        self.last_command_ns = None;
+    fn begin(&mut self, measured: &Measurement) {
         self.commands.rearm();
         for (joint, position) in self.joints.iter_mut().zip(measured.position.iter()) {
             joint.start(*position);
@@ -291,7 +351,22 @@ impl Servo {
     }
 
     fn supervise(&mut self, measured: &Measurement) {
-        for (number, (joint, seen)) in (1..).zip(self.joints.iter().zip(measured.joints())) {
+        let given = Joints::from_fn(self.count, |joint| self.joints[joint].motor_torque());
+        let limits = Joints::from_fn(self.count, |joint| self.joints[joint].torque_limit());
+        let overspeed = Joints::from_fn(self.count, |joint| self.joints[joint].overspeed());
+        let frozen = self.frozen.step(measured, given, &limits);
+        let jumped = self.jumped.step(measured, &overspeed);
+        let driven = [OperatingState::Enabled, OperatingState::Paused].contains(&self.state());
+        let frozen = frozen.map(Event::MeasurementFrozen);
+        for event in frozen
+            .into_iter()
+            .chain(jumped.map(Event::MeasurementJumped))
+        {
+            if driven {
+                self.machine.event(event);
+            }
+        }
+        for (number, (joint, seen)) in (1..).zip(self.joints.iter().zip(measured.joints(None))) {
             for event in joint.faults(number, &seen) {
                 self.machine.event(event);
             }
@@ -299,8 +374,17 @@ impl Servo {
     }
 
     /// Acts on a command that was not seen before.
-    fn take(&mut self, command: &Command, now_ns: i64) -> Result<(), CommandRefusal> {
-        if !self.commands.is_new(command) || self.state() != OperatingState::Enabled {
+    fn take(
+        &mut self,
+        command: &Command,
+        now_ns: i64,
+        listens: bool,
+    ) -> Result<(), CommandRefusal> {
+        if !self.commands.is_new(command) {
+            return Ok(());
+        }
+        self.machine.heard();
+        if self.state() != OperatingState::Enabled || !listens {
             return Ok(());
         }
         let posture = self.setpoint().map(|own| own.position);
@@ -309,7 +393,8 @@ impl Servo {
                 for (joint, target) in self.joints.iter_mut().zip(targets.iter()) {
                     joint.set_target(*target);
                 }
-                self.last_command_ns = Some(now_ns);
+                // From when it was made, not from when it got here.
+                self.last_command_ns = Some(command.stamp_ns.min(now_ns));
                 self.accepted += 1;
                 Ok(())
             }
@@ -324,6 +409,7 @@ impl Servo {
         if self
             .last_command_ns
             .is_some_and(|last| now_ns.saturating_sub(last) > self.command_watchdog_ns)
+            && !self.planted.lacks(Rule::CommandWatchdog)
         {
             self.machine.event(Event::CommandSilent);
         }
@@ -333,15 +419,23 @@ impl Servo {
         Joints::from_fn(self.count, |joint| self.joints[joint].setpoint())
     }
 
-    fn drive(&mut self, measured: &Measurement, output: &mut ServoOutput) {
+    fn drive(
+        &mut self,
+        measured: &Measurement,
+        weight: Option<Joints<f64>>,
+        output: &mut ServoOutput,
+    ) {
         let state = self.machine.state();
-        let joints = self.joints.iter_mut().zip(measured.joints());
+        let joints = self.joints.iter_mut().zip(measured.joints(weight));
         for (torque, (joint, seen)) in output.torque.iter_mut().zip(joints) {
             let driven = joint.drive(state, self.period, &seen);
             *torque = driven.torque.torque;
             output.effort_limited |= driven.torque.limited;
             output.velocity_limited |= driven.velocity_limited;
             output.approaching |= driven.approaching;
+        }
+        if output.approaching && self.joints.iter().all(JointServo::is_near) {
+            self.joints.iter_mut().for_each(JointServo::end_approach);
         }
     }
 }

@@ -11,6 +11,8 @@
 //! brakes in time: the speed towards the target is at most
 //! √(2a(|d| − a/2k²)), with k|d| near it.
 
+use crate::planted::{Planted, Rule};
+
 /// Position, velocity and acceleration that one joint should have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Setpoint {
@@ -29,7 +31,8 @@ pub struct SetpointLimits {
     pub velocity: f64,
     /// Largest acceleration \[rad/s²\].
     pub acceleration: f64,
-    /// Largest speed on the way to the first command \[rad/s\].
+    /// Largest speed on the way to the first command, for its first two seconds, above
+    /// the speed of the hand \[rad/s\].
     pub approach: f64,
     /// Lower end of the range \[rad\].
     pub lower: f64,
@@ -39,8 +42,23 @@ pub struct SetpointLimits {
 
 /// Share of the acceleration limit that braking counts on.
 const BRAKING_SHARE: f64 = 0.8;
-/// The approach is over once the setpoint is this near to the tracker [rad].
-const APPROACHED: f64 = 1e-3;
+/// For so long the first command is approached at the approach speed; then faster and
+/// faster, so that a hand that does not wait is caught [s].
+const PATIENCE: f64 = 2.0;
+/// How fast the speed of the approach grows then [rad/s²].
+const HURRY: f64 = 0.2;
+/// Time over which the speed of the hand is averaged [s].
+const HAND_SPEED_TIME: f64 = 0.25;
+/// Acceleration at the start, as a share of its limit: with that of a motor of 1 kg m²
+/// the torque begins with a step of 2 Nm, not of 40.
+const FIRST_SHARE: f64 = 0.05;
+/// Time in which the acceleration is led over to its limit after the start [s].
+const LEAD_TIME: f64 = 0.3;
+/// A joint has come to the first command once the setpoint is this near to the tracker [rad],
+const APPROACHED: f64 = 0.5e-3;
+/// and this near to what is commanded, which the tracker overshoots after a sudden
+/// movement of the hand [rad].
+const AT_COMMAND: f64 = 4e-3;
 
 /// Setpoint of one joint.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +69,15 @@ pub struct SetpointGenerator {
     tracked_position: f64,
     tracked_velocity: f64,
     approaching: bool,
+    near: bool,
+    /// Time since the first command \[s\].
+    since_first: f64,
+    /// Speed of the commands, averaged \[rad/s\].
+    hand_speed: f64,
+    /// How far the acceleration is led over to its limit, 0 … 1.
+    led: f64,
     setpoint: Setpoint,
+    pub(super) planted: Planted,
 }
 
 impl SetpointGenerator {
@@ -64,14 +90,26 @@ impl SetpointGenerator {
             tracked_position: 0.0,
             tracked_velocity: 0.0,
             approaching: true,
+            near: false,
+            since_first: 0.0,
+            hand_speed: 0.0,
+            led: 0.0,
             setpoint: Setpoint::default(),
+            planted: Planted::NONE,
         }
     }
 
     /// Starts at rest at `position` \[rad\] without a target.
     pub fn start(&mut self, position: f64) {
+        if self.planted.lacks(Rule::BeginWhereMeasured) {
+            return;
+        }
         self.target = None;
         self.approaching = true;
+        self.near = false;
+        self.since_first = 0.0;
+        self.hand_speed = 0.0;
+        self.led = 0.0;
         self.setpoint = Setpoint {
             position,
             ..Setpoint::default()
@@ -87,9 +125,25 @@ impl SetpointGenerator {
         self.target = Some(target);
     }
 
+    /// Whether it waits for a first command.
+    pub fn is_waiting(&self) -> bool {
+        self.target.is_none()
+    }
+
     /// Whether it is still on its way to the first command.
     pub fn is_approaching(&self) -> bool {
         self.target.is_some() && self.approaching
+    }
+
+    /// Whether it is where the commands are.
+    pub fn is_near(&self) -> bool {
+        self.near
+    }
+
+    /// The arm has come to the first command: from now on at full speed. That is so when
+    /// all its joints are near, as a joint that goes ahead of others takes the tip elsewhere.
+    pub fn end_approach(&mut self) {
+        self.approaching = false;
     }
 
     /// The setpoint.
@@ -105,9 +159,23 @@ impl SetpointGenerator {
             return false;
         };
         self.track(target, dt);
-        let limits = self.limits;
-        let top = if self.approaching {
-            limits.approach.min(limits.velocity)
+        let mut limits = self.limits;
+        self.led = (self.led + dt / LEAD_TIME).min(1.0);
+        // Slowly at first: where it starts to move, friction that is fed forward turns its
+        // sign, and the torque would jump with it.
+        let share = if self.approaching {
+            0.0
+        } else {
+            self.led * self.led
+        };
+        limits.acceleration *= FIRST_SHARE + (1.0 - FIRST_SHARE) * share;
+        let top = if self.approaching && !self.planted.lacks(Rule::ApproachSpeed) {
+            self.since_first += dt;
+            self.hand_speed +=
+                (self.tracked_velocity.abs() - self.hand_speed) * (dt / HAND_SPEED_TIME).min(1.0);
+            let hurry = HURRY * (self.since_first - PATIENCE).max(0.0);
+            // What the arm runs into it hits no harder than the hand would have it hit.
+            (limits.approach + self.hand_speed + hurry).min(limits.velocity)
         } else {
             limits.velocity
         };
@@ -115,7 +183,7 @@ impl SetpointGenerator {
         let wanted = self
             .tracked_velocity
             .clamp(-limits.velocity, limits.velocity)
-            + self.closing_speed(distance);
+            + self.closing_speed(distance, limits.acceleration);
         let bounded = wanted.clamp(-top, top);
         let step = limits.acceleration * dt;
         let change = bounded - self.setpoint.velocity;
@@ -130,10 +198,8 @@ impl SetpointGenerator {
             acceleration: ((velocity - self.setpoint.velocity) / dt)
                 .clamp(-limits.acceleration, limits.acceleration),
         };
-        let far = (self.tracked_position - position).abs();
-        if self.approaching && far < APPROACHED {
-            self.approaching = false;
-        }
+        self.near = (self.tracked_position - position).abs() < APPROACHED
+            && (target - position).abs() < AT_COMMAND;
         wanted.abs() > top || change.abs() > step * (1.0 + 1e-9)
     }
 
@@ -144,9 +210,9 @@ impl SetpointGenerator {
         self.tracked_position += (self.tracked_velocity + 2.0 * omega * error) * dt;
     }
 
-    fn closing_speed(&self, distance: f64) -> f64 {
+    fn closing_speed(&self, distance: f64, acceleration: f64) -> f64 {
         let k = 1.25 * self.frequency;
-        let a = BRAKING_SHARE * self.limits.acceleration;
+        let a = BRAKING_SHARE * acceleration;
         let far = distance.abs();
         let speed = if far <= a / (k * k) {
             k * far
@@ -171,6 +237,14 @@ mod tests {
         upper: 2.0,
     };
 
+    /// One step of an arm of one joint.
+    fn step_alone(generator: &mut SetpointGenerator) {
+        generator.step(DT);
+        if generator.is_near() {
+            generator.end_approach();
+        }
+    }
+
     #[test]
     fn constant_velocity_is_followed_without_lag() {
         let mut generator = SetpointGenerator::new(80.0, LIMITS);
@@ -182,7 +256,7 @@ mod tests {
             if k % 2 == 0 {
                 generator.set_target(position);
             }
-            generator.step(DT);
+            step_alone(&mut generator);
             if k > 1200 {
                 worst = worst.max((generator.setpoint().position - position).abs());
             }
@@ -197,13 +271,48 @@ mod tests {
         generator.start(0.5);
         generator.set_target(1.0);
         let mut steps = 0;
-        while generator.is_approaching() && steps < 10_000 {
+        while !generator.is_near() && steps < 10_000 {
             generator.step(DT);
-            assert!(generator.setpoint().velocity <= 0.2 + 1e-12);
+            assert!(generator.is_approaching());
+            let late = (f64::from(steps) * DT - 2.0).max(0.0);
+            assert!(generator.setpoint().velocity <= 0.2 + 0.2 * late + 1e-3);
             steps += 1;
         }
-        // 0.5 rad at 0.2 rad/s is 2.5 s.
-        assert!((2400..2800).contains(&steps), "{steps}");
+        // 0.4 rad at 0.2 rad/s, and 0.1 rad at a little more.
+        assert!((2300..2600).contains(&steps), "{steps}");
+    }
+
+    #[test]
+    fn a_hand_that_moves_is_approached_faster_by_its_own_speed() {
+        let mut generator = SetpointGenerator::new(80.0, LIMITS);
+        generator.start(-0.1);
+        let caught = (0..3000).find(|&step| {
+            let late = (f64::from(step) * DT - PATIENCE).max(0.0);
+            generator.set_target(0.5 * f64::from(step) * DT);
+            generator.step(DT);
+            let allowed = 0.5 + LIMITS.approach + HURRY * late;
+            assert!(generator.setpoint().velocity <= allowed + 1e-6);
+            generator.is_near()
+        });
+        // 0.1 rad at 0.2 rad/s, and what it lost while it took up speed.
+        assert!(
+            caught.is_some_and(|step| (800..2000).contains(&step)),
+            "{caught:?}"
+        );
+    }
+
+    #[test]
+    fn a_hand_that_does_not_wait_is_caught() {
+        let mut generator = SetpointGenerator::new(80.0, LIMITS);
+        generator.start(-1.0);
+        // To and fro at 0.6 rad/s, three times as fast as the approach.
+        let hand = |step: u32| 0.3 * (2.0 * f64::from(step) * DT).sin();
+        let caught = (0..20_000).find(|step| {
+            generator.set_target(hand(*step));
+            generator.step(DT);
+            generator.is_near()
+        });
+        assert!(caught.is_some_and(|step| step > 2000), "{caught:?}");
     }
 
     proptest! {
@@ -216,7 +325,7 @@ mod tests {
             generator.start(start);
             let mut last = generator.setpoint();
             let mut step = |generator: &mut SetpointGenerator| {
-                generator.step(DT);
+                step_alone(generator);
                 let now = generator.setpoint();
                 prop_assert!(now.velocity.abs() <= LIMITS.velocity + 1e-9);
                 prop_assert!((now.position - last.position).abs() <= LIMITS.velocity * DT + 1e-12);

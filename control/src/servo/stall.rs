@@ -1,12 +1,16 @@
 //! Time in which the servo itself did not run.
 
 use crate::nanoseconds;
+use crate::planted::{Planted, Rule};
 
 /// A step that comes later than this after the one before was held up \[s\].
 const LATE: f64 = 0.002;
 /// For so long after it was held up, the servo is patient with others \[s\]:
 /// they were held up as well, and are about to be heard again.
 const RECOVERY: f64 = 0.005;
+/// After it was held up for longer than this, it begins where the arm is \[s\]: the drives
+/// are let go of after as long, and other hands may have moved the arm.
+pub(super) const BEGINS_ANEW: f64 = 0.010;
 
 /// Notes when the servo itself was held up, as a computer without a real-time
 /// kernel holds up all its processes now and then. What fell silent only in
@@ -16,6 +20,8 @@ pub(super) struct Stall {
     last_ns: Option<i64>,
     length_ns: i64,
     ended_ns: i64,
+    just_ended: bool,
+    pub(super) planted: Planted,
 }
 
 impl Stall {
@@ -24,15 +30,24 @@ impl Stall {
     pub(super) fn step(&mut self, now_ns: i64) -> i64 {
         let since_ns = self.last_ns.map_or(0, |last| now_ns.saturating_sub(last));
         self.last_ns = Some(now_ns);
-        if since_ns > nanoseconds(LATE) {
+        // A clock that goes back hides how long it was.
+        self.just_ended = since_ns.saturating_abs() > nanoseconds(LATE);
+        if self.just_ended {
             self.length_ns = since_ns;
             self.ended_ns = now_ns;
         }
-        if now_ns.saturating_sub(self.ended_ns) <= nanoseconds(RECOVERY) {
-            self.length_ns
+        let patient = now_ns.saturating_sub(self.ended_ns) <= nanoseconds(RECOVERY);
+        if patient || self.planted.lacks(Rule::PatienceEnds) {
+            self.length_ns.max(0)
         } else {
             0
         }
+    }
+
+    /// Whether the step is the first after it was held up for longer than `length` \[s\],
+    /// or after its clock jumped so far.
+    pub fn has_just_ended(&self, length: f64) -> bool {
+        self.just_ended && self.length_ns.saturating_abs() > nanoseconds(length)
     }
 }
 
@@ -48,11 +63,14 @@ mod tests {
         let start = 1_700_000_000_000 * MS;
         for tick in 0..100 {
             assert_eq!(stall.step(start + tick * MS), 0);
+            assert!(!stall.has_just_ended(BEGINS_ANEW));
         }
         // Held up for 40 ms.
         let after = start + 139 * MS;
         for tick in 0..=5 {
             assert_eq!(stall.step(after + tick * MS), 40 * MS);
+            assert_eq!(stall.has_just_ended(BEGINS_ANEW), tick == 0);
+            assert!(!stall.has_just_ended(0.04));
         }
         assert_eq!(stall.step(after + 6 * MS), 0);
     }

@@ -1,55 +1,30 @@
 //! How far the servo lets itself be told other friction, and why it does not.
 
 use ferntast_model::friction::{Signal, StaticEffect};
-use ferntast_model::{ParameterError, check};
-use serde::{Deserialize, Serialize};
+use ferntast_model::parameters;
 
-/// How far the servo lets itself be told other friction. Every key may be left out.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct TakeOverConfig {
-    /// Largest change of a parameter, as a share of what is configured \[-\].
-    pub parameter_share: f64,
-    /// Largest change of the unloaded friction torque at any speed of its
-    /// range, as a share of the configured one \[-\]. Below 1, so that friction
-    /// stays friction.
-    pub torque_share: f64,
-    /// Largest standard error of a parameter that is taken over, as a share of
-    /// what is configured; of an effect that is not configured, as a share of its
-    /// largest coefficient \[-\].
-    pub std_error_share: f64,
-    /// Least excitation of a parameter that is taken over, 0 … 1 \[-\].
-    pub least_excitation: f64,
-    /// Time from one set of parameters to the other \[s\].
-    pub time: f64,
-}
-
-impl Default for TakeOverConfig {
-    fn default() -> Self {
-        TakeOverConfig {
-            parameter_share: 0.5,
-            torque_share: 0.5,
-            std_error_share: 0.05,
-            least_excitation: 0.9,
-            time: 2.0,
-        }
+parameters! {
+    /// How far the servo lets itself be told other friction. Every key may be left out.
+    #[derive(Copy)]
+    pub struct TakeOverConfig {
+        /// Largest change of a parameter, as a share of what is configured \[-\].
+        pub parameter_share: f64 [0.0..=10.0, "-"] = 0.5,
+        /// Largest change of the unloaded friction torque at any speed of its
+        /// range, as a share of the configured one \[-\]. Below 1, so that friction
+        /// stays friction.
+        pub torque_share: f64 [0.0..=0.95, "-"] = 0.5,
+        /// Largest standard error of a parameter that is taken over, as a share of
+        /// what is configured; of an effect that is not configured, as a share of its
+        /// largest coefficient \[-\].
+        pub std_error_share: f64 [0.0..=1.0, "-"] = 0.05,
+        /// Least excitation of a parameter that is taken over, 0 … 1 \[-\].
+        pub least_excitation: f64 [0.0..=1.0, "-"] = 0.9,
+        /// Time from one set of parameters to the other \[s\].
+        pub time: f64 [0.1..=600.0, "s"] = 2.0,
     }
 }
 
 impl TakeOverConfig {
-    /// Checks every value against its bounds.
-    ///
-    /// # Errors
-    ///
-    /// The first value that is out of bounds.
-    pub fn validate(&self) -> Result<(), ParameterError> {
-        check("parameter_share", self.parameter_share, 0.0, 10.0, "-")?;
-        check("torque_share", self.torque_share, 0.0, 0.95, "-")?;
-        check("std_error_share", self.std_error_share, 0.0, 1.0, "-")?;
-        check("least_excitation", self.least_excitation, 0.0, 1.0, "-")?;
-        check("time", self.time, 0.1, 600.0, "s")
-    }
-
     /// Whether what was found is certain, for a parameter of this `size`.
     pub(super) fn is_certain(&self, own: &FoundParameter<'_>, size: f64) -> bool {
         let most = self.std_error_share * size.abs();

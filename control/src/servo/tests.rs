@@ -153,6 +153,7 @@ impl Bench {
             measurement,
             command,
             state_command,
+            weight: None,
         };
         let output = self.servo.step(self.now, &input);
         self.torques.push_back(output.torque);
@@ -180,7 +181,7 @@ impl Bench {
     /// Enables and waits until the arm is at (x, y).
     fn approach(&mut self, x: f64, y: f64) {
         self.step(None, Some(StateCommand::Enable));
-        for _ in 0..8000 {
+        for _ in 0..20_000 {
             let command = self.tip_command(x, y);
             let output = self.step(Some(command), None);
             assert_eq!(output.refused, None);
@@ -270,14 +271,17 @@ fn silence_pauses_within_30_ms_and_latches() {
     let output = bench.step(None, Some(StateCommand::Resume));
     assert_eq!(output.state, OperatingState::Enabled);
     let mut fastest = 0.0_f64;
-    for k in 0..4000 {
+    for k in 0..12_000 {
         let command = bench.tip_command(0.30, 0.0);
         let output = bench.step(Some(command), None);
         assert!(output.approaching || k > 500);
-        fastest = fastest.max(output.setpoint[1].velocity.abs());
+        // No joint goes ahead of the others; after two seconds all go faster.
+        for setpoint in output.setpoint.iter().filter(|_| k < 2000) {
+            fastest = fastest.max(setpoint.velocity.abs());
+        }
     }
     assert!((bench.tip() - Vector2::new(0.30, 0.0)).norm() < 1e-3);
-    assert!((0.15..=0.2001).contains(&fastest), "{fastest} rad/s");
+    assert!((0.05..=0.060_01).contains(&fastest), "{fastest} rad/s");
 }
 
 #[test]
@@ -288,18 +292,52 @@ fn what_is_silent_only_while_the_servo_was_held_up_is_not_silent() {
     let held_up = 40 * MS;
     bench.now += held_up;
     for step in 0..200 {
-        // … the first of them only after two milliseconds.
-        let command = (step >= 2).then(|| bench.tip_command(0.38, 0.05));
+        // … the first of them only after a link of 20 ms.
+        let command = (step >= 20).then(|| bench.tip_command(0.38, 0.05));
         let output = bench.step(command, None);
         assert_eq!(output.state, OperatingState::Enabled, "step {step}");
     }
     // Without commands afterwards it is the commands that are silent.
     bench.now += held_up;
     let again = bench.now;
-    while bench.step(None, None).state == OperatingState::Enabled {
-        assert!(bench.now - again <= 10 * MS);
+    loop {
+        let output = bench.step(None, None);
+        if output.state != OperatingState::Enabled {
+            break;
+        }
+        assert!(output.setpoint.iter().all(|own| own.velocity == 0.0));
+        assert!(bench.now - again <= 28 * MS);
     }
-    assert!(bench.now - again >= 5 * MS);
+    assert!(bench.now - again >= 24 * MS);
+}
+
+/// Held up while the arm was moved by 0.03 rad: it begins there, forgets what it was told
+/// meanwhile, and goes back as slowly as to a first command.
+#[test]
+fn after_it_was_held_up_it_begins_where_the_arm_is() {
+    let mut bench = Bench::new([-0.6, 1.2]);
+    bench.approach(0.38, 0.05);
+    let meanwhile = bench.tip_command(0.38, 0.05);
+    bench.now += 40 * MS;
+    let moved = &mut bench.joints[1];
+    moved.motor[0] += 0.03;
+    moved.link[0] += 0.03;
+    // The first step has the measurement of before.
+    let output = bench.step(Some(meanwhile), None);
+    assert_eq!(output.setpoint[1].velocity, 0.0);
+    let mut fastest = 0.0_f64;
+    for step in 0..1000 {
+        let measured = bench.joints[1].motor[0];
+        let command = bench.tip_command(0.38, 0.05);
+        let output = bench.step(Some(command), None);
+        assert_eq!(output.state, OperatingState::Enabled, "{}", output.reason);
+        if step == 0 {
+            assert_eq!(output.setpoint[1].position, measured);
+        }
+        fastest = fastest.max(output.setpoint[1].velocity.abs());
+    }
+    assert!((0.05..=0.060_01).contains(&fastest), "{fastest} rad/s");
+    assert!((bench.tip() - Vector2::new(0.38, 0.05)).norm() < 1e-3);
 }
 
 #[test]

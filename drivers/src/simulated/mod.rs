@@ -6,6 +6,8 @@ mod description;
 
 pub use config::{arm_file, load_arm, load_config};
 
+use ferntast_control::planted::{Planted, Rule};
+use ferntast_model::ArmModel;
 use ferntast_msgs::{
     Time,
     sample::{Fault, JointNames, JointSample, Level, RobotDescriptionSample, TemperatureSample},
@@ -14,7 +16,7 @@ use ferntast_nodes::{
     config::joint_names,
     graph::{Build, NodeRow},
     node::{Node, PerJoint, Ticking, ports},
-    process::NodeError,
+    process::{NodeError, Priority},
 };
 use ferntast_sim::arm::{ArmConfig, Measurement, SimulatedArm, SimulatedArmError};
 
@@ -45,6 +47,7 @@ pub const fn row() -> NodeRow {
     NodeRow::step::<ArmPorts>(
         "arm",
         "The simulated arm; hardware takes its place by speaking the same topics",
+        Priority::Arm,
         make,
     )
 }
@@ -64,6 +67,7 @@ pub struct ArmNode {
     temperature_due: Time,
     /// What it looks like, until that is published.
     description: Option<RobotDescriptionSample>,
+    planted: Planted,
 }
 
 impl ArmNode {
@@ -73,14 +77,30 @@ impl ArmNode {
     ///
     /// A parameter out of its bounds, a posture that touches the contour.
     pub fn new(config: &ArmConfig, seed: u64) -> Result<ArmNode, SimulatedArmError> {
-        let model = config.model();
-        Ok(ArmNode {
-            joints: joint_names(&model),
-            arm: SimulatedArm::new(config, seed)?,
+        let arm = SimulatedArm::new(config, seed)?;
+        Ok(ArmNode::of(arm, &config.model()))
+    }
+
+    /// The node of `arm` as it is now; `model` is what is believed of it.
+    pub fn of(arm: SimulatedArm, model: &ArmModel) -> ArmNode {
+        ArmNode {
+            joints: joint_names(model),
+            arm,
             last: None,
             temperature_due: Time::INVALID,
-            description: Some(description::describe(&model)),
-        })
+            description: Some(description::describe(model)),
+            planted: Planted::NONE,
+        }
+    }
+
+    /// The same with a planted bug.
+    pub fn planted(self, planted: Planted) -> ArmNode {
+        ArmNode { planted, ..self }
+    }
+
+    /// The arm itself, for those who look at what is true.
+    pub fn arm(&self) -> &SimulatedArm {
+        &self.arm
     }
 }
 
@@ -104,7 +124,11 @@ impl Node for ArmNode {
                 output.health.raise(Fault::CommandInvalid, Level::ERROR);
                 [0.0; 2]
             }
-            Some(Some(command)) if silence <= COMMAND_LIFE => command.effort(),
+            Some(Some(command))
+                if silence <= COMMAND_LIFE || self.planted.lacks(Rule::DrivesOff) =>
+            {
+                command.effort()
+            }
             Some(_) => {
                 output.health.raise(Fault::CommandSilent, Level::WARN);
                 [0.0; 2]
@@ -130,7 +154,10 @@ impl Node for ArmNode {
             output.health.raise(Fault::TorqueSaturated, Level::WARN);
         }
         self.publish(now, middle, &measured, output);
-        output.description = self.description.take();
+        // A long text: not moved about in every step.
+        if self.description.is_some() {
+            output.description = self.description.take();
+        }
     }
 }
 

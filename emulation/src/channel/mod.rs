@@ -59,18 +59,15 @@ pub struct ChannelCounts {
 /// When to release which slot: earliest first, equal times in order of pushing.
 type Due = Reverse<(i64, u64, u16)>;
 
-#[derive(Clone, Copy, Debug)]
-struct Slot {
-    length: u16,
-    bytes: [u8; LONGEST_FRAME],
-}
-
 /// One direction of a link.
 #[derive(Clone, Debug)]
 pub struct Channel {
     config: ChannelConfig,
     random: Random,
-    slots: Box<[Slot]>,
+    /// Frames on their way, and how long each is. Zeros, so that memory is taken
+    /// when it is needed.
+    /// Room for [`CAPACITY`] frames, taken from the heap when made, and filled when needed.
+    slots: Vec<([u8; LONGEST_FRAME], u16)>,
     free: Vec<u16>,
     due: BinaryHeap<Due>,
     order: u64,
@@ -105,15 +102,8 @@ impl Channel {
             delay_ns: 0,
             config,
             random: Random::new(seed),
-            slots: vec![
-                Slot {
-                    length: 0,
-                    bytes: [0; LONGEST_FRAME],
-                };
-                CAPACITY
-            ]
-            .into_boxed_slice(),
-            free: (0..CAPACITY as u16).rev().collect(),
+            slots: Vec::with_capacity(CAPACITY),
+            free: Vec::with_capacity(CAPACITY),
             due: BinaryHeap::with_capacity(CAPACITY),
             order: 0,
             first_ns: None,
@@ -257,12 +247,19 @@ impl Channel {
     }
 
     fn store(&mut self, release_ns: i64, frame: &[u8]) -> bool {
-        let Some(index) = self.free.pop() else {
+        let index = match self.free.pop() {
+            Some(index) => index,
+            None if self.slots.len() == CAPACITY => return false,
+            None => {
+                self.slots.push(([0; LONGEST_FRAME], 0));
+                (self.slots.len() - 1) as u16
+            }
+        };
+        let Some((slot, length)) = self.slots.get_mut(usize::from(index)) else {
             return false;
         };
-        let slot = &mut self.slots[usize::from(index)];
-        slot.length = frame.len() as u16;
-        slot.bytes[..frame.len()].copy_from_slice(frame);
+        slot[..frame.len()].copy_from_slice(frame);
+        *length = frame.len() as u16;
         self.due.push(Reverse((release_ns, self.order, index)));
         self.order += 1;
         true
@@ -284,9 +281,9 @@ impl Channel {
             return None;
         }
         let Reverse((release_ns, _, index)) = self.due.pop()?;
-        let slot = &self.slots[usize::from(index)];
-        let length = usize::from(slot.length).min(buffer.len());
-        buffer[..length].copy_from_slice(&slot.bytes[..length]);
+        let (slot, length) = self.slots.get(usize::from(index))?;
+        let length = usize::from(*length).min(buffer.len());
+        buffer[..length].copy_from_slice(&slot[..length]);
         self.free.push(index);
         self.counts.popped += 1;
         Some((length, release_ns))

@@ -227,6 +227,7 @@ pub fn thin(signal: &[f64], factor: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::recordings::noise;
 
     #[test]
     fn polynomials_are_differentiated_exactly() {
@@ -270,18 +271,9 @@ mod tests {
 
     #[test]
     fn noise_is_separated_from_motion() {
-        let mut state = 1_u64;
+        let mut noise = noise(1);
         let signal: Vec<f64> = (0..4000)
-            .map(|i| {
-                let mut noise = -6.0;
-                for _ in 0..12 {
-                    state = state
-                        .wrapping_mul(6364136223846793005)
-                        .wrapping_add(1442695040888963407);
-                    noise += (state >> 11) as f64 / (1_u64 << 53) as f64;
-                }
-                (0.01 * f64::from(i)).sin() + 1e-3 * noise
-            })
+            .map(|i| (0.01 * f64::from(i)).sin() + 1e-3 * noise())
             .collect();
         let level = noise_level(&signal);
         assert!(level > 0.9e-3 && level < 1.1e-3, "{level}");

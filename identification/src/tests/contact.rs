@@ -1,5 +1,6 @@
 //! The engine as a whole on contacts whose answer is written down by hand.
 
+use super::{named, recordings::noise};
 use crate::data::{CustomEffect, Dataset, Inertia, JointType, ModelSpec, RecordedSession, Term};
 use crate::{Diagnosis, PrepareError, Subject, Verdict, add, compare, diagnose};
 
@@ -19,17 +20,7 @@ impl ContactState {
 
 /// Eight sessions of 45 s: sines along an edge under three normal forces.
 fn recording(force: impl Fn(&ContactState) -> f64) -> Dataset {
-    let mut state = 7_u64;
-    let mut noise = move || {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            sum += (state >> 11) as f64 / (1_u64 << 53) as f64;
-        }
-        sum
-    };
+    let mut noise = noise(7);
     let sessions = (0..8_u32).map(|k| {
         let days = 31.0 * f64::from(k);
         let scatter = 1.0 + 0.01 * noise();
@@ -83,16 +74,6 @@ fn model(effects: &[&str]) -> ModelSpec {
 
 fn ask(effects: &[&str], force: impl Fn(&ContactState) -> f64) -> Diagnosis {
     diagnose(&recording(force), &model(effects), &mut |_| ()).unwrap()
-}
-
-fn named(diagnosis: &Diagnosis) -> &str {
-    assert_eq!(
-        diagnosis.verdict,
-        Verdict::Missing,
-        "{:?}",
-        diagnosis.residual_depends_on
-    );
-    &diagnosis.candidates[0].effect
 }
 
 #[test]

@@ -13,13 +13,10 @@ pub struct JointState {
     pub temperature: f64,
 }
 
-/// J of every test recording \[kg m²\].
-pub const INERTIA: f64 = 1.2;
-
-/// Six sessions of 40 s; `torque` is τ_F.
-pub fn recording(seed: u64, torque: impl Fn(&JointState) -> f64) -> Dataset {
-    let mut state = seed.wrapping_mul(2).wrapping_add(1);
-    let mut noise = move || {
+/// Numbers with mean 0 and deviation 1, nearly normal; the same state gives the
+/// same numbers.
+pub fn noise(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
         let mut sum = -6.0;
         for _ in 0..12 {
             state = state
@@ -28,7 +25,15 @@ pub fn recording(seed: u64, torque: impl Fn(&JointState) -> f64) -> Dataset {
             sum += (state >> 11) as f64 / (1_u64 << 53) as f64;
         }
         sum
-    };
+    }
+}
+
+/// J of every test recording \[kg m²\].
+pub const INERTIA: f64 = 1.2;
+
+/// Six sessions of 40 s; `torque` is τ_F.
+pub fn recording(seed: u64, torque: impl Fn(&JointState) -> f64) -> Dataset {
+    let mut noise = noise(seed.wrapping_mul(2).wrapping_add(1));
     let temperatures = [3.0, 21.0, -5.0, 14.0, 26.0, 9.0];
     let sessions = (0..6)
         .map(|k| {

@@ -1,7 +1,7 @@
 //! The friction of one joint: a sum of effects with their values.
 
 use super::{FrictionState, JointType, MAX_PARAMETERS, Signal, StaticEffect};
-use crate::{ParameterError, check};
+use crate::{ParameterError, Section, check};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -25,6 +25,12 @@ impl FrictionParameters {
     /// An effect or parameter that is not known, missing, or out of bounds.
     pub fn validate(&self) -> Result<(), ParameterError> {
         Friction::new(self).map(|_| ())
+    }
+}
+
+impl Section for FrictionParameters {
+    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
+        self.validate().map_err(|error| error.within(key))
     }
 }
 

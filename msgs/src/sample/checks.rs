@@ -74,9 +74,9 @@ pub(super) fn whole<const N: usize>(
 }
 
 /// Refuses an empty text.
-pub(super) fn not_empty(
+pub(super) fn not_empty<const N: usize>(
     field: &'static str,
-    text: &str,
+    text: Text<N>,
     known: &'static str,
 ) -> Result<(), InvalidMessage> {
     match text.is_empty() {

@@ -95,6 +95,9 @@ faults! {
         ModelIncomplete "model incomplete",
         /// What the twin found was not taken over into the servo's feed-forward.
         TakeOverRefused "take-over refused",
+        /// What came in over the link was not sealed by the peer: damaged, played again,
+        /// or of a stranger.
+        StrangerOnLink "stranger on the link",
     }
 }
 

@@ -100,10 +100,23 @@ impl JointNames {
     }
 
     fn are_valid(&self) -> bool {
-        let different = |(place, name): (usize, &str)| {
-            !name.is_empty() && self.iter().take(place).all(|other| other != name)
-        };
-        (1..=MAX_JOINTS as u64).contains(&self.count) && self.iter().enumerate().all(different)
+        let names = &self.names[..self.len()];
+        // As they nearly always are: plain ASCII, then zeros. Bytes tell them apart then.
+        if names.iter().all(Text::is_plain) {
+            let different = |(place, name): (usize, &Text<16>)| {
+                !name.is_empty() && !names[..place].contains(name)
+            };
+            return (1..=MAX_JOINTS as u64).contains(&self.count)
+                && names.iter().enumerate().all(different);
+        }
+        let mut names = [""; MAX_JOINTS];
+        for (place, name) in names.iter_mut().zip(self.iter()) {
+            *place = name;
+        }
+        let names = &names[..self.len()];
+        let different =
+            |(place, name): (usize, &&str)| !name.is_empty() && !names[..place].contains(name);
+        (1..=MAX_JOINTS as u64).contains(&self.count) && names.iter().enumerate().all(different)
     }
 }
 

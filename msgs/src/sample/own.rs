@@ -224,6 +224,31 @@ pub struct LinkStatusSample {
     pub refused_late: u64,
 }
 
+/// Whom one end of the link talks to, and how far that one's clock is from its own.
+#[message(LinkPeer)]
+pub struct LinkPeerSample {
+    /// when it was told
+    pub stamp: Time,
+    /// which end tells it: leader or follower
+    pub end: LinkEnd,
+    /// public key of the other host, its first 48 characters; empty before the first handshake
+    pub key: Text<48>,
+    /// handshakes so far: one more with every start of either end
+    pub handshakes: u64,
+    /// it asks this end to hold: its device is not ENABLED, or it hears nothing
+    pub holds: Flag,
+    /// \[s\] the other clock is ahead of this one by so much
+    #[field(section = "From the echoes in frames, both ways taken for equally long.")]
+    pub clock_offset: f64,
+    /// the other clock is faster by so much, seconds a second
+    pub clock_drift: f64,
+    /// \[s\] by how much the offset can be wrong; infinite before the first echo
+    #[field(or_infinite)]
+    pub clock_error: f64,
+    /// how often one of the clocks jumped
+    pub clock_jumps: u64,
+}
+
 codes! {
     /// What a recorder can be told.
     pub struct RecorderAction {

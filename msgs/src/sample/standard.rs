@@ -60,11 +60,13 @@ codes! {
         PAUSE = 3 "pause",
         /// Leave the hold: re-arm.
         RESUME = 4 "resume",
+        /// Leave a hold for silent commands after a short gap in the link; no person's word.
+        RESUME_AFTER_GAP = 5 "resume_after_gap",
     }
 }
 
 /// A state command to one device.
-#[message(standard = crtk_msgs::StringStamped)]
+#[message(standard = crtk_msgs::StringStamped, stops = StateCommandSample::is_a_stop)]
 pub struct StateCommandSample {
     /// When it was given.
     pub stamp: Time,
@@ -80,6 +82,11 @@ impl StateCommandSample {
             command,
             ..StateCommandSample::initial(stamp)
         }
+    }
+
+    /// Whether it holds the device or turns its drives off.
+    fn is_a_stop(&self) -> bool {
+        matches!(self.command, StateCommand::PAUSE | StateCommand::DISABLE)
     }
 }
 

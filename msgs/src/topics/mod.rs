@@ -11,14 +11,14 @@ mod topic;
 
 pub use joint_topic::{JointNameError, JointTopic};
 pub use name::{MAX_TOPIC_NAME, TopicName, TopicNameError};
-pub use topic::{Authority, Delivery, EVENT_QUEUE, Row, Switch, Topic};
+pub use topic::{Authority, COMMANDS_SETTING, Delivery, EVENT_QUEUE, Row, Switch, Topic};
 
 use crate::{
     Message,
     sample::{
         AuthoritySample, CommandStatusSample, ContactStateSample, FrictionCommandSample,
         FrictionStatusSample, HealthSample, JointNames, JointSample, LawCommandSample,
-        LinkCommandSample, LinkStatusSample, OperatingStateSample, PoseSample,
+        LinkCommandSample, LinkPeerSample, LinkStatusSample, OperatingStateSample, PoseSample,
         RecorderCommandSample, RecorderStatusSample, RobotDescriptionSample, StateCommandSample,
         TemperatureSample, TransformsSample, TwinParametersSample, WrenchSample,
     },
@@ -90,9 +90,9 @@ topics! {
     /// What the servo makes of servo_cp and servo_jp.
     FOLLOWER_COMMAND_STATUS: Topic<CommandStatusSample> = "/follower/command_status", State, from(servo), Never;
     /// CRTK command to the arm's servo.
-    FOLLOWER_STATE_COMMAND: Topic<StateCommandSample> = "/follower/state_command", Event, from(console link_follower command_line), Always;
+    FOLLOWER_STATE_COMMAND: Topic<StateCommandSample> = "/follower/state_command", Event, from(console link_follower command_line), Commands;
     /// Command to the servo's friction feed-forward: take over what the twin found, or give it back.
-    FOLLOWER_FRICTION_COMMAND: Topic<FrictionCommandSample> = "/follower/friction_command", Event, from(gateway command_line), Always;
+    FOLLOWER_FRICTION_COMMAND: Topic<FrictionCommandSample> = "/follower/friction_command", Event, from(gateway command_line), Commands;
     /// The friction that the servo feeds forward at the joint.
     FOLLOWER_JOINT_FRICTION: JointTopic<FrictionStatusSample> = "/follower/{joint}/friction", State, from(servo), Never;
     /// The hand as the device measures it.
@@ -108,17 +108,21 @@ topics! {
     /// CRTK state of the master.
     LEADER_OPERATING_STATE: Topic<OperatingStateSample> = "/leader/operating_state", State, from(master), Never;
     /// CRTK command to the master.
-    LEADER_STATE_COMMAND: Topic<StateCommandSample> = "/leader/state_command", Event, from(console command_line), Always;
+    LEADER_STATE_COMMAND: Topic<StateCommandSample> = "/leader/state_command", Event, from(console command_line), Commands;
     /// The link as the operator's end measures it.
     LINK_STATUS: Topic<LinkStatusSample> = "/link/status", Stream, from(link_leader), Never;
     /// The link as the arm's end measures it.
     LINK_FOLLOWER_STATUS: Topic<LinkStatusSample> = "/link/follower_status", Stream, from(link_follower), Never;
+    /// Whom the operator's end talks to, and that one's clock.
+    LINK_PEER: Topic<LinkPeerSample> = "/link/peer", State, from(link_leader), Never;
+    /// Whom the arm's end talks to, and that one's clock.
+    LINK_FOLLOWER_PEER: Topic<LinkPeerSample> = "/link/follower_peer", State, from(link_follower), Never;
     /// Command to the link: another delay law.
-    LINK_LAW_COMMAND: Topic<LawCommandSample> = "/link/law_command", Event, from(console gateway command_line), Always;
+    LINK_LAW_COMMAND: Topic<LawCommandSample> = "/link/law_command", Event, from(console gateway command_line), Commands;
     /// What the emulated channel is to do.
-    LINK_COMMAND: Topic<LinkCommandSample> = "/link/command", State, from(console), Always;
+    LINK_COMMAND: Topic<LinkCommandSample> = "/link/command", State, from(console), Commands;
     /// What the recorder is to do; marks.
-    RECORDER_COMMAND: Topic<RecorderCommandSample> = "/recorder/command", Event, from(console), Always;
+    RECORDER_COMMAND: Topic<RecorderCommandSample> = "/recorder/command", Event, from(console), Commands;
     /// What the recorder does.
     RECORDER_STATUS: Topic<RecorderStatusSample> = "/recorder/status", State, from(recorder), Never;
     /// The motor torque that the twin's model predicts, at the stamp of the samples that it is about;

@@ -24,11 +24,16 @@ pub const EVENT_QUEUE: usize = 64;
 pub enum Authority {
     /// Nobody: what peers publish there is not subscribed to. The topic goes out.
     Never,
-    /// Every peer. The topic comes in and does not go out.
-    Always,
+    /// Commands: every peer may stop a device ([`Message::stops`]); what else can be
+    /// commanded there, where the scenario says so ([`COMMANDS_SETTING`]). The topic comes
+    /// in and does not go out.
+    Commands,
     /// Every peer where the scenario says so; else as with [`Authority::Never`].
     ByScenario(Switch),
 }
+
+/// The setting in the scenario that lets peers command more than a stop.
+pub const COMMANDS_SETTING: &str = "[gateway] commands = true";
 
 /// What in a scenario lets peers publish a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -28,6 +28,8 @@ pub struct ChoiceParameter {
     does: Value,
     /// A wish, and when it was passed on.
     wished: Option<(Value, Time)>,
+    /// Peers may not choose: a wish is taken back at once.
+    forbidden: bool,
 }
 
 impl ChoiceParameter {
@@ -110,7 +112,13 @@ impl ChoiceParameter {
             pass_on,
             heard,
             wished: None,
+            forbidden: false,
         })
+    }
+
+    /// Peers may look and not choose from now on.
+    pub fn forbid(&mut self) {
+        self.forbidden = true;
     }
 
     /// One round.
@@ -119,9 +127,14 @@ impl ChoiceParameter {
             return;
         };
         if let Some(name) = node.wish() {
-            let wish = Text::new(&name);
-            (self.pass_on)(now, wish);
-            self.wished = Some((wish, now));
+            if self.forbidden {
+                // What the node does now is a choice.
+                let _ = node.tell(self.does.as_str());
+            } else {
+                let wish = Text::new(&name);
+                (self.pass_on)(now, wish);
+                self.wished = Some((wish, now));
+            }
         }
         let Some(does) = (self.heard)(now) else {
             return;

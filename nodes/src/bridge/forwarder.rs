@@ -2,10 +2,11 @@
 //! made of these.
 
 use ferntast_bus::{Bus, CreateError, Depth, Publisher, Subscriber, SubscriberCounts};
+use ferntast_control::planted::{Planted, Rule};
 use ferntast_msgs::{
-    Message, Time,
+    Message, Text, Time,
     sample::JointNames,
-    topics::{self, Row, Topic, TopicName, Visitor},
+    topics::{self, COMMANDS_SETTING, Row, Topic, TopicName, Visitor},
 };
 
 /// How a topic is forwarded.
@@ -23,13 +24,19 @@ pub enum Forwarding {
         /// Length of the queue.
         queue: usize,
     },
+    /// Every message that stops something ([`Message::stops`]); others are refused.
+    Stops {
+        /// Length of the queue.
+        queue: usize,
+    },
 }
 
 /// One topic on its way from a bus to another.
 trait Route {
     fn forward(&mut self, now: Time) -> Forwarded;
-    fn topic(&self) -> &str;
+    fn topic(&self) -> &TopicName;
     fn counts(&self) -> SubscriberCounts;
+    fn forget_losses(&mut self);
 }
 
 /// What one round forwarded.
@@ -48,6 +55,10 @@ struct TypedRoute<M: Message> {
     forwarding: Forwarding,
     due: Time,
     stamp: Stamp,
+    /// Messages that this route does not let through.
+    refused: u64,
+    /// Messages that had been dropped when forwarding began.
+    lost_before: u64,
 }
 
 /// Which time a forwarded message is published with.
@@ -101,16 +112,36 @@ impl<M: Message> Route for TypedRoute<M> {
                     self.send(now, received, &mut forwarded);
                 }
             }
+            Forwarding::Stops { .. } => {
+                while let Some(received) = self.from.next(now) {
+                    match received.message.stops() {
+                        true => self.send(now, received, &mut forwarded),
+                        false => self.refused += 1,
+                    }
+                }
+            }
         }
         forwarded
     }
 
-    fn topic(&self) -> &str {
+    fn topic(&self) -> &TopicName {
         &self.topic
     }
 
     fn counts(&self) -> SubscriberCounts {
-        self.from.counts()
+        let mut counts = *self.from.counts();
+        if self.refused > 0 {
+            counts.invalid += self.refused;
+            counts.last_refusal = Text::display(format_args!(
+                "from peers only a stop; all with {COMMANDS_SETTING}"
+            ));
+        }
+        counts.overflowed = counts.overflowed.saturating_sub(self.lost_before);
+        counts
+    }
+
+    fn forget_losses(&mut self) {
+        self.lost_before = self.from.counts().overflowed;
     }
 }
 
@@ -118,9 +149,15 @@ impl<M: Message> Route for TypedRoute<M> {
 #[derive(Default)]
 pub struct Forwarder {
     routes: Vec<Box<dyn Route>>,
+    planted: Planted,
 }
 
 impl Forwarder {
+    /// The same with a planted bug.
+    pub fn planted(self, planted: Planted) -> Forwarder {
+        Forwarder { planted, ..self }
+    }
+
     /// Adds every topic of the table for which `how` says so, for an arm of
     /// those joints.
     ///
@@ -179,7 +216,7 @@ impl Forwarder {
         forwarding: Forwarding,
     ) -> Result<(), CreateError> {
         let depth = match forwarding {
-            Forwarding::Every { queue } => Depth::Queue(queue),
+            Forwarding::Every { queue } | Forwarding::Stops { queue } => Depth::Queue(queue),
             Forwarding::Newest { .. } | Forwarding::Not => Depth::Newest,
         };
         self.routes.push(Box::new(TypedRoute {
@@ -189,6 +226,8 @@ impl Forwarder {
             forwarding,
             due: Time::INVALID,
             stamp,
+            refused: 0,
+            lost_before: 0,
         }));
         Ok(())
     }
@@ -199,15 +238,25 @@ impl Forwarder {
         for route in &mut self.routes {
             let forwarded = route.forward(now);
             all.messages += forwarded.messages;
-            all.failed += forwarded.failed;
+            if !self.planted.lacks(Rule::FailuresTold) {
+                all.failed += forwarded.failed;
+            }
         }
         all
     }
 
+    /// Counts losses from now on: until all topics were open, the queues of the
+    /// first may have run over.
+    pub fn forget_losses(&mut self) {
+        for route in &mut self.routes {
+            route.forget_losses();
+        }
+    }
+
     /// Tells `each` the topic of every route and what became of its messages.
-    pub fn inputs(&self, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+    pub fn inputs(&self, each: &mut dyn FnMut(&TopicName, &SubscriberCounts)) {
         for route in &self.routes {
-            each(route.topic(), route.counts());
+            each(route.topic(), &route.counts());
         }
     }
 }

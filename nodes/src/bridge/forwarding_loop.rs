@@ -79,8 +79,9 @@ impl ForwardingLoop {
         }
     }
 
-    /// Forwards what is visible at `now`, for the last time, and closes both sides.
-    pub fn end(mut self, now: Time) {
-        self.forwarder.forward(now);
+    /// Forwards what is visible at `now`, for the last time, and closes both
+    /// sides. Gives the number of messages that could not be sent on.
+    pub fn end(mut self, now: Time) -> u64 {
+        self.failed + self.forwarder.forward(now).failed
     }
 }

@@ -29,23 +29,48 @@ pub fn open_ros(section: &GatewaySection) -> Result<Bus, ferntast_bus::OpenError
             namespace: "/".to_owned(),
         })?),
         Middleware::Zenoh => Bus::Zenoh(ZenohBus::open(&ZenohConfig {
-            mode: ZenohMode::Router {
-                listen: section.router_endpoint.clone(),
-            },
+            mode: router(section),
             domain_id: section.domain_id,
             node_name: section.node_name.clone(),
         })?),
     })
 }
 
-/// Whether peers on ROS 2 may publish a topic of that authority into a session
-/// of that scenario. What comes in does not go out.
-pub fn comes_in(authority: Authority, scenario: &Scenario) -> bool {
+fn router(section: &GatewaySection) -> ZenohMode {
+    match &section.router_config {
+        Some(config) => ZenohMode::RouterOf {
+            config: config.clone(),
+        },
+        None => ZenohMode::Router {
+            listen: section.router_endpoint.clone(),
+        },
+    }
+}
+
+/// Says so where whoever reaches the session's router is let in.
+fn warn_of_strangers(section: &GatewaySection) -> Result<(), ferntast_bus::OpenError> {
+    if section.middleware == Middleware::Zenoh
+        && let Some(endpoint) = ZenohBus::unprotected(&router(section))?
+    {
+        eprintln!(
+            "node gateway: whoever reaches the Zenoh router at {endpoint} hears every topic and may pause the arm: it \
+             asks for no certificate. --router-config FILE with TLS changes that (docs/who_may_do_what.md)"
+        );
+    }
+    Ok(())
+}
+
+/// How a topic of that authority comes in from peers on ROS 2, in a session of that
+/// scenario. What comes in does not go out.
+pub fn comes_in(authority: Authority, scenario: &Scenario) -> Forwarding {
+    let all = Forwarding::Every { queue: EVENT_QUEUE };
+    let all_if = |allowed| if allowed { all } else { Forwarding::Not };
     match authority {
-        Authority::Never => false,
-        Authority::Always => true,
-        Authority::ByScenario(Switch::ServoJp) => scenario.gateway.servo_jp,
-        Authority::ByScenario(Switch::CrtkHand) => scenario.hand.source == HandSource::Crtk,
+        Authority::Never => Forwarding::Not,
+        Authority::Commands if scenario.gateway.commands => all,
+        Authority::Commands => Forwarding::Stops { queue: EVENT_QUEUE },
+        Authority::ByScenario(Switch::ServoJp) => all_if(scenario.gateway.servo_jp),
+        Authority::ByScenario(Switch::CrtkHand) => all_if(scenario.hand.source == HandSource::Crtk),
     }
 }
 
@@ -75,6 +100,9 @@ pub fn goes_out(topic: Row, section: &GatewaySection) -> Forwarding {
 pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let scenario = &process.session.loaded.scenario;
     let section = &scenario.gateway;
+    if process.generation == 0 {
+        warn_of_strangers(section)?;
+    }
     let ros = open_ros(section)?;
     let mut forwarder = Forwarder::default();
     let joints = process.session.joints();
@@ -84,25 +112,21 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         Stamp::Round,
         &joints,
         |topic| match comes_in(topic.authority, scenario) {
-            true => Forwarding::Not,
-            false => goes_out(topic, section),
+            Forwarding::Not => goes_out(topic, section),
+            _ => Forwarding::Not,
         },
     )?;
-    forwarder.add_topics(
-        &ros,
-        &process.bus,
-        Stamp::Round,
-        &joints,
-        |topic| match comes_in(topic.authority, scenario) {
-            true => Forwarding::Every { queue: EVENT_QUEUE },
-            false => Forwarding::Not,
-        },
-    )?;
+    forwarder.add_topics(&ros, &process.bus, Stamp::Round, &joints, |topic| {
+        comes_in(topic.authority, scenario)
+    })?;
 
     let mut parameters = [
         ChoiceParameter::law(process, &ros)?,
         ChoiceParameter::friction(process, &ros)?,
     ];
+    if !section.commands {
+        parameters.iter_mut().for_each(ChoiceParameter::forbid);
+    }
     let mut forwarding = ForwardingLoop::new(process)?;
     forwarding.begin(forwarder);
     process.run(|wake| {
@@ -124,24 +148,25 @@ mod tests {
 
     use super::*;
 
-    struct ComesIn<'a>(&'a Scenario, Vec<TopicName>);
+    struct ComesIn<'a>(&'a Scenario, Vec<(TopicName, Forwarding)>);
 
     impl Visitor for ComesIn<'_> {
         fn topic<M: Message>(&mut self, topic: Topic<M>) {
-            if comes_in(topic.authority, self.0) {
-                self.1.push(topic.name);
+            match comes_in(topic.authority, self.0) {
+                Forwarding::Not => {}
+                how => self.1.push((topic.name, how)),
             }
         }
     }
 
-    fn incoming(scenario: &Scenario) -> Vec<TopicName> {
+    fn incoming(scenario: &Scenario) -> Vec<(TopicName, Forwarding)> {
         let mut visitor = ComesIn(scenario, Vec::new());
         topics::visit(&JointNames::numbered(2), &mut visitor).unwrap();
         visitor.1
     }
 
     #[test]
-    fn joint_positions_come_in_only_where_the_scenario_says_so() {
+    fn more_than_a_stop_comes_in_only_where_the_scenario_says_so() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../config/scenarios");
         let text = std::fs::read_to_string(folder.join("rokviss.toml")).unwrap();
         let mut scenario: Scenario = toml::from_str(&text).unwrap();
@@ -154,12 +179,21 @@ mod tests {
             "/link/command",
             "/recorder/command",
         ];
-        assert_eq!(incoming(&scenario), usual);
+        let (names, how): (Vec<TopicName>, Vec<Forwarding>) =
+            incoming(&scenario).into_iter().unzip();
+        assert_eq!(names, usual);
+        assert!(
+            how.iter()
+                .all(|own| *own == Forwarding::Stops { queue: EVENT_QUEUE })
+        );
+        scenario.gateway.commands = true;
         scenario.gateway.servo_jp = true;
         scenario.hand.source = HandSource::Crtk;
         let all = incoming(&scenario);
-        assert!(all.contains(&topics::FOLLOWER_SERVO_JP.name));
-        assert!(all.contains(&topics::LEADER_MEASURED_CP.name));
+        let every = Forwarding::Every { queue: EVENT_QUEUE };
+        assert!(all.contains(&(topics::FOLLOWER_SERVO_JP.name, every)));
+        assert!(all.contains(&(topics::LEADER_MEASURED_CP.name, every)));
+        assert!(all.iter().all(|(_, how)| *how == every));
         assert_eq!(all.len(), usual.len() + 2);
     }
 }

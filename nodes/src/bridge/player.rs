@@ -3,7 +3,6 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ferntast_bus::{Bus, McapBus, mcap};
-use ferntast_lab::joints::recorded_joints;
 use ferntast_msgs::Time;
 
 use super::{
@@ -30,9 +29,8 @@ fn open(
     };
     let recording = McapBus::open(path).map_err(|error| bad(error.to_string()))?;
     let except = &process.session.play.except;
-    let joints = recording.reader().and_then(recorded_joints);
-    let joints = joints.unwrap_or_else(|| process.session.joints());
     let recording = Bus::Mcap(recording);
+    let joints = process.session.joints();
     let mut forwarder = Forwarder::default();
     forwarder.add_topics(&recording, &process.bus, Stamp::Round, &joints, |topic| {
         let recorded = info.topics.iter().any(|own| topic.name == *own.name);

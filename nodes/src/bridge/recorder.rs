@@ -109,6 +109,14 @@ fn begin(
             queue: SharedMemoryBus::max_queue(topic.delivery),
         }
     })?;
+    // What waits already comes first; the recording is whole from here on.
+    if forwarder.forward(process.clock.now()).failed > 0 {
+        return Err(NodeError::Bag {
+            path: folder,
+            reason: "the first messages could not be written: is the disk full?".to_owned(),
+        });
+    }
+    forwarder.forget_losses();
     forwarding.begin(forwarder);
     Ok(Recording { folder, bag })
 }
@@ -191,8 +199,14 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             let _ = statuses.publish(now, &status);
         }
     });
-    forwarding.end(process.clock.now());
-    recording.map_or(Ok(()), finish)
+    let failed = forwarding.end(process.clock.now());
+    recording.map_or(Ok(()), finish)?;
+    match failed {
+        0 => Ok(()),
+        failed => Err(NodeError::Broken(format!(
+            "{failed} messages could not be written into the recording: is the disk full?"
+        ))),
+    }
 }
 
 #[cfg(test)]

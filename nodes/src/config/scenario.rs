@@ -93,7 +93,19 @@ parameters! {
         /// the quickest way; 0 acts on the newest at once \[s\].
         #[serde(default)]
         pub buffer: f64 [0.0..=LONGEST_BUFFER, "s"],
+        /// The arm goes on by itself, on its ramp, after gaps in the link up to this
+        /// long; 0: after every gap an operator has to say so \[s\].
+        #[serde(default, skip_serializing_if = "is_zero")]
+        pub rearm_after_gap: f64 [0.0..=LONGEST_BRIDGED_GAP, "s"],
     }
+}
+
+/// Nobody stands beside an arm and expects it to go on by itself after longer \[s\].
+const LONGEST_BRIDGED_GAP: f64 = 1.0;
+
+/// What bridges no gap is not written into recordings, which had none before.
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 fn link_endpoint() -> String {
@@ -121,10 +133,17 @@ parameters! {
         pub node_name: String = "ferntast".to_owned(),
         /// Endpoint of our own Zenoh router.
         pub router_endpoint: String = "tcp/127.0.0.1:7447".to_owned(),
+        /// Settings of that router, in a file of Zenoh's own format, in place of the endpoint.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub router_config: Option<PathBuf> = None,
         /// Most messages a second on a servo stream of the follower \[Hz\].
         pub stream_rate: f64 [1.0..=1000.0, "Hz"] = 250.0,
         /// Most messages a second on a servo stream of the leader \[Hz\].
         pub leader_rate: f64 [1.0..=1000.0, "Hz"] = 500.0,
+        /// Whether peers may arm devices, and choose law, friction, channel and
+        /// recording. Without it they may pause and disable, and nothing else.
+        #[serde(skip_serializing_if = "is_off")]
+        pub commands: bool = false,
         /// Whether peers may command joint positions on `/follower/servo_jp`, past
         /// the master, the link and the authority of who holds them.
         #[serde(skip_serializing_if = "is_off")]
@@ -138,9 +157,11 @@ fn is_off(switch: &bool) -> bool {
 }
 
 impl GatewaySection {
-    /// The endpoint at which the session is a Zenoh router, if it is one.
+    /// The endpoint at which the session is a Zenoh router, if it is one and no file says
+    /// where.
     pub fn own_router(&self) -> Option<&str> {
-        (self.middleware == Middleware::Zenoh).then_some(self.router_endpoint.as_str())
+        let by_endpoint = self.middleware == Middleware::Zenoh && self.router_config.is_none();
+        by_endpoint.then_some(self.router_endpoint.as_str())
     }
 }
 
@@ -185,6 +206,7 @@ impl Scenario {
             link: LinkSection {
                 channel: "direct".to_owned(),
                 endpoint: link_endpoint(),
+                rearm_after_gap: 0.0,
                 buffer: 0.0,
             },
             law: Law::default(),

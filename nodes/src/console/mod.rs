@@ -24,7 +24,7 @@ use serde_json::{Value, json};
 use crate::{
     config::{HandSource, Loaded},
     node::{InputWatch, NodeHealth},
-    process::{NodeError, ProcessContext, periodic},
+    process::{NodeError, Priority, ProcessContext},
 };
 
 /// How far the hand goes from the middle \[m\].
@@ -88,7 +88,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     // After the server's threads, which must not have it: the hand on the
     // master shall not be lost to a computer that is busy drawing.
     let mut standing = Faults::default();
-    if periodic::request_realtime().is_err() {
+    if Priority::Hand.take().is_err() {
         standing.set(Fault::NoRealtime);
     }
     let mut meter = process.meter(standing);
@@ -123,7 +123,7 @@ fn about(session: &str, loaded: &Loaded) -> Value {
         .map(|link| arm["arm"]["link"][link]["length"].clone())
         .collect();
     let (up, down) = (&loaded.link.up, &loaded.link.down);
-    let bytes = ferntast_control::frame::FRAME_LENGTH;
+    let bytes = ferntast_control::frame::WIRE_LENGTH;
     let or = |value: &Value, default: Value| match value.is_null() {
         true => default,
         false => value.clone(),
@@ -148,6 +148,7 @@ fn about(session: &str, loaded: &Loaded) -> Value {
             "round_trip": loaded.link.nominal_round_trip(bytes),
             "jitter": deviation(up).max(deviation(down)),
             "loss": up.mean_loss().max(down.mean_loss()),
+            "rearm_after_gap": scenario.link.rearm_after_gap,
         },
         "force_limit": scenario.master.force_limit,
         // The hand's force is drawn as long as the contact's that it stands for.

@@ -1,19 +1,16 @@
 //! What a node is made from.
 
-use ferntast_bus::{
-    Bus,
-    frames::{FrameReceiver, FrameSender, LinkDirection},
-};
+use ferntast_bus::{Bus, frames::LinkDirection};
 
 use crate::{
+    link::LinkWire,
     node::{HealthMeter, Ports, Runner, Ticking},
     process::{NodeError, SessionContext},
 };
 
 /// Opens the end of the link that sends in a direction: over Zenoh in a
 /// session, in memory in virtual time.
-pub type OpenLink<'a> =
-    dyn FnMut(LinkDirection) -> Result<(FrameSender, FrameReceiver), NodeError> + 'a;
+pub type OpenLink<'a> = dyn FnMut(LinkDirection) -> Result<LinkWire, NodeError> + 'a;
 
 /// What a node is made from.
 pub struct Build<'a> {

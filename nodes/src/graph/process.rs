@@ -4,12 +4,15 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 use ferntast_bus::{
     Bus, SharedMemoryBus, SharedMemoryConfig,
-    frames::{FrameReceiver, FrameSender, LinkDirection, LinkEndpoint, ZenohLink, ZenohLinkConfig},
+    frames::{LinkDirection, LinkEndpoint, ZenohLink, ZenohLinkConfig, check_endpoint},
 };
 use ferntast_msgs::sample::{Fault, Faults};
 
 use super::{Build, Make, NodeRow};
-use crate::process::{Clock, NodeError, ProcessContext, SessionContext, periodic};
+use crate::{
+    link::LinkWire,
+    process::{Clock, NodeError, ProcessContext, SessionContext, link_end::link_end},
+};
 
 /// Runs the node of `row` until `stop` is set; `generation` says how often it
 /// was started before.
@@ -23,6 +26,10 @@ pub fn run(
     generation: u32,
     stop: &AtomicBool,
 ) -> Result<(), NodeError> {
+    // Before all else: whoever is needed is not to wait for its turn while it
+    // starts. Threads that are started later inherit the priority: frames of the
+    // link are received and stamped no later than the loop runs.
+    let standing = take_priority(row);
     let context = ProcessContext {
         session,
         bus: Bus::SharedMemory(SharedMemoryBus::open(&SharedMemoryConfig {
@@ -33,12 +40,6 @@ pub fn run(
         name: row.name,
         period_nanos: row.period_nanos,
         generation,
-    };
-    // Threads that are started later inherit the priority: frames of the link
-    // are received and stamped no later than the loop runs.
-    let standing = match row.realtime {
-        true => request_realtime(row.name),
-        false => Faults::default(),
     };
     let make = match row.make {
         Make::Service(run) => return run(&context),
@@ -55,11 +56,15 @@ pub fn run(
     Ok(())
 }
 
-/// Asks for real-time priority; what stands against it is printed, and is a
-/// standing fault.
-fn request_realtime(name: &str) -> Faults {
+/// Takes the row's priority; what stands against real time is printed, and is a
+/// standing fault. A nice value that is refused changes nothing but the order
+/// under overload.
+fn take_priority(row: &NodeRow) -> Faults {
     let mut standing = Faults::default();
-    if let Err(error) = periodic::request_realtime() {
+    if let Err(error) = row.priority.take()
+        && row.priority.is_real_time()
+    {
+        let name = row.name;
         standing.set(Fault::NoRealtime);
         eprintln!(
             "node {name}: no real-time priority ({error}); it runs on without, wake-ups may be late. \
@@ -74,8 +79,10 @@ fn open_link(
     session: &SessionContext,
     clock: Clock,
     sends: LinkDirection,
-) -> Result<(FrameSender, FrameReceiver), NodeError> {
+) -> Result<LinkWire, NodeError> {
     let endpoint = session.loaded.scenario.link.endpoint.clone();
+    check_endpoint(&endpoint)?;
+    let end = link_end(session, sends)?;
     let link = ZenohLink::open(ZenohLinkConfig {
         session: session.session.clone(),
         endpoint: match sends {
@@ -83,7 +90,13 @@ fn open_link(
             LinkDirection::Back => LinkEndpoint::Listen(endpoint),
         },
         sends,
+        tls: Some(end.tls),
         clock: Arc::new(move || clock.now()),
     })?;
-    Ok((link.sender, link.receiver))
+    Ok(LinkWire {
+        sender: link.sender,
+        receiver: link.receiver,
+        secure: end.secure,
+        door: link.door,
+    })
 }

@@ -8,7 +8,7 @@ use ferntast_msgs::{
 use super::Build;
 use crate::{
     node::{Ports, Ticking},
-    process::{NodeError, ProcessContext, SessionContext},
+    process::{NodeError, Priority, ProcessContext, SessionContext},
 };
 
 /// Period of the servo loops, and least period of virtual time \[ns\].
@@ -36,8 +36,8 @@ pub struct NodeRow {
     pub about: &'static str,
     /// From one step to the next \[ns\].
     pub period_nanos: i64,
-    /// Whether its process asks for real-time priority before it makes the node.
-    pub realtime: bool,
+    /// What its process asks the scheduler for, before it makes the node.
+    pub priority: Priority,
     /// Whether a session runs it; in virtual time too, if it is [`Make::Step`].
     pub in_session: When,
     /// Whether the playback of a recording runs it.
@@ -68,17 +68,18 @@ pub enum Make {
 }
 
 impl NodeRow {
-    /// A node of the control path: 1 kHz, real-time, in every session.
+    /// A node that is stepped: 1 kHz, in every session.
     pub const fn step<P: Ports>(
         name: &'static str,
         about: &'static str,
+        priority: Priority,
         make: fn(Build) -> Result<Box<dyn Ticking>, NodeError>,
     ) -> NodeRow {
         NodeRow {
             name,
             about,
             period_nanos: STEP_NANOS,
-            realtime: true,
+            priority,
             in_session: always,
             in_playback: never,
             in_replay: never,
@@ -94,13 +95,14 @@ impl NodeRow {
     pub const fn service(
         name: &'static str,
         about: &'static str,
+        priority: Priority,
         run: fn(&ProcessContext) -> Result<(), NodeError>,
     ) -> NodeRow {
         NodeRow {
             name,
             about,
             period_nanos: STEP_NANOS,
-            realtime: false,
+            priority,
             in_session: always,
             in_playback: never,
             in_replay: never,

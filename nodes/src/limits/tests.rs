@@ -11,7 +11,7 @@ use crate::{
     graph::NodeRow,
     lockstep::VirtualTime,
     node::{Newest, Output, PerJoint},
-    process::SessionContext,
+    process::{Priority, SessionContext},
 };
 
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
@@ -136,7 +136,7 @@ fn in_lockstep_the_warning_comes_and_goes() {
     let loaded = Loaded::without_operator(arm, Default::default(), 1);
     let row = NodeRow {
         period_nanos: 10_000_000,
-        ..NodeRow::step::<LimitsPorts>("limits", "", make)
+        ..NodeRow::step::<LimitsPorts>("limits", "", Priority::Advice, make)
     };
     let mut time = VirtualTime::new(START).unwrap();
     time.add_nodes([&row], &SessionContext::in_virtual_time(loaded))

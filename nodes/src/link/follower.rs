@@ -1,21 +1,19 @@
 //! The arm's end of the link.
 
-use ferntast_control::{
-    link::{ESTIMATE_LIFE, FollowerLink, FollowerReadings},
-    switching::Laws,
-};
+use ferntast_control::link::{ESTIMATE_LIFE, FollowerLink, FollowerReadings, Word};
 use ferntast_msgs::{
-    Time,
+    Text, Time,
     sample::{
-        ContactStateSample, Frame, LinkCommandSample, LinkEnd, LinkStatusSample,
-        OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
+        ContactStateSample, Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkPeerSample,
+        LinkStatusSample, OperatingStateSample, PoseSample, StateCommand, StateCommandSample,
+        WrenchSample,
     },
 };
 
 use super::{
     FrameInput, FrameOutput,
     readings::{operating_state, position},
-    status::{Status, report},
+    status::{PeerWatch, Status, TOLD_STEPS},
     transport::LinkNode,
 };
 use crate::node::{Node, ports};
@@ -29,6 +27,7 @@ ports! {
         measured_cf: Newest<WrenchSample> = FOLLOWER_MEASURED_CF,
         contact_state: Newest<ContactStateSample> = FOLLOWER_CONTACT_STATE,
         operating_state: Newest<OperatingStateSample> = FOLLOWER_OPERATING_STATE,
+        told: Batch<StateCommandSample> = FOLLOWER_STATE_COMMAND,
         link_command: Newest<LinkCommandSample> = LINK_COMMAND,
     }
     extra { frames: FrameInput, }
@@ -37,6 +36,7 @@ ports! {
         servo_cp: PoseSample = FOLLOWER_SERVO_CP,
         state_command: StateCommandSample = FOLLOWER_STATE_COMMAND,
         status: LinkStatusSample = LINK_FOLLOWER_STATUS,
+        peer: LinkPeerSample = LINK_FOLLOWER_PEER,
     }
     extra { frame: FrameOutput, }
 }
@@ -45,15 +45,19 @@ ports! {
 pub struct FollowerLinkNode {
     link: FollowerLink,
     status: Status,
+    peers: PeerWatch,
+    /// Steps in which it is still told that a word was outdated.
+    outdated: u32,
 }
 
 impl FollowerLinkNode {
-    /// An end that starts with the first of `laws` and follows the leader's end to the others.
-    /// Frames wait for up to `buffer` \[s\] to be played out evenly.
-    pub fn new(laws: Laws, session: u16, buffer: f64) -> FollowerLinkNode {
+    /// The end `link` of the session of that number.
+    pub fn new(link: FollowerLink, session: u16) -> FollowerLinkNode {
         FollowerLinkNode {
-            link: FollowerLink::new(laws, session, buffer),
+            link,
             status: Status::new(LinkEnd::FOLLOWER, session),
+            peers: PeerWatch::default(),
+            outdated: 0,
         }
     }
 }
@@ -92,11 +96,19 @@ fn contact_force(now: Time, input: &FollowerLinkInput) -> Option<[f64; 3]> {
     })
 }
 
+fn stops(command: StateCommand) -> bool {
+    [StateCommand::PAUSE, StateCommand::DISABLE].contains(&command)
+}
+
 impl Node for FollowerLinkNode {
     type Input = FollowerLinkInput;
     type Output = FollowerLinkOutput;
 
     fn step(&mut self, now: Time, input: &FollowerLinkInput, output: &mut FollowerLinkOutput) {
+        let peer = &input.frames.peer;
+        if let Some(other) = self.peers.changed(peer) {
+            self.link.peer_changed(now.nanos(), other.clock_offset_ns);
+        }
         for (bytes, arrived) in input.frames.iter() {
             self.link.arrived(bytes, arrived.nanos());
         }
@@ -104,18 +116,35 @@ impl Node for FollowerLinkNode {
             tip: position(now, &input.measured_cp),
             contact_force: contact_force(now, input),
             state: operating_state(&input.operating_state),
+            told_to_stop: input.told.iter().any(|own| stops(own.command)),
         };
         let step = self.link.step(now.nanos(), &readings);
-        if step.rearm {
-            output.state_command = Some(StateCommandSample::new(now, StateCommand::RESUME));
-        }
-        output.servo_cp = step
-            .command
-            .map(|tip| PoseSample::at(now, Frame::FOLLOWER_BASE, tip.position));
+        let command = match (step.word, step.resume_after_gap) {
+            (Some(Word::Rearm), _) => Some(StateCommand::RESUME),
+            (Some(Word::Stop), _) => Some(StateCommand::PAUSE),
+            (_, true) => Some(StateCommand::RESUME_AFTER_GAP),
+            (_, false) => None,
+        };
+        output.state_command = command.map(|own| StateCommandSample::new(now, own));
+        output.servo_cp = step.command.map(|tip| {
+            let made = Time::from_nanos(step.command_ns);
+            PoseSample::at(made, Frame::FOLLOWER_BASE, tip.position)
+        });
         output.frame.frame = step.frame;
         let state = self.link.state(now.nanos());
-        output.status = self.status.step(now, &state);
-        let silent = "no frames from the operator's end";
-        report(&state, silent, &mut output.health);
+        output.status = self.status.step(now, &state, peer);
+        output.peer = self.status.peer(now, &state, peer);
+        self.peers
+            .report(&state, peer, "the operator's end", &mut output.health);
+        if step.word == Some(Word::Outdated) {
+            self.outdated = TOLD_STEPS;
+        }
+        if self.outdated > 0 {
+            self.outdated -= 1;
+            output.health.raise(Fault::StateCommandRefused, Level::WARN);
+            output.health.message = Text::new(
+                "resume was said before the operator's end knew that the arm had stopped; say it again",
+            );
+        }
     }
 }

@@ -2,20 +2,21 @@
 
 use ferntast_control::{
     link::{LeaderLink, LeaderReadings},
-    switching::{self, Laws},
+    switching,
 };
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, Frame, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkStatusSample,
-        OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
+        Fault, Frame, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkPeerSample,
+        LinkStatusSample, OperatingStateSample, PoseSample, StateCommand, StateCommandSample,
+        WrenchSample,
     },
 };
 
 use super::{
     FrameInput, FrameOutput,
     readings::{operating_state, position},
-    status::{Status, report},
+    status::{PeerWatch, Status},
     transport::LinkNode,
 };
 use crate::node::{Node, ports};
@@ -36,6 +37,7 @@ ports! {
     output LeaderLinkOutput {
         reflected_cf: WrenchSample = LEADER_REFLECTED_CF,
         status: LinkStatusSample = LINK_STATUS,
+        peer: LinkPeerSample = LINK_PEER,
     }
     extra { frame: FrameOutput, }
 }
@@ -46,16 +48,17 @@ pub struct LeaderLinkNode {
     status: Status,
     /// A law that was asked for and is not there.
     unknown_law: Option<Text<24>>,
+    peers: PeerWatch,
 }
 
 impl LeaderLinkNode {
-    /// An end that starts with the first of `laws` and may switch to the others.
-    /// Frames wait for up to `buffer` \[s\] to be played out evenly.
-    pub fn new(laws: Laws, session: u16, buffer: f64) -> LeaderLinkNode {
+    /// The end `link` of the session of that number.
+    pub fn new(link: LeaderLink, session: u16) -> LeaderLinkNode {
         LeaderLinkNode {
-            link: LeaderLink::new(laws, session, buffer),
+            link,
             status: Status::new(LinkEnd::LEADER, session),
             unknown_law: None,
+            peers: PeerWatch::default(),
         }
     }
 }
@@ -89,6 +92,10 @@ impl Node for LeaderLinkNode {
             let taken = known.is_some_and(|code| self.link.switch_to(code));
             self.unknown_law = (!taken).then_some(sample.law);
         }
+        let peer = &input.frames.peer;
+        if let Some(other) = self.peers.changed(peer) {
+            self.link.peer_changed(now.nanos(), other.clock_offset_ns);
+        }
         for (bytes, arrived) in input.frames.iter() {
             self.link.arrived(bytes, arrived.nanos());
         }
@@ -100,7 +107,8 @@ impl Node for LeaderLinkNode {
         output.reflected_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
         output.frame.frame = step.frame;
         let state = self.link.state(now.nanos());
-        output.status = self.status.step(now, &state);
+        output.status = self.status.step(now, &state, peer);
+        output.peer = self.status.peer(now, &state, peer);
         if let Some(law) = &self.unknown_law {
             output.health.raise(Fault::CommandInvalid, Level::WARN);
             output.health.message = Text::display(format_args!(
@@ -108,6 +116,7 @@ impl Node for LeaderLinkNode {
                 law.as_str()
             ));
         }
-        report(&state, "no frames from the arm's end", &mut output.health);
+        self.peers
+            .report(&state, peer, "the arm's end", &mut output.health);
     }
 }

@@ -1,7 +1,7 @@
 //! The two ends of the link as nodes.
 //!
-//! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz. What an
-//! end does is in [`ferntast_control::link`]; here are its
+//! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz, sealed
+//! ([`ferntast_seal`]). What an end does is in [`ferntast_control::link`]; here are its
 //! topics. Frames come in through the channel emulator ([`transport`]), whose way
 //! out is the moment of arrival.
 
@@ -14,12 +14,13 @@ mod tests;
 pub mod transport;
 
 use ferntast_bus::frames::LinkDirection;
+use ferntast_control::link::{FollowerLink, LeaderLink};
 
 use crate::{graph::Build, node::Ticking, process::NodeError};
 
 pub use follower::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FollowerLinkPorts};
 pub use leader::{LeaderLinkInput, LeaderLinkNode, LeaderLinkOutput, LeaderLinkPorts};
-pub use transport::{FrameInput, FrameOutput, LinkPorts, LinkTransport};
+pub use transport::{FrameInput, FrameOutput, LinkPorts, LinkTransport, LinkWire, Peer};
 
 /// The operator's end, a node of the graph.
 ///
@@ -30,10 +31,11 @@ pub use transport::{FrameInput, FrameOutput, LinkPorts, LinkTransport};
 pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let session = session_number(&build.session.session);
-    let node = LeaderLinkNode::new(loaded.laws(), session, loaded.scenario.link.buffer);
-    let (sender, receiver) = (build.open_link)(LinkDirection::Forward)?;
+    let end = LeaderLink::new(loaded.laws(), loaded.scenario.link.buffer);
+    let node = LeaderLinkNode::new(end, session);
+    let wire = (build.open_link)(LinkDirection::Forward)?;
     let seed = loaded.scenario.seed.wrapping_add(2);
-    let transport = LinkTransport::new(sender, receiver, loaded.link.down.clone(), seed)?;
+    let transport = LinkTransport::new(wire, loaded.link.down.clone(), seed)?;
     let ports = LinkPorts::new(
         LeaderLinkPorts::connect(build.bus, &build.session.joints())?,
         transport,
@@ -49,10 +51,14 @@ pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 pub fn make_follower(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let session = session_number(&build.session.session);
-    let node = FollowerLinkNode::new(loaded.laws(), session, loaded.scenario.link.buffer);
-    let (sender, receiver) = (build.open_link)(LinkDirection::Back)?;
+    let link = &loaded.scenario.link;
+    let end = FollowerLink::new(loaded.laws(), link.buffer)
+        .bridging(link.rearm_after_gap)
+        .planted(build.session.planted);
+    let node = FollowerLinkNode::new(end, session);
+    let wire = (build.open_link)(LinkDirection::Back)?;
     let seed = loaded.scenario.seed.wrapping_add(1);
-    let transport = LinkTransport::new(sender, receiver, loaded.link.up.clone(), seed)?;
+    let transport = LinkTransport::new(wire, loaded.link.up.clone(), seed)?;
     let ports = LinkPorts::new(
         FollowerLinkPorts::connect(build.bus, &build.session.joints())?,
         transport,
@@ -60,7 +66,7 @@ pub fn make_follower(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     build.join(node, ports)
 }
 
-/// Identity of a session in frames: a hash (FNV-1a, folded) of its name.
+/// Number of a session in the status of its link: a hash (FNV-1a, folded) of its name.
 pub fn session_number(name: &str) -> u16 {
     let hash = name.bytes().fold(0x811c_9dc5_u32, |hash, byte| {
         (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)

@@ -1,10 +1,13 @@
-//! How a link node meets frames: the wire, and the channel emulator behind it.
+//! How a link node meets frames: the wire, the seal, and behind them the channel
+//! emulator. What strangers send goes no further than the seal, so that it takes no
+//! room from frames of the peer; the emulator delays what was opened, with the length
+//! that it had on the wire.
 
 use ferntast_bus::{
     SubscriberCounts,
-    frames::{FrameReceiver, FrameSender, MAX_FRAME},
+    frames::{Door, FrameReceiver, FrameSender, MAX_FRAME, Reason},
 };
-use ferntast_control::frame::FRAME_LENGTH;
+use ferntast_control::frame::{FRAME_LENGTH, WIRE_LENGTH};
 use ferntast_emulation::channel::{Channel, ChannelConfig};
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
@@ -12,24 +15,60 @@ use ferntast_msgs::{
     sample::{JointNames, LinkCommandSample},
     topics::{JointNameError, TopicName},
 };
+use ferntast_seal::{
+    Established, PLAIN_LENGTH, Received, Refusal, RefusalCounts, SEALED_LENGTH, SecureEnd,
+};
 
 use crate::node::{Node, Output, Ports};
 
-/// How many frames a step takes at most.
-const BATCH: usize = 16;
+/// How many frames a step takes at most: what waits for a computer that was held up for
+/// half a second, so that the next step acts on the newest and not on the oldest.
+const BATCH: usize = 256;
+
+const _: () = assert!(FRAME_LENGTH == PLAIN_LENGTH && WIRE_LENGTH == SEALED_LENGTH);
+
+/// One end of the link, open.
+pub struct LinkWire {
+    /// Sends to the other end.
+    pub sender: FrameSender,
+    /// Receives from it.
+    pub receiver: FrameReceiver,
+    /// Keeps strangers out.
+    pub secure: SecureEnd,
+    /// Who did not come in, before there were frames; nobody in virtual time.
+    pub door: Door,
+}
+
+/// What is known of the peer.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Peer {
+    /// The handshake in force.
+    pub established: Option<Established>,
+    /// What was not acted on since the start.
+    pub refused: RefusalCounts,
+    /// Why the newest of that was not.
+    pub last_refusal: Option<Refusal>,
+    /// Connections that TLS turned away since the start.
+    pub turned_away: u64,
+    /// Why it did the last of them, or, at the operator's end, why it was not let in itself.
+    pub at_the_door: Option<Reason>,
+}
 
 /// Frames that arrived since the last step, oldest first.
 #[derive(Debug)]
 pub struct FrameInput {
-    frames: [([u8; MAX_FRAME], usize, Time); BATCH],
+    frames: [([u8; FRAME_LENGTH], Time); BATCH],
     count: usize,
+    /// Whom they come from.
+    pub peer: Peer,
 }
 
 impl Default for FrameInput {
     fn default() -> Self {
         FrameInput {
-            frames: [([0; MAX_FRAME], 0, Time::INVALID); BATCH],
+            frames: [([0; FRAME_LENGTH], Time::INVALID); BATCH],
             count: 0,
+            peer: Peer::default(),
         }
     }
 }
@@ -37,23 +76,20 @@ impl Default for FrameInput {
 impl FrameInput {
     /// These, arrived at that time; what does not fit is left out.
     #[cfg(test)]
-    pub(super) fn of(frames: &[&[u8]], arrived: Time) -> FrameInput {
+    pub(super) fn of(frames: &[[u8; FRAME_LENGTH]], arrived: Time) -> FrameInput {
         let mut input = FrameInput::default();
         for (place, frame) in input.frames.iter_mut().zip(frames) {
-            let length = frame.len().min(MAX_FRAME);
-            place.0[..length].copy_from_slice(&frame[..length]);
-            place.1 = length;
-            place.2 = arrived;
+            *place = (*frame, arrived);
             input.count += 1;
         }
         input
     }
 
-    /// Bytes and time of arrival of each.
+    /// Content and time of arrival of each.
     pub fn iter(&self) -> impl Iterator<Item = (&[u8], Time)> {
         self.frames[..self.count]
             .iter()
-            .map(|(bytes, length, arrived)| (&bytes[..*length], *arrived))
+            .map(|(bytes, arrived)| (&bytes[..], *arrived))
     }
 }
 
@@ -76,8 +112,7 @@ pub trait LinkNode: Node {
 
 /// The wire to the other end, with the channel that is emulated on what arrives.
 pub struct LinkTransport {
-    sender: FrameSender,
-    receiver: FrameReceiver,
+    wire: LinkWire,
     channel: Channel,
 }
 
@@ -88,14 +123,12 @@ impl LinkTransport {
     ///
     /// A parameter of the channel out of its bounds.
     pub fn new(
-        sender: FrameSender,
-        receiver: FrameReceiver,
+        wire: LinkWire,
         incoming: ChannelConfig,
         seed: u64,
     ) -> Result<LinkTransport, ParameterError> {
         Ok(LinkTransport {
-            sender,
-            receiver,
+            wire,
             channel: Channel::new(incoming, seed)?,
         })
     }
@@ -106,27 +139,57 @@ impl LinkTransport {
         let _ = self.channel.retune(way, command.jitter, command.loss);
     }
 
+    /// Which handshake frames are under, as the channel carries it.
+    fn mark(&self) -> u8 {
+        let established = self.wire.secure.established();
+        established.map_or(0, |own| own.incarnation as u8)
+    }
+
     fn read(&mut self, now: Time, input: &mut FrameInput) {
         let mut buffer = [0; MAX_FRAME];
-        while let Some((length, arrived)) = self.receiver.receive(now, &mut buffer) {
-            self.channel.push(arrived.nanos(), &buffer[..length]);
+        while let Some((length, arrived)) = self.wire.receiver.receive(now, &mut buffer) {
+            let bytes = &buffer[..length.min(MAX_FRAME)];
+            if let Received::Frame(plain) = self.wire.secure.received(bytes, arrived.nanos()) {
+                let mut on_the_way = [0; WIRE_LENGTH];
+                on_the_way[..FRAME_LENGTH].copy_from_slice(&plain);
+                on_the_way[FRAME_LENGTH] = self.mark();
+                self.channel.push(arrived.nanos(), &on_the_way);
+            }
         }
+        let mark = self.mark();
+        let mut on_the_way = [0; WIRE_LENGTH];
         input.count = 0;
         while let Some(place) = input.frames.get_mut(input.count) {
-            let Some((length, released)) = self.channel.pop(now.nanos(), &mut place.0) else {
+            let Some((_, released)) = self.channel.pop(now.nanos(), &mut on_the_way) else {
                 break;
             };
-            place.1 = length.min(MAX_FRAME);
-            place.2 = Time::from_nanos(released);
-            input.count += 1;
+            // What a process sent that is no longer there is over.
+            if on_the_way[FRAME_LENGTH] == mark {
+                place.0.copy_from_slice(&on_the_way[..FRAME_LENGTH]);
+                place.1 = Time::from_nanos(released);
+                input.count += 1;
+            }
         }
+        let door = &self.wire.door;
+        input.peer = Peer {
+            turned_away: door.turned_away(),
+            at_the_door: door.last_turned_away().or_else(|| door.not_let_in()),
+            established: self.wire.secure.established(),
+            refused: self.wire.secure.refused(),
+            last_refusal: self.wire.secure.last_refusal(),
+        };
     }
 
     fn write(&mut self, now: Time, output: &FrameOutput) -> u64 {
-        match &output.frame {
-            Some(frame) => u64::from(self.sender.send(now, frame).is_err()),
-            None => 0,
+        let mut failed = 0;
+        if let Some(message) = self.wire.secure.message(now.nanos()) {
+            failed += u64::from(self.wire.sender.send(now, message.bytes()).is_err());
         }
+        let sealed = output.frame.as_ref();
+        if let Some(sealed) = sealed.and_then(|frame| self.wire.secure.seal(frame)) {
+            failed += u64::from(self.wire.sender.send(now, &sealed).is_err());
+        }
+        failed
     }
 }
 
@@ -170,7 +233,7 @@ where
         self.topics.write(now, output) + self.transport.write(now, P::Node::frame(output))
     }
 
-    fn counts(&self, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+    fn counts(&self, each: &mut dyn FnMut(&TopicName, &SubscriberCounts)) {
         self.topics.counts(each);
     }
 }

@@ -2,13 +2,15 @@
 
 mod virtual_time;
 
+use std::{cell::Cell, rc::Rc};
+
 use ferntast_bus::{Bus, CreateError, McapBus};
 use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         FrictionCommand, FrictionCommandSample, LawCommandSample, StateCommand, StateCommandSample,
     },
-    topics::{self, Topic},
+    topics::{self, EVENT_QUEUE, Topic},
 };
 
 use crate::{
@@ -41,12 +43,20 @@ pub enum RunError {
     /// The recording cannot be written.
     #[error("recording: {0}")]
     Recording(String),
+    /// A part of the messages could not be written.
+    #[error("the recording is not whole: {lost} messages could not be written (is the disk full?)")]
+    Lost {
+        /// How many.
+        lost: u64,
+    },
 }
 
 /// A scenario in virtual time.
 pub struct LockstepSession {
     time: VirtualTime,
     recording: Option<McapBus>,
+    /// Messages that could not be recorded.
+    lost: Rc<Cell<u64>>,
     monitor: Monitor,
 }
 
@@ -77,6 +87,7 @@ impl LockstepSession {
             }
         });
 
+        let lost = Rc::new(Cell::new(0));
         let recording = match &session.bag {
             None => None,
             Some(folder) => {
@@ -85,10 +96,12 @@ impl LockstepSession {
                 let mut forwarder = Forwarder::default();
                 let to = Bus::Mcap(recording.clone());
                 forwarder.add_topics(time.bus(), &to, Stamp::Received, &joints, |_| {
-                    Forwarding::Every { queue: 64 }
+                    Forwarding::Every { queue: EVENT_QUEUE }
                 })?;
+                let lost = Rc::clone(&lost);
                 time.add(move |now| {
-                    forwarder.forward(now);
+                    let forwarded = forwarder.forward(now);
+                    lost.set(lost.get() + forwarded.failed);
                 });
                 Some(recording)
             }
@@ -97,6 +110,7 @@ impl LockstepSession {
         Ok(LockstepSession {
             time,
             recording,
+            lost,
             monitor,
         })
     }
@@ -179,18 +193,23 @@ impl LockstepSession {
     ///
     /// # Errors
     ///
-    /// The recording cannot be closed.
+    /// The recording cannot be closed, or lacks messages.
     pub fn finish(self) -> Result<(), RunError> {
         let LockstepSession {
-            time, recording, ..
+            time,
+            recording,
+            lost,
+            ..
         } = self;
         drop(time);
-        match recording {
-            None => Ok(()),
-            Some(recording) => recording
+        if let Some(recording) = recording {
+            recording
                 .finish()
-                .map(|_| ())
-                .map_err(|error| RunError::Recording(error.to_string())),
+                .map_err(|error| RunError::Recording(error.to_string()))?;
+        }
+        match lost.get() {
+            0 => Ok(()),
+            lost => Err(RunError::Lost { lost }),
         }
     }
 }

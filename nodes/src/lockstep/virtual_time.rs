@@ -2,15 +2,16 @@
 
 use ferntast_bus::{
     Bus, MemoryBus,
-    frames::{self, FrameReceiver, FrameSender, LinkDirection},
+    frames::{self, Door, FrameReceiver, FrameSender, LinkDirection},
 };
 use ferntast_msgs::{Time, sample::Faults};
 
 use super::RunError;
 use crate::{
     graph::{Build, Make, NodeRow, STEP_NANOS},
+    link::LinkWire,
     node::HealthMeter,
-    process::{NodeError, SessionContext},
+    process::{NodeError, SessionContext, link_end::seeded_end},
 };
 
 /// Why virtual time does not begin, or a task has no place in it.
@@ -81,7 +82,7 @@ impl VirtualTime {
         rows: impl IntoIterator<Item = &'a NodeRow>,
         session: &SessionContext,
     ) -> Result<(), RunError> {
-        let mut link = MemoryLink::new();
+        let mut link = MemoryLink::new(&session.session, session.loaded.scenario.seed);
         for row in rows {
             let Make::Step { make, .. } = row.make else {
                 continue;
@@ -158,26 +159,37 @@ impl VirtualTime {
 
 /// A link between two nodes of one process.
 struct MemoryLink {
+    session: String,
+    /// Of both ends, and of what they draw.
+    seed: u64,
     forward: Option<(FrameSender, FrameReceiver)>,
     back: Option<(FrameSender, FrameReceiver)>,
 }
 
 impl MemoryLink {
-    fn new() -> MemoryLink {
+    fn new(session: &str, seed: u64) -> MemoryLink {
         let (up_sender, up_receiver) = frames::memory();
         let (down_sender, down_receiver) = frames::memory();
         MemoryLink {
+            session: session.to_owned(),
+            seed,
             forward: Some((up_sender, down_receiver)),
             back: Some((down_sender, up_receiver)),
         }
     }
 
-    fn open(&mut self, sends: LinkDirection) -> Result<(FrameSender, FrameReceiver), NodeError> {
-        let end = match sends {
-            LinkDirection::Forward => &mut self.forward,
-            LinkDirection::Back => &mut self.back,
+    fn open(&mut self, sends: LinkDirection) -> Result<LinkWire, NodeError> {
+        let (end, number) = match sends {
+            LinkDirection::Forward => (&mut self.forward, 1),
+            LinkDirection::Back => (&mut self.back, 2),
         };
-        end.take().ok_or(NodeError::NoLink)
+        let (sender, receiver) = end.take().ok_or(NodeError::NoLink)?;
+        Ok(LinkWire {
+            sender,
+            receiver,
+            secure: seeded_end(&self.session, self.seed, 0, number, sends),
+            door: Door::default(),
+        })
     }
 }
 
@@ -226,7 +238,7 @@ mod tests {
 
     #[test]
     fn an_end_of_the_link_is_given_once() {
-        let mut link = MemoryLink::new();
+        let mut link = MemoryLink::new("lockstep", 1);
         assert!(link.open(LinkDirection::Forward).is_ok());
         assert!(link.open(LinkDirection::Back).is_ok());
         assert!(link.open(LinkDirection::Back).is_err());

@@ -3,6 +3,7 @@
 use ferntast_control::{
     haptics::{HandCommand, HandRefusal, Master, MasterConfig},
     operating::OperatingState,
+    planted::{Planted, Rule},
 };
 use ferntast_emulation::hand::Hand;
 use ferntast_model::ParameterError;
@@ -55,6 +56,7 @@ ports! {
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let node = MasterNode::new(&loaded.scenario.master, loaded.hand()?)?;
+    let node = node.planted(build.session.planted);
     let ports = MasterPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
@@ -73,6 +75,7 @@ pub struct MasterNode {
     authority: Option<(u64, u64, u64)>,
     authority_due: Time,
     message: Text<96>,
+    planted: Planted,
 }
 
 impl MasterNode {
@@ -92,7 +95,17 @@ impl MasterNode {
             authority: None,
             authority_due: Time::INVALID,
             message: Text::EMPTY,
+            planted: Planted::NONE,
         })
+    }
+
+    /// The same with a planted bug.
+    pub fn planted(self, planted: Planted) -> MasterNode {
+        MasterNode {
+            master: self.master.planted(planted),
+            planted,
+            ..self
+        }
     }
 
     fn offer(&mut self, now: Time, pose: &PoseSample, health: &mut NodeHealth) {
@@ -195,7 +208,9 @@ impl Node for MasterNode {
         let reflected = input
             .reflected_cf
             .message
-            .filter(|_| input.reflected_cf.silence(now) <= FORCE_LIFE)
+            .filter(|_| {
+                input.reflected_cf.silence(now) <= FORCE_LIFE || self.planted.lacks(Rule::ForceLife)
+            })
             .map(|wrench| wrench.force);
         let step = self.master.step(now.nanos(), dt, reflected);
         self.force = step.force;

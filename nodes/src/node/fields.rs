@@ -28,7 +28,7 @@ pub trait Incoming: Default {
     fn fill(&mut self, now: Time, port: &mut Self::Port);
 
     /// Tells `each` the name of every topic and what became of its messages.
-    fn counts(port: &Self::Port, each: &mut dyn FnMut(&str, SubscriberCounts));
+    fn counts(port: &Self::Port, each: &mut dyn FnMut(&TopicName, &SubscriberCounts));
 }
 
 /// Receives one topic, and knows its name.
@@ -46,7 +46,7 @@ impl<M: Message> InputPort<M> {
         })
     }
 
-    fn counts(&self, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+    fn counts(&self, each: &mut dyn FnMut(&TopicName, &SubscriberCounts)) {
         each(&self.topic, self.subscriber.counts());
     }
 }
@@ -70,7 +70,7 @@ impl<M: Message> Incoming for Newest<M> {
         }
     }
 
-    fn counts(port: &InputPort<M>, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+    fn counts(port: &InputPort<M>, each: &mut dyn FnMut(&TopicName, &SubscriberCounts)) {
         port.counts(each);
     }
 }
@@ -93,7 +93,7 @@ impl<M: Message> Incoming for Batch<M> {
         }
     }
 
-    fn counts(port: &InputPort<M>, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+    fn counts(port: &InputPort<M>, each: &mut dyn FnMut(&TopicName, &SubscriberCounts)) {
         port.counts(each);
     }
 }
@@ -117,7 +117,7 @@ impl<M: Message, F: Incoming<Topic = Topic<M>>> Incoming for PerJoint<F> {
         }
     }
 
-    fn counts(ports: &Vec<F::Port>, each: &mut dyn FnMut(&str, SubscriberCounts)) {
+    fn counts(ports: &Vec<F::Port>, each: &mut dyn FnMut(&TopicName, &SubscriberCounts)) {
         for port in ports {
             F::counts(port, each);
         }

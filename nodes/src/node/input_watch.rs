@@ -1,9 +1,11 @@
 //! What the bus refused on the way in, made visible.
 
 use ferntast_bus::SubscriberCounts;
+use ferntast_control::planted::{Planted, Rule};
 use ferntast_msgs::{
     Text,
     sample::{Fault, Level},
+    topics::TopicName,
 };
 
 use super::NodeHealth;
@@ -17,6 +19,7 @@ const INPUTS: usize = 64;
 pub struct InputWatch {
     seen: [u64; INPUTS],
     message: Text<96>,
+    planted: Planted,
 }
 
 impl Default for InputWatch {
@@ -24,20 +27,32 @@ impl Default for InputWatch {
         InputWatch {
             seen: [0; INPUTS],
             message: Text::EMPTY,
+            planted: Planted::NONE,
         }
     }
 }
 
 impl InputWatch {
+    /// A watch with a planted bug.
+    pub fn planted(planted: Planted) -> InputWatch {
+        InputWatch {
+            planted,
+            ..InputWatch::default()
+        }
+    }
+
     /// Adds to `health` what `inputs` tells of each input: its topic and its
     /// counts. Raises a fault for each message that was refused since the
     /// last call. What the node itself has to say goes before.
     pub fn note(
         &mut self,
-        inputs: impl FnOnce(&mut dyn FnMut(&str, SubscriberCounts)),
+        inputs: impl FnOnce(&mut dyn FnMut(&TopicName, &SubscriberCounts)),
         health: &mut NodeHealth,
     ) {
         let mut index = 0;
+        if self.planted.lacks(Rule::RefusalsTold) {
+            return;
+        }
         inputs(&mut |topic, counts| {
             health.refused += counts.refused();
             health.lost += counts.overflowed;
@@ -58,7 +73,8 @@ impl InputWatch {
 }
 
 /// What it means that a message on `topic` is refused.
-fn fault(topic: &str) -> Fault {
+fn fault(topic: &TopicName) -> Fault {
+    let topic = topic.as_str();
     if topic.ends_with("/state_command") {
         Fault::StateCommandRefused
     } else if topic == "/follower/measured_js" {
@@ -76,22 +92,23 @@ mod tests {
     fn a_refusal_is_told_once_with_topic_and_reason() {
         let mut watch = InputWatch::default();
         let mut counts = SubscriberCounts::default();
-        let mut tell = |counts: SubscriberCounts| {
+        let mut tell = |counts: &SubscriberCounts| {
             let mut health = NodeHealth::default();
-            watch.note(|each| each("/follower/servo_cp", counts), &mut health);
+            let topic = TopicName::constant("/follower/servo_cp");
+            watch.note(|each| each(&topic, counts), &mut health);
             health
         };
-        assert!(!tell(counts).faults.has(Fault::CommandInvalid));
+        assert!(!tell(&counts).faults.has(Fault::CommandInvalid));
         counts.invalid = 1;
         counts.last_refusal = Text::new("position is NaN, not a finite number");
-        let health = tell(counts);
+        let health = tell(&counts);
         assert!(health.faults.has(Fault::CommandInvalid));
         assert_eq!(health.refused, 1);
         assert_eq!(
             health.message.as_str(),
             "/follower/servo_cp refused: position is NaN, not a finite number"
         );
-        let health = tell(counts);
+        let health = tell(&counts);
         assert!(!health.faults.has(Fault::CommandInvalid));
         assert!(!health.message.is_empty());
     }

@@ -35,7 +35,7 @@ pub trait Ports {
     fn write(&mut self, now: Time, output: &<Self::Node as Node>::Output) -> u64;
 
     /// Tells `each` the topic of every input and what became of its messages.
-    fn counts(&self, each: &mut dyn FnMut(&str, SubscriberCounts));
+    fn counts(&self, each: &mut dyn FnMut(&TopicName, &SubscriberCounts));
 }
 
 /// Declares a node's port table: the structs of its input and output, and
@@ -144,7 +144,7 @@ macro_rules! ports {
                     &mut self.$out_field, now, &output.$out_field))*
             }
 
-            fn counts(&self, each: &mut dyn FnMut(&str, ferntast_bus::SubscriberCounts)) {
+            fn counts(&self, each: &mut dyn FnMut(&ferntast_msgs::topics::TopicName, &ferntast_bus::SubscriberCounts)) {
                 $(<$crate::node::$kind<$in_sample> as $crate::node::Incoming>::counts(
                     &self.$in_field, each);)*
                 let _ = each;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use ferntast_bus::{CreateError, OpenError};
 use ferntast_model::ParameterError;
 
+use super::link_keys::LinkKeyError;
 use crate::config::ConfigError;
 
 /// Why a node cannot be made, or stopped running.
@@ -22,6 +23,9 @@ pub enum NodeError {
     /// The configuration cannot be used.
     #[error(transparent)]
     Config(#[from] ConfigError),
+    /// There are no keys for the link.
+    #[error(transparent)]
+    LinkKeys(#[from] LinkKeyError),
     /// What is the node's own cannot be made: a model, a server, a simulation.
     #[error("{0}")]
     Own(Box<dyn std::error::Error + Send + Sync>),

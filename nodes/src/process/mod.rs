@@ -4,12 +4,16 @@
 mod clock;
 mod context;
 mod error;
+pub mod link_end;
+pub mod link_keys;
 pub mod periodic;
+mod priority;
 mod session_context;
 mod signals;
 
 pub use clock::Clock;
 pub use context::ProcessContext;
 pub use error::NodeError;
+pub use priority::{Priority, Scheduling};
 pub use session_context::{ConsoleOptions, ContextError, PlayOptions, SessionContext};
-pub use signals::stop_on_signals;
+pub use signals::{SUPERVISOR_DIED, stop_on_signals};

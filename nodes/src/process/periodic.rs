@@ -6,10 +6,6 @@ use ferntast_msgs::Time;
 
 use super::Clock;
 
-/// Real-time priority (SCHED_FIFO) of the 1 kHz loops: below the kernel's own
-/// interrupt threads at 50.
-const PRIORITY: libc::c_int = 40;
-
 /// When a step began.
 #[derive(Clone, Copy, Debug)]
 pub struct Wake {
@@ -53,23 +49,5 @@ pub fn run_while(
             missed: missed as u64,
         });
         due = due.plus_nanos((missed + 1) * period_nanos);
-    }
-}
-
-/// Asks for real-time priority for the calling thread.
-///
-/// # Errors
-///
-/// The operating system's reason when it is refused. Work goes on without.
-pub fn request_realtime() -> Result<(), std::io::Error> {
-    let parameters = libc::sched_param {
-        sched_priority: PRIORITY,
-    };
-    // SAFETY: `parameters` is valid; 0 means the calling thread.
-    let result = unsafe { libc::sched_setscheduler(0, libc::SCHED_FIFO, &parameters) };
-    if result == 0 {
-        Ok(())
-    } else {
-        Err(std::io::Error::last_os_error())
     }
 }

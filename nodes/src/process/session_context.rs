@@ -2,14 +2,17 @@
 
 use std::{
     fs,
+    io::Write,
     net::SocketAddr,
+    os::unix::fs::OpenOptionsExt,
     path::{Path, PathBuf},
 };
 
+use ferntast_control::planted::Planted;
 use ferntast_msgs::sample::JointNames;
 use serde::{Deserialize, Serialize};
 
-use super::Clock;
+use super::{Clock, link_end::LinkAccess};
 use crate::config::{Loaded, joint_names};
 
 /// What every process of a session needs to know. The supervisor writes it to
@@ -33,6 +36,12 @@ pub struct SessionContext {
     pub console: Option<ConsoleOptions>,
     /// Where the topics are shown to Foxglove; `None` without that.
     pub foxglove: Option<SocketAddr>,
+    /// Whose frames the ends of the link take.
+    pub link_access: LinkAccess,
+    /// A safety rule that is taken out; in virtual time only, and only in builds for
+    /// tests.
+    #[serde(skip)]
+    pub planted: Planted,
 }
 
 /// Where the page is served.
@@ -126,6 +135,8 @@ impl SessionContext {
             console: None,
             foxglove: None,
             twin: None,
+            link_access: LinkAccess::default(),
+            planted: Planted::NONE,
         }
     }
 
@@ -157,7 +168,7 @@ impl SessionContext {
         })
     }
 
-    /// Writes the context for the nodes.
+    /// Writes the context for the nodes, for the eyes of this user alone.
     ///
     /// # Errors
     ///
@@ -171,6 +182,19 @@ impl SessionContext {
             path: path.to_owned(),
             source,
         })?;
-        fs::write(path, text).map_err(file_error)
+        // For this user alone, whatever was there before.
+        let part = path.with_extension("part");
+        match fs::remove_file(&part) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(file_error(error));
+            }
+            _ => {}
+        }
+        let mut options = fs::OpenOptions::new();
+        let opened = options.write(true).create_new(true).mode(0o600).open(&part);
+        opened
+            .and_then(|mut file| file.write_all(text.as_bytes()))
+            .and_then(|()| fs::rename(&part, path))
+            .map_err(file_error)
     }
 }

@@ -1,11 +1,16 @@
-//! Ctrl-C and SIGTERM.
+//! Ctrl-C, SIGTERM, and the end of the supervisor.
 
 use std::sync::{Arc, atomic::AtomicBool};
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 
-/// A flag that Ctrl-C and SIGTERM set. The second signal ends the process at
-/// once, for the case that stopping hangs.
+/// What a node is sent when its supervisor has died. Linux sends it as each thread of the
+/// supervisor ends, so more than once, and it must not be a signal whose second one ends
+/// the process at once: the recorder would not close its recording.
+pub const SUPERVISOR_DIED: i32 = SIGUSR1;
+
+/// A flag that Ctrl-C, SIGTERM and the end of the supervisor set. The second Ctrl-C or SIGTERM ends
+/// the process at once, for the case that stopping hangs.
 ///
 /// # Errors
 ///
@@ -16,5 +21,6 @@ pub fn stop_on_signals() -> Result<Arc<AtomicBool>, std::io::Error> {
         signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
         signal_hook::flag::register(signal, Arc::clone(&stop))?;
     }
+    signal_hook::flag::register(SUPERVISOR_DIED, Arc::clone(&stop))?;
     Ok(stop)
 }

@@ -9,18 +9,19 @@ pub use summary::{FrictionParameter, FrictionSummary};
 
 use ferntast_control::{
     operating,
+    planted::Planted,
     servo::{
         Command, CommandRefusal, Measurement, Servo, ServoConfig, ServoInput as LawInput,
         ServoOutput as LawOutput, Target,
     },
 };
-use ferntast_model::{ArmModel, JointCount, Joints, ParameterError};
+use ferntast_model::{ArmModel, JointCount, Joints, ParameterError, Vector2, arm::Arm};
 use ferntast_msgs::{
     Text, Time,
     sample::{
         CommandStatusSample, Fault, FrictionCommandSample, FrictionStatusSample, JointFields,
-        JointNames, JointSample, Level, OperatingStateSample, PoseSample, StateCommandSample,
-        TemperatureSample, TwinParametersSample,
+        JointNames, JointSample, Level, OperatingStateSample, PoseSample, StateCommand,
+        StateCommandSample, TemperatureSample, TwinParametersSample,
     },
 };
 
@@ -59,6 +60,10 @@ ports! {
     }
 }
 
+/// A `resume` that was said so long before the arm stopped at most crossed the stop [s].
+/// By its stamp, which may be of another clock: what is further apart is none.
+const CROSSING: f64 = 0.020;
+
 /// The node of the graph.
 ///
 /// # Errors
@@ -67,6 +72,7 @@ ports! {
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let node = ServoNode::new(&loaded.arm.model, &loaded.scenario.servo)?;
+    let node = node.planted(build.session.planted);
     let ports = ServoPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
@@ -74,12 +80,15 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 /// The joint servo.
 pub struct ServoNode {
     joints: JointNames,
+    arm: Arm,
     servo: Servo,
     states: StatePublisher,
     friction: FrictionCommands,
     message: Text<96>,
     commands_due: Time,
     refusal: Text<96>,
+    /// When the arm last ceased to follow commands.
+    left: Time,
 }
 
 impl ServoNode {
@@ -91,13 +100,23 @@ impl ServoNode {
     pub fn new(model: &ArmModel, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
         Ok(ServoNode {
             joints: joint_names(model),
+            arm: Arm::new(&model.arm),
             servo: Servo::new(&model.joint, Some(model.arm.kinematics()), config)?,
             states: StatePublisher::default(),
             friction: FrictionCommands::new(joint_names(model)),
             message: Text::EMPTY,
             commands_due: Time::INVALID,
             refusal: Text::EMPTY,
+            left: Time::INVALID,
         })
+    }
+
+    /// The same with a planted bug.
+    pub fn planted(self, planted: Planted) -> ServoNode {
+        ServoNode {
+            servo: self.servo.planted(planted),
+            ..self
+        }
     }
 }
 
@@ -140,15 +159,15 @@ impl Node for ServoNode {
                 torque: Joints::from_places(joints, sample.effort),
             }),
             command: command(input, servo_jp, joints),
-            // One a step; a second in the same millisecond is the newer wish.
-            state_command: input
-                .state_command
-                .iter()
-                .last()
-                .and_then(|sample| to_law(sample.command)),
+            state_command: self.state_command(input, output),
+            weight: measured.and_then(|sample| self.weight(&sample)),
         };
         self.feed_forward(now, input, output);
+        let was_enabled = self.servo.state() == operating::OperatingState::Enabled;
         let law = self.servo.step(now.nanos(), &law_input);
+        if was_enabled && law.state != operating::OperatingState::Enabled {
+            self.left = now;
+        }
         self.report(&law, output);
         let torque = JointSample::empty(self.joints, now).with_effort(law.torque.into_places(0.0));
         output.torque = Some(torque);
@@ -167,6 +186,41 @@ impl Node for ServoNode {
 }
 
 impl ServoNode {
+    /// The one state command of a step. Of several in the same millisecond nobody knows
+    /// which was said first: one that stops counts, or else the last. A `resume` that was
+    /// said just before the arm stopped was not said of that stop, and is refused.
+    fn state_command(
+        &mut self,
+        input: &ServoInput,
+        output: &mut ServoOutput,
+    ) -> Option<operating::StateCommand> {
+        let outdated = |sample: &StateCommandSample| {
+            let crossed = self.left.is_valid()
+                && (0.0..=CROSSING).contains(&self.left.seconds_since(sample.stamp));
+            sample.command == StateCommand::RESUME && crossed
+        };
+        if input.state_command.iter().any(outdated) {
+            output.health.raise(Fault::StateCommandRefused, Level::WARN);
+            self.message = Text::new("resume was said just before the arm stopped; say it again");
+        }
+        let all = || {
+            let samples = input.state_command.iter().filter(|own| !outdated(own));
+            samples.filter_map(|sample| to_law(sample.command))
+        };
+        let told = |own: operating::StateCommand| all().find(|command| *command == own);
+        told(operating::StateCommand::Disable)
+            .or_else(|| told(operating::StateCommand::Pause))
+            .or_else(|| all().last())
+    }
+
+    /// What the joints carry of the arm's own weight \[Nm\], where it has no more joints
+    /// than the model has links.
+    fn weight(&self, measured: &JointSample) -> Option<Joints<f64>> {
+        let q = Vector2::new(measured.position[0], measured.position[1]);
+        let own = self.arm.gravity(&q);
+        (self.servo.joints().get() == own.len()).then(|| [own[0], own[1]].into())
+    }
+
     /// What became of the commands: ten times a second.
     fn command_status(&mut self, now: Time, law: &LawOutput) -> Option<CommandStatusSample> {
         if let Some(refusal) = &law.refused {
@@ -259,6 +313,9 @@ impl ServoNode {
                 operating::Event::CommandSilent => (Fault::CommandSilent, Level::WARN),
                 operating::Event::MeasurementSilent => (Fault::MeasurementSilent, Level::ERROR),
                 operating::Event::MeasurementInvalid => (Fault::MeasurementInvalid, Level::ERROR),
+                operating::Event::MeasurementFrozen(_) | operating::Event::MeasurementJumped(_) => {
+                    (Fault::MeasurementInvalid, Level::ERROR)
+                }
                 operating::Event::JointLimit(_) => (Fault::JointLimit, Level::ERROR),
                 operating::Event::Overspeed(_) => (Fault::JointOverspeed, Level::ERROR),
             };

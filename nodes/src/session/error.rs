@@ -4,7 +4,7 @@ use std::{io, path::PathBuf};
 
 use ferntast_bus::{CleanUpError, CreateError, OpenError};
 
-use super::SupervisorError;
+use super::{SupervisorError, private_folder::PrivateFolderError};
 use crate::process::ContextError;
 
 /// Why a session did not run, or not to its end.
@@ -13,10 +13,13 @@ pub enum SessionError {
     /// The session's file cannot be written.
     #[error(transparent)]
     Context(#[from] ContextError),
-    /// The folder for the session's file cannot be made.
-    #[error("cannot make {path}: {source}")]
+    /// The folder for the session's file is not this user's alone.
+    #[error(transparent)]
+    PrivateFolder(#[from] PrivateFolderError),
+    /// What marks the session's name as taken cannot be written.
+    #[error("cannot write {path}: {source}")]
     Folder {
-        /// The folder.
+        /// The file.
         path: PathBuf,
         /// The operating system's reason.
         source: io::Error,
@@ -54,12 +57,22 @@ pub enum SessionError {
     #[error(transparent)]
     Supervisor(#[from] SupervisorError),
     /// The nodes were not all alive, or the arm not armed, in time.
-    #[error("not ready after {seconds} s: {waiting}")]
+    #[error(
+        "not ready after {waited:.0} s, the last {seconds} s of them without progress: {waiting}"
+    )]
     NotReady {
         /// How long it was waited \[s\].
+        waited: f64,
+        /// How long nothing had changed \[s\].
         seconds: f64,
         /// For what.
         waiting: String,
+    },
+    /// The session came to its end, but what it recorded is not whole.
+    #[error("the recording is not whole: {}", faults.join("; "))]
+    Recording {
+        /// Why, in words.
+        faults: Vec<String>,
     },
     /// The program's own path is not known.
     #[error("cannot find the ferntast program itself: {0}")]
@@ -71,7 +84,9 @@ impl SessionError {
     pub fn is_refusal(&self) -> bool {
         !matches!(
             self,
-            SessionError::NotReady { .. } | SessionError::Supervisor(_)
+            SessionError::NotReady { .. }
+                | SessionError::Supervisor(_)
+                | SessionError::Recording { .. }
         ) || matches!(
             self,
             SessionError::Supervisor(SupervisorError::Refused { .. })

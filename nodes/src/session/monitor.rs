@@ -1,6 +1,9 @@
 //! Watches a session's topics: what the live line shows and the summary holds.
 
-use std::collections::BTreeMap;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+};
 
 use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
 use ferntast_identification::numerics::statistics::quantile;
@@ -8,8 +11,8 @@ use ferntast_msgs::{
     Message, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Faults, FrictionStatusSample, HealthSample,
-        JointNames, LinkStatusSample, OperatingState, OperatingStateSample, TwinParametersSample,
-        WrenchSample,
+        JointNames, LinkStatusSample, OperatingState, OperatingStateSample, RecorderStatusSample,
+        TwinParametersSample, WrenchSample,
     },
     topics::{self, Topic},
 };
@@ -19,6 +22,7 @@ use crate::{servo::FrictionSummary, twin::TwinSummary};
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
 };
+use super::thinned::Thinned;
 
 /// A node that was not heard of for this long \[s\] is not alive.
 const ALIVE: f64 = 1.0;
@@ -32,6 +36,8 @@ pub struct NodeView {
     pub faults: Faults,
     /// Deadlines missed by earlier processes of the node.
     missed_before: u64,
+    /// Messages lost by them.
+    lost_before: u64,
 }
 
 impl NodeView {
@@ -46,6 +52,7 @@ impl NodeView {
             && last.process != health.process
         {
             self.missed_before += last.missed;
+            self.lost_before += last.lost;
         }
         self.faults.0 |= health.faults.0;
         self.last = Some(health);
@@ -54,6 +61,11 @@ impl NodeView {
     /// Deadlines missed since the start of the session.
     pub fn missed(&self) -> u64 {
         self.missed_before + self.last.map_or(0, |health| health.missed)
+    }
+
+    /// Messages lost since the start of the session.
+    pub fn lost(&self) -> u64 {
+        self.lost_before + self.last.map_or(0, |health| health.lost)
     }
 }
 
@@ -65,6 +77,9 @@ pub struct Monitor {
     leader_force: Subscriber<WrenchSample>,
     states: [(&'static str, Subscriber<OperatingStateSample>); 2],
     authority: Subscriber<AuthoritySample>,
+    recorder: Subscriber<RecorderStatusSample>,
+    /// The folders that the recorder told of.
+    pub recordings: BTreeSet<PathBuf>,
     twin_parameters: Subscriber<TwinParametersSample>,
     /// Of each joint, and its last word.
     friction: Vec<(
@@ -81,7 +96,7 @@ pub struct Monitor {
     pub hand_force: f64,
     /// Operating states by device.
     pub operating: BTreeMap<&'static str, StateView>,
-    round_trips: Vec<f64>,
+    round_trips: Thinned,
     peak_normal_force: f64,
     contact_time: f64,
     contact_stamp: Option<Time>,
@@ -136,6 +151,8 @@ impl Monitor {
                 ("leader", watch(bus, topics::LEADER_OPERATING_STATE)?),
             ],
             authority: watch(bus, topics::LEADER_AUTHORITY)?,
+            recorder: watch(bus, topics::RECORDER_STATUS)?,
+            recordings: BTreeSet::new(),
             twin_parameters: bus.subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?,
             friction: friction.collect::<Result<_, CreateError>>()?,
             nodes: BTreeMap::new(),
@@ -143,7 +160,7 @@ impl Monitor {
             contact_state: None,
             hand_force: 0.0,
             operating: BTreeMap::new(),
-            round_trips: Vec::new(),
+            round_trips: Thinned::default(),
             peak_normal_force: 0.0,
             contact_time: 0.0,
             contact_stamp: None,
@@ -201,6 +218,12 @@ impl Monitor {
         while let Some(received) = self.authority.next(now) {
             self.refused_masters = received.message.refused_count;
         }
+        while let Some(received) = self.recorder.next(now) {
+            let folder = received.message.folder;
+            if !folder.is_empty() {
+                self.recordings.insert(PathBuf::from(folder.as_str()));
+            }
+        }
         if let Some(received) = self.twin_parameters.newest(now) {
             self.twin = Some(received.message);
         }
@@ -257,7 +280,7 @@ impl Monitor {
     /// The link.
     pub fn link(&mut self) -> LinkSummary {
         let mut percentile = |share: f64| {
-            quantile(&mut self.round_trips, share, f64::total_cmp).map(|seconds| seconds * 1e3)
+            quantile(self.round_trips.values(), share, f64::total_cmp).map(|seconds| seconds * 1e3)
         };
         let status = self.link_status.as_ref();
         LinkSummary {
@@ -328,7 +351,7 @@ impl Monitor {
                     rate_hz: view.last.map(|health| health.rate),
                     missed: view.missed(),
                     refused: view.last.map_or(0, |health| health.refused),
-                    lost: view.last.map_or(0, |health| health.lost),
+                    lost: view.lost(),
                     faults: view
                         .faults
                         .iter()

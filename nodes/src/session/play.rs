@@ -5,11 +5,14 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use ferntast_bus::{Bus, CreateError, SharedMemoryBus, SharedMemoryConfig, mcap::BagReader};
+use ferntast_bus::{
+    Bus, CreateError, SharedMemoryBus, SharedMemoryConfig,
+    mcap::{BagInfo, BagReader, Break},
+};
 use ferntast_msgs::sample::JointNames;
 use serde::Serialize;
 
-use super::{Monitor, SessionError, Supervisor, host_resources::HostResources};
+use super::{Monitor, SessionError, Supervisor, host_resources::HostResources, monitor::NodeView};
 use crate::{
     bridge::player,
     graph::{Graph, NodeRow},
@@ -29,8 +32,33 @@ pub struct Played {
     pub played_s: f64,
     /// Whether a live estimator took part.
     pub estimated: bool,
+    /// Messages that were lost on the way onto the topics.
+    pub lost: u64,
+    /// Where the recording is damaged: what stood there was not played.
+    pub breaks: Vec<Break>,
     /// The live twin's last word; `null` without one.
     pub twin: Option<TwinSummary>,
+}
+
+impl Played {
+    /// Why not all of the recording was played; `None` where it was.
+    pub fn fault(&self) -> Option<String> {
+        if let Some(first) = self.breaks.first() {
+            return Some(format!(
+                "{} is damaged in {} places, the first at byte {} ({}): what stands there was not played; `ferntast bag repair` mends it",
+                self.recording,
+                self.breaks.len(),
+                first.offset,
+                first.reason
+            ));
+        }
+        (self.lost > 0).then(|| {
+            format!(
+                "{} messages of {} were not played: the computer is too slow for --rate",
+                self.lost, self.recording
+            )
+        })
+    }
 }
 
 /// The joints of the recording at `path`, where it says which.
@@ -39,7 +67,8 @@ pub fn recorded_joints(path: &Path) -> Option<JointNames> {
 }
 
 /// Plays the context's recording, to the nodes of `graph` that listen to it,
-/// until its end or until `stop` is set. What a live node publishes is not played.
+/// until its end or until `stop` is set; `info` says what it holds. What a live
+/// node publishes is not played.
 ///
 /// # Errors
 ///
@@ -47,7 +76,7 @@ pub fn recorded_joints(path: &Path) -> Option<JointNames> {
 pub fn play(
     graph: &Graph,
     mut context: SessionContext,
-    duration: f64,
+    info: &BagInfo,
     stop: &AtomicBool,
 ) -> Result<Played, SessionError> {
     let follows = context.twin.is_some();
@@ -91,7 +120,7 @@ pub fn play(
     let mut player = Supervisor::new(executable, session_file, &[player::NAME]);
     player.start()?;
     let begun = clock.now();
-    let bar = indicatif::ProgressBar::new((duration / context.play.rate).ceil() as u64);
+    let bar = indicatif::ProgressBar::new((info.duration_s / context.play.rate).ceil() as u64);
     while !stop.load(Ordering::Relaxed) {
         listeners.watch()?;
         if player.ended()? {
@@ -105,6 +134,7 @@ pub fn play(
     let played = clock.now().seconds_since(begun);
     monitor.update(clock.now());
     let twin = monitor.twin().filter(|_| follows);
+    let lost = monitor.nodes.get(player::NAME).map_or(0, NodeView::lost);
     drop((monitor, bus));
     player.stop();
     listeners.stop();
@@ -116,6 +146,8 @@ pub fn play(
             .unwrap_or_default(),
         played_s: played,
         estimated: context.play.estimate,
+        lost,
+        breaks: info.breaks.clone(),
         twin,
     })
 }

@@ -2,6 +2,8 @@
 
 use std::{fs, path::Path};
 
+use ferntast_bus::frames::check_endpoint as check_link;
+
 use super::SessionError;
 use crate::process::SessionContext;
 
@@ -18,6 +20,7 @@ pub fn check(context: &SessionContext) -> Result<(), SessionError> {
         return Err(SessionError::RecordingExists { path: bag.clone() });
     }
     let scenario = &context.loaded.scenario;
+    check_link(&scenario.link.endpoint)?;
     check_endpoint(
         "the link's endpoint",
         &scenario.link.endpoint,
@@ -40,12 +43,11 @@ fn check_endpoint(
     endpoint: &str,
     option: &'static str,
 ) -> Result<(), SessionError> {
-    let bound = if let Some(address) = endpoint.strip_prefix("tcp/") {
-        std::net::TcpListener::bind(address).map(drop)
-    } else if let Some(address) = endpoint.strip_prefix("udp/") {
-        std::net::UdpSocket::bind(address).map(drop)
-    } else {
-        return Ok(()); // the node that opens it says what is wrong
+    let bound = match endpoint.split_once('/') {
+        Some(("tcp", address)) => std::net::TcpListener::bind(address).map(drop),
+        Some(("udp" | "quic", address)) => std::net::UdpSocket::bind(address).map(drop),
+        // The node that opens it says what is wrong.
+        _ => return Ok(()),
     };
     match bound {
         Ok(()) => Ok(()),

@@ -14,17 +14,18 @@ use ferntast_msgs::{
 
 use super::{
     Monitor, SessionError, Summary, Supervisor, host_resources::HostResources, live::LiveLine,
-    preflight, recording,
+    preflight, recording, supervisor::Unclean,
 };
 use crate::{
     bridge::recorder,
     graph::Graph,
-    process::{Clock, SessionContext},
+    process::{Clock, Priority, SessionContext},
 };
 
 /// How often the supervisor looks \[ns\].
 const ROUND_NANOS: i64 = 20_000_000;
-/// How long the nodes may take until all are alive and the arm is armed \[s\].
+/// How long nothing may change until all nodes are alive and the arm is armed
+/// \[s\]: on a computer that is busy they come one after the other.
 const START_PATIENCE: f64 = 20.0;
 
 /// What can be chosen about a session beside its scenario.
@@ -48,6 +49,9 @@ pub fn run(
     options: &SessionOptions,
     stop: &AtomicBool,
 ) -> Result<(Summary, Result<(), SessionError>), SessionError> {
+    // A stop, a restart and the nodes' start are not to wait for a computer that
+    // is busy. Where that is not allowed the session goes on without.
+    let _ = Priority::Supervision.take();
     preflight::check(&context)?;
     let resources = HostResources::acquire(&context)?;
     let session_file = resources.session_file.clone();
@@ -82,19 +86,29 @@ pub fn run(
         summary.restarts = restarts;
         summary.alive &= process.is_some();
     }
-    let killed = session.supervisor.stop();
+    let unclean = session.supervisor.stop();
     session.live.finish();
-    for node in killed {
-        eprintln!("node {node} did not stop in time and was killed");
+    for (node, how) in &unclean {
+        match how {
+            Unclean::Killed => eprintln!("node {node} did not stop in time and was killed"),
+            Unclean::Failed(status) => eprintln!("node {node} failed as it stopped ({status})"),
+        }
     }
     monitor.update(clock.now());
-    let recorder = match recording::summarize(&session.context, &node_summaries) {
-        Ok(recorder) => recorder,
-        Err(message) => {
-            eprintln!("{message}");
-            None
-        }
-    };
+    // The recorder's last word comes after that of the others.
+    if let (Some(told), Some(view)) = (
+        node_summaries.get_mut(recorder::NAME),
+        monitor.nodes.get(recorder::NAME),
+    ) {
+        told.lost = view.lost();
+    }
+    let recorder = recording::summarize(
+        &session.context,
+        &node_summaries,
+        &monitor.recordings,
+        unclean.iter().any(|(node, _)| *node == recorder::NAME),
+    );
+    let recording_faults = recorder.as_ref().map(|recorder| recorder.faults.clone());
     let summary = Summary {
         scenario: session.context.loaded.scenario.name.clone(),
         session: session.context.session.clone(),
@@ -118,7 +132,10 @@ pub fn run(
     drop((monitor, arming, bus));
     let freed = resources.release();
     if outcome.is_ok() {
-        outcome = freed;
+        outcome = match recording_faults {
+            Some(faults) if !faults.is_empty() => Err(SessionError::Recording { faults }),
+            _ => freed,
+        };
     }
     Ok((summary, outcome))
 }
@@ -163,6 +180,7 @@ impl Running {
     ) -> Result<(), SessionError> {
         let started = clock.now();
         let mut due = started;
+        let mut progress = (0, started);
         while !stop.load(Ordering::Relaxed) {
             due = due.plus_nanos(ROUND_NANOS).max(clock.now());
             clock.sleep_until(due);
@@ -173,9 +191,14 @@ impl Running {
             monitor.update(now);
             if self.armed_at.is_none() {
                 self.arm(now, monitor, arming, options);
-                let waited = now.seconds_since(started);
-                if self.armed_at.is_none() && waited > START_PATIENCE {
+                let reached = self.reached(now, monitor);
+                if reached > progress.0 {
+                    progress = (reached, now);
+                }
+                let idle = now.seconds_since(progress.1);
+                if self.armed_at.is_none() && idle > START_PATIENCE {
                     return Err(SessionError::NotReady {
+                        waited: now.seconds_since(started),
                         seconds: START_PATIENCE,
                         waiting: self.waiting_for(now, monitor),
                     });
@@ -218,6 +241,14 @@ impl Running {
             self.commanded_at = Some(now);
             arming.enable(now, is(OperatingState::FAULT));
         }
+    }
+
+    /// How far the session has come on its way to an armed arm: the nodes that
+    /// were heard of lately, and the operating states that were told.
+    fn reached(&self, now: Time, monitor: &Monitor) -> usize {
+        let alive = self.supervisor.nodes();
+        let alive = alive.filter(|(node, _, _)| monitor.is_alive(node, now));
+        alive.count() + monitor.operating.len()
     }
 
     fn waiting_for(&self, now: Time, monitor: &Monitor) -> String {

@@ -90,8 +90,12 @@ pub struct RecorderSummary {
     pub messages: u64,
     /// Messages that were lost on the way into it.
     pub lost: u64,
-    /// Folders of its parts: more than one where a recorder was restarted.
+    /// Folders of its parts: more than one where a recorder was restarted or
+    /// the page recorded.
     pub parts: Vec<String>,
+    /// Why it is not whole, in words; empty where it is. The session then ends
+    /// with exit code 1.
+    pub faults: Vec<String>,
 }
 
 /// The states of one device.
@@ -180,16 +184,19 @@ impl fmt::Display for Summary {
         {
             writeln!(f, "{name:14} {}", node.faults.join("; "))?;
         }
-        match (&self.recording, &self.recorder) {
-            (Some(_), Some(recorder)) => write!(
-                f,
-                "recorded  {} messages in {}, {} lost",
-                recorder.messages,
-                recorder.parts.join(" and "),
-                recorder.lost
-            ),
-            (Some(path), None) => write!(f, "recorded  {path}"),
-            (None, _) => write!(f, "not recorded (--record DIR does)"),
+        match &self.recorder {
+            Some(recorder) => {
+                write!(
+                    f,
+                    "recorded  {} messages in {}, {} lost",
+                    recorder.messages,
+                    recorder.parts.join(" and "),
+                    recorder.lost
+                )?;
+                let mut faults = recorder.faults.iter();
+                faults.try_for_each(|fault| write!(f, "\nnot whole  {fault}"))
+            }
+            None => write!(f, "not recorded (--record DIR does)"),
         }
     }
 }

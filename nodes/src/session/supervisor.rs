@@ -7,11 +7,13 @@ use std::{
     time::{Duration, Instant},
 };
 
+use crate::process::SUPERVISOR_DIED;
+
 /// A node that dies this often within [`RESTART_WINDOW`] is given up.
-const RESTART_LIMIT: usize = 5;
+pub const RESTART_LIMIT: usize = 5;
 const RESTART_WINDOW: Duration = Duration::from_secs(30);
 /// How long to wait before a restart.
-const RESTART_PAUSE: Duration = Duration::from_millis(200);
+pub const RESTART_PAUSE: Duration = Duration::from_millis(200);
 /// How long a node may take to stop before it is killed; the recorder closes
 /// its files in that time.
 const STOP_PATIENCE: Duration = Duration::from_secs(5);
@@ -51,6 +53,15 @@ pub enum SupervisorError {
 
 /// Exit code by which a node says that starting it again would not help.
 pub const EXIT_REFUSED: i32 = 2;
+
+/// How a node ended that did not end well when it was told to.
+#[derive(Clone, Copy, Debug)]
+pub enum Unclean {
+    /// It did not in time, and was killed.
+    Killed,
+    /// It failed on the way.
+    Failed(ExitStatus),
+}
 
 struct Process {
     node: &'static str,
@@ -119,7 +130,7 @@ impl Supervisor {
         // SAFETY: prctl is async-signal-safe and touches nothing of ours.
         unsafe {
             command.pre_exec(|| {
-                libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM);
+                libc::prctl(libc::PR_SET_PDEATHSIG, SUPERVISOR_DIED);
                 Ok(())
             });
         }
@@ -205,9 +216,9 @@ impl Supervisor {
     }
 
     /// Stops every node, in the order of the list, and waits for each. Gives
-    /// those that had to be killed.
-    pub fn stop(&mut self) -> Vec<&'static str> {
-        let mut killed = Vec::new();
+    /// those that did not end well.
+    pub fn stop(&mut self) -> Vec<(&'static str, Unclean)> {
+        let mut unclean = Vec::new();
         for process in &mut self.processes {
             process.start_at = None;
             let Some(mut child) = process.child.take() else {
@@ -224,14 +235,20 @@ impl Supervisor {
                         // Nothing to be done if it is gone already.
                         let _ = child.kill();
                         let _ = child.wait();
-                        killed.push(process.node);
+                        unclean.push((process.node, Unclean::Killed));
                         break;
                     }
-                    Ok(Some(_)) => break,
+                    Ok(Some(status)) => {
+                        // A node that the signal met before it could note it is stopped too.
+                        if status.code().is_some_and(|code| code != 0) {
+                            unclean.push((process.node, Unclean::Failed(status)));
+                        }
+                        break;
+                    }
                 }
             }
         }
-        killed
+        unclean
     }
 }
 

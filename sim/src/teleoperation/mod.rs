@@ -18,7 +18,7 @@ pub use environment::Environment;
 pub use tip::TipParameters;
 
 use ferntast_control::delay::{Energy, EnergyMeter, Law};
-use ferntast_control::frame::FRAME_LENGTH;
+use ferntast_control::frame::{FRAME_LENGTH, WIRE_LENGTH};
 use ferntast_control::link::{
     FollowerLink, FollowerReadings, FollowerStep, LeaderLink, LeaderReadings, LeaderStep,
     StampedPosition,
@@ -37,8 +37,6 @@ pub const TICK: f64 = 1e-3;
 const TICK_NS: i64 = 1_000_000;
 /// Time of the first tick [ns].
 const START_NS: i64 = 1_000_000_000_000_000;
-/// Identity of the session in frames.
-const SESSION: u16 = 1;
 /// Hand and tip reach no further from the surface than this [m].
 const WORKSPACE: f64 = 0.5;
 
@@ -99,8 +97,8 @@ impl Trial {
         self.hand.validate()?;
         self.tip.validate()?;
         let (forth, back) = (
-            self.link.up.nominal_delay(FRAME_LENGTH),
-            self.link.down.nominal_delay(FRAME_LENGTH),
+            self.link.up.nominal_delay(WIRE_LENGTH),
+            self.link.down.nominal_delay(WIRE_LENGTH),
         );
         let schedule = Schedule::new(forth + back);
         let ticks = |delay: f64| (delay / TICK).round() as usize;
@@ -214,8 +212,8 @@ impl<'a> Run<'a> {
         Ok(Run {
             law: &trial.law,
             schedule,
-            leader: LeaderLink::new(laws(), SESSION, trial.buffer),
-            follower: FollowerLink::new(laws(), SESSION, trial.buffer),
+            leader: LeaderLink::new(laws(), trial.buffer),
+            follower: FollowerLink::new(laws(), trial.buffer),
             up: Channel::new(trial.link.up.clone(), trial.seed)?,
             down: Channel::new(trial.link.down.clone(), !trial.seed)?,
             hand: HandImpedance::new(trial.hand, start),
@@ -242,10 +240,10 @@ impl<'a> Run<'a> {
         let output = self.leader_step(now_ns, hand);
         let answer = self.follower_step(now_ns, tip);
         if let Some(frame) = output.frame {
-            self.up.push(now_ns, &frame);
+            self.up.push(now_ns, &on_the_wire(&frame));
         }
         if let Some(frame) = answer.frame {
-            self.down.push(now_ns, &frame);
+            self.down.push(now_ns, &on_the_wire(&frame));
         }
         self.felt = [output.force[0], output.force[1]];
         if let Some(command) = answer.command {
@@ -291,6 +289,7 @@ impl<'a> Run<'a> {
             tip: Some(measured(now_ns, tip)),
             contact_force: Some([self.tip.force[0], self.tip.force[1], 0.0]),
             state: OperatingState::Enabled,
+            told_to_stop: false,
         };
         self.follower.step(now_ns, &readings)
     }
@@ -305,9 +304,16 @@ fn measured(now_ns: i64, position: [f64; 3]) -> StampedPosition {
     }
 }
 
+/// A frame with what a seal adds to it: a channel of limited rate counts that too.
+fn on_the_wire(frame: &[u8; FRAME_LENGTH]) -> [u8; WIRE_LENGTH] {
+    let mut bytes = [0; WIRE_LENGTH];
+    bytes[..FRAME_LENGTH].copy_from_slice(frame);
+    bytes
+}
+
 /// What is on its way through `channel` arrives.
 fn deliver(channel: &mut Channel, now_ns: i64, mut arrived: impl FnMut(&[u8], i64)) {
-    let mut bytes = [0; FRAME_LENGTH];
+    let mut bytes = [0; WIRE_LENGTH];
     while let Some((length, at_ns)) = channel.pop(now_ns, &mut bytes) {
         arrived(&bytes[..length.min(FRAME_LENGTH)], at_ns);
     }

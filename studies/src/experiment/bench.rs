@@ -1,8 +1,10 @@
 //! The arm, its servo and a recorder in virtual time: what an experiment runs on.
 
 use std::{
+    cell::Cell,
     collections::BTreeMap,
     path::{Path, PathBuf},
+    rc::Rc,
 };
 
 use ferntast_bus::{Bus, Depth, McapBus, Publisher, Subscriber, mcap::BagOptions};
@@ -215,9 +217,9 @@ impl Bench {
             &joints,
             |topic| carry(&topic.name, contact),
         )?;
-        time.add(move |now| {
-            forwarder.forward(now);
-        });
+        let lost = Rc::new(Cell::new(0));
+        let count = Rc::clone(&lost);
+        time.add(move |now| count.set(count.get() + forwarder.forward(now).failed));
 
         let operating_state = topics::FOLLOWER_OPERATING_STATE;
         let mut states = time.bus().subscriber(operating_state, Depth::Queue(64))?;
@@ -240,6 +242,12 @@ impl Bench {
         recording
             .finish()
             .map_err(|error| recording_error(error.to_string()))?;
+        if lost.get() > 0 {
+            return Err(recording_error(format!(
+                "{} messages could not be written: is the disk full?",
+                lost.get()
+            )));
+        }
         match stopped {
             None => Ok(done),
             Some(state) => Err(self.stopped(&state, folder.to_owned())),

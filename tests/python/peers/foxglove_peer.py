@@ -1,7 +1,8 @@
 """Watches a session as Foxglove does: over its WebSocket, told of nothing.
 
 Takes schemas from what the server advertises, subscribes to everything, and prints JSON:
-{server: name, capabilities, topics: {name: {type, count, first, last}}}.
+{server: name, capabilities, topics: {name: {type, count, seconds, first, last}}}, seconds
+from the first to the last by the server's clock.
 """
 
 import argparse
@@ -23,6 +24,7 @@ async def watch(url: str, seconds: float) -> dict[str, object]:
     """What comes within `seconds`."""
     topics: dict[str, dict[str, object]] = {}
     readers = []
+    began: dict[int, int] = {}
     report: dict[str, object] = {"topics": topics}
     async with connect(url, subprotocols=["foxglove.sdk.v1"], max_size=None) as socket:
         end = time.monotonic() + seconds
@@ -47,13 +49,15 @@ async def watch(url: str, seconds: float) -> dict[str, object]:
                     )
                     wanted.append({"id": len(readers), "channelId": channel["id"]})
                     decode = DecoderFactory().decoder_for(channel["encoding"], schema)
-                    entry: dict[str, object] = {"type": schema.name, "count": 0}
+                    entry: dict[str, object] = {"type": schema.name, "count": 0, "seconds": 0.0}
                     topics[channel["topic"]] = entry
                     readers.append((decode, entry))
                 await socket.send(json.dumps({"op": "subscribe", "subscriptions": wanted}))
             elif frame[0] == MESSAGE_DATA:
-                subscription, _ = struct.unpack_from("<IQ", frame, 1)
+                subscription, nanoseconds = struct.unpack_from("<IQ", frame, 1)
                 decode, entry = readers[subscription]
+                began.setdefault(subscription, nanoseconds)
+                entry["seconds"] = (nanoseconds - began[subscription]) * 1e-9
                 message = as_json(decode(frame[13:]))
                 entry.setdefault("first", message)
                 entry["last"] = message

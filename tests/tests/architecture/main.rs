@@ -10,9 +10,10 @@ mod table;
 use std::path::PathBuf;
 
 /// The crates that must not reach a clock, a file, a socket, a thread or the middleware.
-const PURE: [&str; 7] = [
+const PURE: [&str; 8] = [
     "model",
     "control",
+    "seal",
     "identification",
     "msgs",
     "emulation",

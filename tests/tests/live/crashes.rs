@@ -4,8 +4,8 @@ use std::{thread, time::Duration};
 
 use ferntast_bus::mcap;
 use ferntast_tests::{
-    PATIENCE, Session, await_enabled, node, rearmed, recording, run, signal, start, state,
-    state_of_follower, wait_until,
+    PATIENCE, Process, Session, await_enabled, limit_files, node, rearmed, recording, run, signal,
+    start, state, state_of_follower, wait_until,
 };
 
 #[test]
@@ -57,8 +57,10 @@ fn a_crash_of_the_operators_end_leaves_a_paused_arm_paused() {
     await_enabled(&session, &mut process);
     // The operator's word, which its end of the link counts and loses when it dies.
     state(&session, "follower", "pause").success();
-    state(&session, "leader", "resume").success();
-    assert!(wait_until(PATIENCE, || state_of_follower(&session) == "ENABLED"));
+    assert!(wait_until(PATIENCE, || {
+        state(&session, "leader", "resume").success();
+        state_of_follower(&session) == "ENABLED"
+    }));
     state(&session, "follower", "pause").success();
     for _ in 0..3 {
         let before = node(&session, "link_leader");
@@ -82,7 +84,12 @@ fn a_recorder_that_dies_loses_at_most_what_it_had_not_written() {
     process.await_stderr("node recorder died", PATIENCE);
     thread::sleep(Duration::from_secs(2));
     process.interrupt();
-    let summary = process.wait(PATIENCE).success().json();
+    // What was said while no recorder ran is missing.
+    let ended = process.wait(PATIENCE).failure();
+    let summary = ended.json();
+    let told = summary["recorder"]["faults"].to_string();
+    assert!(told.contains("started again 1 times"), "{summary:#}");
+    assert!(ended.stderr.contains("not whole"), "{}", ended.stderr);
     let parts = summary["recorder"]["parts"].as_array().expect("parts");
     assert_eq!(parts.len(), 2, "{summary:#}");
     let mut messages = 0;
@@ -90,9 +97,41 @@ fn a_recorder_that_dies_loses_at_most_what_it_had_not_written() {
         let part = session.folder().join(part.as_str().expect("a path"));
         let info = mcap::info(&part).unwrap_or_else(|error| panic!("{error}"));
         assert!(info.duration_s > 1.0, "{}: {info:?}", part.display());
+        assert!(info.closed && info.breaks.is_empty(), "{info:?}");
         messages += info.messages;
     }
     assert_eq!(summary["recorder"]["messages"], messages);
+}
+
+#[test]
+fn a_recording_that_the_disk_has_no_room_for_is_a_failure() {
+    let session = Session::new();
+    let mut command = session.ferntast_here(&["session", "--json", "--record", "run"]);
+    // The line that says ENABLED may come five seconds after that.
+    command.args(["--duration", "15", "--no-console"]);
+    let mut process = Process::spawn_on_a_small_disk(command, libc::RLIM_INFINITY);
+    await_enabled(&session, &mut process);
+    thread::sleep(Duration::from_secs(3));
+    limit_files(node(&session, "recorder"), 1 << 16).expect("a recorder");
+    let ended = process.wait(PATIENCE).failure();
+    let summary = ended.json();
+    assert!(
+        summary["recorder"]["lost"].as_u64() > Some(100),
+        "{summary:#}"
+    );
+    let told = summary["recorder"]["faults"].to_string();
+    assert!(told.contains("lost"), "{summary:#}");
+    assert!(
+        ended.stderr.contains("the recording is not whole"),
+        "{}",
+        ended.stderr
+    );
+    // What was written in time can be read.
+    let info = mcap::info(&recording(&session)).expect("mended");
+    assert!(
+        info.closed && info.breaks.is_empty() && info.duration_s > 2.0,
+        "{info:?}"
+    );
 }
 
 #[test]
@@ -104,7 +143,8 @@ fn a_supervisor_that_dies_takes_its_nodes_along_and_can_be_started_again() {
     drop(process);
     assert!(wait_until(PATIENCE, || session.processes().is_empty()));
     // Its recorder had the time to close the recording.
-    run(&session, &["bag", "info", "run", "--json"]).success();
+    let info = mcap::info(&recording(&session)).expect("a recording");
+    assert!(info.closed && info.messages > 1000, "{info:?}");
     std::fs::rename(recording(&session), session.folder().join("before")).expect("the recording");
     start(&session, &["--duration", "1"])
         .wait(PATIENCE)

@@ -25,11 +25,15 @@ fn foxglove_sees_every_topic_and_what_was_said_before_it_came() {
         assert_eq!(topics[name]["type"], topic["type"], "{name}");
     }
     let count = |name: &str| topics[name]["count"].as_u64().unwrap_or_default();
-    // 250 a second of the streams, 50 of the transforms, less what it took to connect.
-    let joints = count("/follower/measured_js");
-    assert!((375..=760).contains(&joints), "{joints}");
-    let transforms = count("/tf");
-    assert!((75..=155).contains(&transforms), "{transforms}");
+    let rate = |name: &str| {
+        let seconds = topics[name]["seconds"].as_f64().expect("a time");
+        (count(name) - 1) as f64 / seconds
+    };
+    // 250 a second of the streams, 50 of the transforms, less what a slow peer misses.
+    let joints = rate("/follower/measured_js");
+    assert!((100.0..=255.0).contains(&joints), "{joints} Hz");
+    let transforms = rate("/tf");
+    assert!((20.0..=51.5).contains(&transforms), "{transforms} Hz");
     // Published once, long before.
     assert_eq!(count("/robot_description"), 1);
     assert_eq!(

@@ -12,7 +12,7 @@ use ferntast_tests::{
 fn in_a_session_it_is_a_node_like_the_others() {
     let session = Session::new();
     experiment_on_joint_2(&session);
-    let mut process = start(&session, &["--twin", "joint.toml"]);
+    let mut process = start(&session, &["--twin", "joint.toml", "--ros-commands"]);
     await_enabled(&session, &mut process);
     let end = Instant::now() + Duration::from_secs(7);
     keep_enabled(&session, || Instant::now() < end);
@@ -57,7 +57,7 @@ fn played_into_a_live_twin_it_answers_too() {
 fn in_a_session_the_servo_is_told_and_tells_back() {
     let session = Session::new();
     experiment_on_joint_2(&session);
-    let mut process = start(&session, &["--twin", "joint.toml"]);
+    let mut process = start(&session, &["--twin", "joint.toml", "--ros-commands"]);
     await_enabled(&session, &mut process);
     let twin = |what: &str| {
         let arguments = ["twin", what, "--session", session.name(), "--json"];

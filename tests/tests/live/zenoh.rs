@@ -1,8 +1,9 @@
 //! A peer over rmw_zenoh's protocol that matches on type hashes does what rclpy does.
 
+use ferntast_msgs::topics;
 use ferntast_tests::{
-    PATIENCE, Process, Session, await_enabled, hand_of_strokes, number, operated, recording, run,
-    start,
+    PATIENCE, Process, Session, await_enabled, hand_of_strokes, messages, number, operated,
+    recording, run, start, state_of_follower,
 };
 
 const MIDDLEWARE: [&str; 2] = ["--middleware", "zenoh"];
@@ -64,23 +65,41 @@ fn it_drives_the_arm_and_feels_the_contour() {
     assert!(recording(&session).is_dir());
 }
 
+/// Anybody may stop the arm; who may arm it, the scenario says.
 #[test]
-fn its_state_commands_are_obeyed() {
-    let session = Session::new();
-    let mut process = start(&session, &MIDDLEWARE);
-    await_enabled(&session, &mut process);
-    let arguments = ["command", "/follower/state_command", "pause"];
-    let told = peer(&session, &arguments).wait(PATIENCE).success().json();
-    assert_eq!(told["heard"], true);
-    process.await_stderr("follower PAUSED", PATIENCE);
-    process.interrupt();
-    process.wait(PATIENCE).success();
+fn its_stop_is_obeyed_and_its_other_commands_where_they_are_allowed() {
+    for (allowed, after) in [(false, "PAUSED"), (true, "ENABLED")] {
+        let session = Session::new();
+        let options: &[&str] = if allowed { &["--ros-commands"] } else { &[] };
+        let mut process = start(&session, &[&MIDDLEWARE[..], options].concat());
+        await_enabled(&session, &mut process);
+        let command = |what| {
+            let told = peer(&session, &["command", "/follower/state_command", what]);
+            assert_eq!(told.wait(PATIENCE).success().json()["heard"], true);
+        };
+        command("pause");
+        process.await_stderr("follower PAUSED", PATIENCE);
+        command("resume");
+        std::thread::sleep(std::time::Duration::from_secs(1));
+        assert_eq!(state_of_follower(&session), after);
+        process.interrupt();
+        process.wait(PATIENCE).success();
+        let told = messages(&recording(&session), topics::DIAGNOSTICS);
+        let told = told.iter().any(|own| {
+            let words = own.message.message.as_str();
+            own.message.node.as_str() == "gateway" && words.contains("commands = true")
+        });
+        assert_eq!(told, !allowed);
+    }
 }
 
 #[test]
 fn it_sets_the_law_as_a_parameter() {
     let session = Session::new();
-    let mut process = start(&session, &[&MIDDLEWARE[..], &["--law", "wave"]].concat());
+    let mut process = start(
+        &session,
+        &[&MIDDLEWARE[..], &["--law", "wave", "--ros-commands"]].concat(),
+    );
     await_enabled(&session, &mut process);
     let set = |value| {
         let told = peer(&session, &["set_parameter", "/link", "law", value]);

@@ -45,3 +45,27 @@ fn loss_is_measured_too() {
     assert!((number(&summary, "link.rtt_ms") - 25.0).abs() < 1.0);
     assert!(number(&summary, "link.jitter_ms") > 0.3);
 }
+
+/// Kontur-2's bursts pause the arm some three hundred times an hour; the scenario lets
+/// it go on by itself after gaps up to half a second, and another does not.
+#[test]
+fn short_gaps_pause_the_arm_for_good_only_where_the_scenario_does_not_bridge_them() {
+    let session = Session::new();
+    let mut held = 0;
+    for seed in 1..=5 {
+        let seed = seed.to_string();
+        let visited = |arguments: &[&str]| -> Vec<String> {
+            let run_for = ["--law", "position_force", "--duration", "60", "--json"];
+            let all = [&["lockstep", "--seed", &seed], arguments, &run_for].concat();
+            let summary = run(&session, &all).success().json();
+            let visited = &summary["states"]["follower"]["visited"];
+            serde_json::from_value(visited.clone()).expect("states")
+        };
+        let bridged = visited(&["--scenario", "kontur_2"]);
+        assert_eq!(bridged.last().expect("a state"), "ENABLED", "seed {seed}");
+        held += usize::from(bridged.iter().any(|own| own == "PAUSED"));
+        let latched = visited(&["--link", "kontur_2"]);
+        assert_eq!(latched.last().expect("a state"), "PAUSED", "seed {seed}");
+    }
+    assert!(held >= 4, "{held} of 5 seeds held at all");
+}

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use ferntast_tests::{Session, number, run};
+use ferntast_tests::{PATIENCE, Process, Session, number, run};
 
 fn record(session: &Session, folder: &str, seed: &str) -> Vec<u8> {
     let path = format!("{folder}/run");
@@ -63,4 +63,20 @@ fn it_runs_faster_than_real_time_with_all_nodes() {
         serde_json::json!(["lubricated", "unlubricated", "spring"])
     );
     assert_eq!(summary["states"]["follower"]["final"], "ENABLED");
+}
+
+#[test]
+fn a_recording_that_the_disk_has_no_room_for_is_a_failure() {
+    let session = Session::new();
+    let arguments = ["lockstep", "--duration", "6", "--record", "run", "--json"];
+    let command = session.ferntast(&arguments);
+    let ended = Process::spawn_on_a_small_disk(command, 1 << 20)
+        .wait(PATIENCE)
+        .failure();
+    let told = ended.json()["recording_fault"].to_string();
+    assert!(told.contains("it is not closed: free some room"), "{told}");
+    assert!(ended.stderr.contains("error:"), "{}", ended.stderr);
+    run(&session, &["bag", "repair", "run", "--json"]).success();
+    let info = run(&session, &["bag", "info", "run", "--json"]).success();
+    assert!(number(&info.json(), "duration_s") > 0.5);
 }

@@ -3,6 +3,7 @@
 mod delay;
 mod estimator;
 mod experiments;
+mod faults;
 mod lab;
 mod lab_contact;
 mod laws;

@@ -25,7 +25,10 @@ fn set_law(session: &Session, value: &str) -> Value {
 fn switched_from_the_command_line_and_as_a_ros_parameter() {
     let machine = Machine::alone();
     let session = Session::new();
-    let mut process = start(&session, &["--law", "position_force", "--rtt", "100"]);
+    let mut process = start(
+        &session,
+        &["--law", "position_force", "--rtt", "100", "--ros-commands"],
+    );
     await_enabled(&session, &mut process);
     let mut expected = vec!["position_force"];
     // There and back, until the machine let it.

@@ -4,7 +4,9 @@
 //! allow for what the machine itself stalled in the same window.
 
 mod delay;
+mod intruder;
 mod laws;
+mod overload;
 mod playback;
 mod rates;
 mod session;

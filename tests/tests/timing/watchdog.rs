@@ -2,6 +2,7 @@
 
 use std::{path::Path, thread, time::Duration};
 
+use ferntast_control::delay::Law;
 use ferntast_msgs::{
     Message, Time,
     sample::OperatingState,
@@ -9,7 +10,7 @@ use ferntast_msgs::{
 };
 use ferntast_tests::{
     Machine, PATIENCE, Process, Session, Window, await_enabled, hand_of_strokes, messages, node,
-    rearmed, recording, signal, start, state, state_of_follower, wait_until,
+    rearmed, recording, run, signal, start, state, state_of_follower, wait_until,
 };
 
 /// From the last valid command to the hold \[s\]: the watchdog of 25 ms rides
@@ -41,19 +42,31 @@ fn silence(session: &Session, silent: &str, device: &str) {
     assert!(wait_until(PATIENCE, || is(session, "ENABLED")), "{silent}");
 }
 
+/// By every law, one after the other.
 fn falls_silent(silent: &str, device: &str) {
     let machine = Machine::alone();
     let session = Session::new();
     let mut process = start(&session, &["--rtt", "0"]);
     await_enabled(&session, &mut process);
-    let ((), window) = machine.undisturbed(|| silence(&session, silent, device));
+    let windows: Vec<Window> = Law::NAMES
+        .iter()
+        .map(|law| {
+            let arguments = ["link", "law", law, "--session", session.name()];
+            run(&session, &arguments).success();
+            let ((), window) = machine.undisturbed(|| silence(&session, silent, device));
+            window
+        })
+        .collect();
     process.interrupt();
     process.wait(PATIENCE).success();
 
     let path = recording(&session);
-    let paused = paused(&path, window);
-    holds_in_time(&machine, &path, topics::FOLLOWER_SERVO_CP, paused, 0.0);
-    stands_still(&path, paused, silent);
+    for (window, law) in windows.into_iter().zip(Law::NAMES) {
+        println!("{law}:");
+        let paused = paused(&path, window);
+        holds_in_time(&machine, &path, topics::FOLLOWER_SERVO_CP, paused, 0.0);
+        stands_still(&path, paused, silent);
+    }
 }
 
 /// When the last hold within `window` began. A state is repeated: it began with

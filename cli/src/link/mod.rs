@@ -1,33 +1,37 @@
 //! `ferntast link`.
 
+mod keys;
+
 use std::{process::ExitCode, thread, time::Duration};
 
 use clap::Subcommand;
-use ferntast_bus::{Bus, Depth, SharedMemoryBus, SharedMemoryConfig, Subscriber};
+use ferntast_bus::{Bus, Depth, Subscriber};
 use ferntast_control::delay::Law;
 use ferntast_msgs::{
     Text,
     sample::{LawCommandSample, LinkStatusSample},
     topics,
 };
-use ferntast_nodes::{config::UnknownLaw, process::Clock};
+use ferntast_nodes::{config::UnknownLaw, process::Clock, session::Visit};
 use serde_json::json;
 
 use super::{Failure, output::print_json};
 
-/// Tell how the link of a running session does, or change its delay law.
+/// Tell how the link of a running session does, change its delay law; keys of hosts.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Both ends change over together, without a jump in force:\n  \
     ferntast link law            # tells the law\n  \
-    ferntast link law wave\n  \
-    ros2 param set /link law wave"
+    ferntast link law wave\n\n\
+    Two hosts that are to meet, each with its key:\n  \
+    ferntast link keys new       # once on each host; shows its public key\n  \
+    ferntast link keys add arm m+P1…A=    # on each, the key that the other shows"
 )]
 pub struct Arguments {
     #[command(subcommand)]
     what: What,
 
-    /// Name of the session.
+    /// Name of the session (of `law`).
     #[arg(long, default_value = "default", value_name = "NAME", global = true)]
     session: String,
 }
@@ -39,6 +43,8 @@ enum What {
         /// The law: position_force, position_position, four_channel, wave, tdpa, model_mediated.
         name: Option<String>,
     },
+    /// Make, show and exchange the keys without which two hosts do not meet.
+    Keys(keys::Arguments),
 }
 
 /// How long an answer is waited for: a round trip of two seconds, and the switch.
@@ -86,23 +92,21 @@ impl Ends {
 
 /// Runs it.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let What::Law { name } = arguments.what;
+    let name = match arguments.what {
+        What::Law { name } => name,
+        What::Keys(keys) => return keys::run(keys, json),
+    };
     if let Some(name) = &name
         && !Law::NAMES.contains(&name.as_str())
     {
         return Err(Failure::refused(UnknownLaw::new(name)));
     }
-    let bus = Bus::SharedMemory(
-        SharedMemoryBus::open(&SharedMemoryConfig {
-            session: arguments.session.clone(),
-        })
-        .map_err(Failure::refused)?,
-    );
-    let told = switch(&bus, name.as_deref(), &arguments.session);
-    drop(bus);
-    // Where no session runs, this process is the only one that was in its
-    // shared memory; where one runs, this is refused.
-    let _ = SharedMemoryBus::clean_up(&arguments.session);
+    let visit = Visit::open(&arguments.session).map_err(Failure::refused)?;
+    let told = match visit.as_ref().and_then(Visit::bus) {
+        Some(bus) => switch(bus, name.as_deref(), &arguments.session),
+        None => Err(silent(&arguments.session)),
+    };
+    drop(visit);
     let (law, switched) = told?;
     if json {
         print_json(&json!({"law": law}))?;
@@ -116,6 +120,12 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             "the link did not change over within {PATIENCE} s: it runs {law}; do frames get through? (/link/status)"
         )))
     }
+}
+
+fn silent(session: &str) -> Failure {
+    Failure::failed(format!(
+        "the operator's end of session {session:?} does not answer: is it running on this host? (ferntast session, or --session NAME)"
+    ))
 }
 
 /// The law in the end, and whether it is the one that was asked for at both ends.
@@ -136,9 +146,7 @@ fn switch(bus: &Bus, name: Option<&str>, session: &str) -> Result<(String, bool)
     // Also gives the reader of the command time to find this publisher.
     thread::sleep(Duration::from_millis(50));
     if !ends.look_until(FIRST_WORD, |ends| ends.law(0).is_some()) {
-        return Err(Failure::failed(format!(
-            "the operator's end of session {session:?} does not answer: is it running on this host? (ferntast session, or --session NAME)"
-        )));
+        return Err(silent(session));
     }
     let Some(name) = name else {
         return Ok((ends.law(0).unwrap_or_default().to_owned(), true));

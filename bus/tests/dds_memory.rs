@@ -1,0 +1,64 @@
+//! A DDS bus that nobody listens to stays as large as it is.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::{fs, process, thread, time::Duration};
+
+use ferntast_bus::{Bus, DdsBus, DdsConfig};
+use ferntast_msgs::{
+    Text, Time,
+    sample::{OperatingState, OperatingStateSample},
+    topics::{Delivery, Topic, TopicName},
+};
+
+/// Memory of this process that is its own \[bytes\].
+fn anonymous_memory() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find(|line| line.starts_with("RssAnon:"));
+    let size = line.and_then(|line| line.split_whitespace().nth(1)?.parse().ok());
+    size.map(|kibibytes: u64| kibibytes << 10).unwrap()
+}
+
+#[test]
+fn states_that_nobody_reads_take_no_memory() {
+    let bus = Bus::Dds(
+        DdsBus::open(&DdsConfig {
+            domain_id: 1 + process::id() % 100,
+            node_name: "memory".to_owned(),
+            namespace: "/".to_owned(),
+        })
+        .unwrap(),
+    );
+    let name = format!("/memory_{}/state", process::id());
+    let name = TopicName::new(&name).unwrap();
+    let topic = Topic::<OperatingStateSample>::new(name, Delivery::State);
+    let mut publisher = bus.publisher(topic).unwrap();
+    let mut publish = |from: i64, to: i64| {
+        for k in from..to {
+            let stamp = Time::from_nanos(1_000_000_000 + k);
+            let state = OperatingStateSample {
+                stamp,
+                state: OperatingState::ENABLED,
+                is_homed: 1,
+                is_busy: 0,
+                reserved: [0; 5],
+                reason: Text::EMPTY,
+            };
+            // A burst that the loop of DDS has not taken yet is refused, and tried again.
+            while publisher.publish(stamp, &state).is_err() {
+                thread::sleep(Duration::from_millis(1));
+            }
+        }
+    };
+    // RustDDS looks after its history every six seconds, and what it gave back by
+    // then is used again.
+    let mut burst = |number: i64| {
+        publish(2_500 * number, 2_500 * (number + 1));
+        thread::sleep(Duration::from_secs(7));
+        anonymous_memory()
+    };
+    let before = burst(0);
+    burst(1);
+    let growth = burst(2).saturating_sub(before);
+    assert!(growth < 400 << 10, "{growth} bytes more");
+}

@@ -1,0 +1,64 @@
+//! Only the hand that holds the authority moves the arm.
+
+use std::collections::VecDeque;
+
+use super::{
+    super::{facts::Facts, log::Log, seen::Seen},
+    Invariant,
+};
+
+/// How long a place of the hand may still be commanded \[steps\]: two ways of the
+/// link, the law's own filters, and frames that were held back.
+const REMEMBERED: usize = 600;
+/// How far a commanded tip may be from where the hand was \[m\]. Laws that shape
+/// motion to keep their energy (waves, passivity control, a model of the
+/// contact) lead it astray further than those that send it as it is.
+const PLAIN: f64 = 0.003;
+const SHAPED: f64 = 0.060;
+
+/// The tip is commanded to places where the hand was, give or take what the law
+/// does to motion; and what the master accepts is where its own hand is.
+#[derive(Default)]
+pub struct Authority {
+    hands: VecDeque<[f64; 2]>,
+}
+
+impl Invariant for Authority {
+    fn name(&self) -> &'static str {
+        "authority"
+    }
+
+    fn step(&mut self, seen: &Seen, log: &Log, facts: &Facts) -> Option<String> {
+        if let Some(hand) = seen.hand {
+            if self.hands.len() == REMEMBERED {
+                self.hands.pop_front();
+            }
+            self.hands.push_back(facts.tip_of_hand(hand));
+        }
+        if let (Some(hand), Some(accepted)) = (seen.hand, seen.accepted_hand) {
+            let far = (hand[0] - accepted[0]).hypot(hand[1] - accepted[1]);
+            if far > PLAIN {
+                return Some(format!("the master accepts a hand {far:.4} m from its own"));
+            }
+        }
+        // Of an arm that does not follow, laws that send velocities run away.
+        let command = seen.tip_command.filter(|_| seen.follower.enabled())?;
+        let allowed = match facts.law.as_str() {
+            "position_force" if !log.law_switched => PLAIN,
+            _ => SHAPED,
+        };
+        let far = |hand: &[f64; 2]| (hand[0] - command[0]).hypot(hand[1] - command[1]);
+        // From the newest: mostly it is there within a few steps.
+        let mut nearest = f64::INFINITY;
+        for hand in self.hands.iter().rev() {
+            nearest = nearest.min(far(hand));
+            if nearest <= allowed {
+                return None;
+            }
+        }
+        Some(format!(
+            "the tip is commanded to ({:.4}, {:.4}) m, {nearest:.4} m from where the hand was",
+            command[0], command[1]
+        ))
+    }
+}
