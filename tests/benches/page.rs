@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use ferntast_tests::{Browser, Process, Session, free_tcp_port, wait_for};
+use ferntast_tests::{Browser, Process, Session, await_armed, free_tcp_port, wait_for};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 const WATCHED: Duration = Duration::from_secs(10);
@@ -64,7 +64,7 @@ fn session() {
     let session = Session::new();
     let address = format!("127.0.0.1:{}", free_tcp_port());
     let mut process = Process::spawn(session.ferntast_here(&["session", "--listen", &address]));
-    process.await_stderr("follower ENABLED", PATIENCE);
+    await_armed(&session, &mut process);
     let console = wait_for(PATIENCE, || console_process(&session)).expect("the console runs");
     let cost = |what: &str, browser: Option<&Browser>| {
         let before = (

@@ -23,13 +23,24 @@ pub fn recording(session: &Session) -> PathBuf {
     session.folder().join("run")
 }
 
+/// Waits until every node runs and the arm is enabled, by a word of ours where the
+/// machine stalled while the session armed it.
+///
+/// # Panics
+///
+/// It does not get there.
+pub fn await_armed(session: &Session, process: &mut Process) {
+    process.await_stderr("nodes alive", PATIENCE);
+    rearmed(session);
+}
+
 /// Waits until the arm is armed: until something is recorded while it moves.
 ///
 /// # Panics
 ///
 /// It is not.
 pub fn await_enabled(session: &Session, process: &mut Process) {
-    process.await_stderr("follower ENABLED", PATIENCE);
+    await_armed(session, process);
     assert!(recording(session).is_dir());
 }
 

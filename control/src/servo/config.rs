@@ -31,9 +31,10 @@ parameters! {
         /// Largest acceleration of the setpoint \[rad/s²\].
         pub acceleration_limit: Vec<f64> [0.1..=1e4, "rad/s²"] = vec![40.0, 40.0],
         /// Joint speed on the way from rest to the first command after enable or
-        /// resume, above that of the hand \[rad/s\]. What the arm runs into on that way it hits
-        /// with some 100 N for each rad/s, stiff surface and gear of ROKVISS. After two
-        /// seconds it grows, so that a hand that does not wait is caught.
+        /// resume, where the hand is at rest \[rad/s\]; a hand that moves adds the square of its
+        /// speed to this one's. What the arm runs into on that way it hits with some
+        /// 100 N for each rad/s, stiff surface and gear of ROKVISS. After two seconds it
+        /// grows, so that a hand that does not wait is caught.
         pub approach_speed: f64 [0.001..=10.0, "rad/s"] = 0.06,
         /// Natural frequency ω of the tracker that smooths commands \[rad/s\].
         pub tracker_frequency: f64 [1.0..=300.0, "rad/s"] = 80.0,

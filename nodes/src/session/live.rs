@@ -2,7 +2,10 @@
 
 use std::time::Duration;
 
-use ferntast_msgs::{Time, sample::Edge};
+use ferntast_msgs::{
+    Time,
+    sample::{Edge, OperatingState},
+};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Monitor, Supervisor};
@@ -76,8 +79,15 @@ impl LiveLine {
 fn describe(now: Time, elapsed: f64, monitor: &Monitor, supervisor: &Supervisor) -> String {
     let mut text = format!("{elapsed:5.1} s");
     for (device, view) in &monitor.operating {
-        let state = view.last.and_then(|last| last.state.name()).unwrap_or("?");
-        text.push_str(&format!(" · {device} {state}"));
+        let Some(last) = view.last else {
+            text.push_str(&format!(" · {device} ?"));
+            continue;
+        };
+        text.push_str(&format!(" · {device} {}", last.state.name().unwrap_or("?")));
+        // Who has to act reads why.
+        if matches!(last.state, OperatingState::PAUSED | OperatingState::FAULT) {
+            text.push_str(&format!(" ({})", last.reason));
+        }
     }
     if let Some(servo) = monitor.nodes.get("servo").and_then(|view| view.last) {
         text.push_str(&format!(" · servo {:.0} Hz", servo.rate));

@@ -11,8 +11,8 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_tests::{
-    Browser, PATIENCE, Process, Session, Stranger, free_tcp_port, messages, node, rearmed, run, signal,
-    start, state_of_follower, wait_for,
+    Browser, PATIENCE, Process, Session, Stranger, await_armed, free_tcp_port, messages, node,
+    rearmed, run, signal, start, state_of_follower, wait_for,
 };
 
 /// A session with its console, and where that is.
@@ -22,7 +22,7 @@ fn session_with_page(session: &Session, more: &[&str]) -> (Process, String) {
     arguments.extend(more);
     let mut process = start(session, &arguments);
     process.await_stderr("console: http://", PATIENCE);
-    process.await_stderr("follower ENABLED", PATIENCE);
+    await_armed(session, &mut process);
     (process, address)
 }
 
@@ -223,7 +223,7 @@ fn recordings_are_begun_marked_and_ended_by_the_page() {
     let session = Session::new();
     let address = format!("127.0.0.1:{}", free_tcp_port());
     let mut process = Process::spawn(session.ferntast_here(&["session", "--listen", &address]));
-    process.await_stderr("follower ENABLED", PATIENCE);
+    await_armed(&session, &mut process);
     let browser = Browser::start(900, 900);
     browser.open(&format!("http://{address}"));
     browser.click("#operate");

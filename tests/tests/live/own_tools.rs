@@ -1,7 +1,7 @@
 //! Those with tools of their own: Foxglove's WebSocket, the robot's description, transforms.
 
 use ferntast_tests::{
-    PATIENCE, Process, Session, free_tcp_port, rearmed, run, start, state_of_follower,
+    PATIENCE, Process, Session, await_armed, free_tcp_port, run, start, state_of_follower,
 };
 
 #[test]
@@ -10,8 +10,7 @@ fn foxglove_sees_every_topic_and_what_was_said_before_it_came() {
     let port = free_tcp_port();
     let foxglove = format!("--foxglove=127.0.0.1:{port}");
     let mut process = start(&session, &[&foxglove]);
-    process.await_stderr("follower ENABLED", PATIENCE);
-    rearmed(&session);
+    await_armed(&session, &mut process);
     let state = state_of_follower(&session);
     let url = format!("ws://127.0.0.1:{port}");
     let peer = session.peer("foxglove_peer.py", &[&url, "--seconds", "3"]);

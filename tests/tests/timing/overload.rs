@@ -149,7 +149,8 @@ fn a_session_starts_on_a_busy_computer_while_others_ask_for_its_state() {
     thread::sleep(Duration::from_secs(1));
     let page = format!("127.0.0.1:{}", free_tcp_port());
     let mut process = start(&session, &["--listen", &page]);
-    process.await_stderr("follower ENABLED", PATIENCE * 2);
+    process.await_stderr("nodes alive", PATIENCE * 2);
+    rearmed(&session);
     assert!(asking.is_running());
     drop(asking);
     process.interrupt();
