@@ -288,7 +288,7 @@ mod tests {
         let mut generator = SetpointGenerator::new(80.0, LIMITS);
         generator.start(-0.1);
         let caught = (0..5000).find(|&step| {
-            let late = (f64::from(step) * DT - PATIENCE).max(0.0);
+            let late = (f64::from(step + 1) * DT - PATIENCE).max(0.0);
             generator.set_target(0.5 * f64::from(step) * DT);
             generator.step(DT);
             let allowed = LIMITS.approach.hypot(0.5) + HURRY * late;
