@@ -31,8 +31,8 @@ parameters! {
         /// Largest acceleration of the setpoint \[rad/s²\].
         pub acceleration_limit: Vec<f64> [0.1..=1e4, "rad/s²"] = vec![40.0, 40.0],
         /// Joint speed on the way from rest to the first command after enable or
-        /// resume, where the hand is at rest \[rad/s\]; a hand that moves adds the square of its
-        /// speed to this one's. What the arm runs into on that way it hits with some
+        /// resume, where the hand is at rest \[rad/s\]; of a hand that moves the square of 0.8 times
+        /// its speed is added to this one's square. What the arm runs into on that way it hits with some
         /// 100 N for each rad/s, stiff surface and gear of ROKVISS. After two seconds it
         /// grows, so that a hand that does not wait is caught.
         pub approach_speed: f64 [0.001..=10.0, "rad/s"] = 0.06,

@@ -28,6 +28,8 @@ const TORQUE: f64 = 8.0;
 const WATCHED: f64 = 0.030;
 /// Steps that are further apart are none: what lies between was not recorded \[s\].
 const STEP: f64 = 0.0025;
+/// How much harder than the session an arm may hit whose drives are cut off in motion \[-\].
+const DRIVES_CUT: f64 = 1.25;
 /// A servo that says nothing for so long does not run \[s\].
 const SILENT: f64 = 0.040;
 
@@ -62,10 +64,10 @@ pub struct Outcome {
     pub times: usize,
     /// Every hold.
     pub holds: Vec<Hold>,
-    /// Largest normal force \[N\].
+    /// Largest normal force before the arm is enabled again \[N\].
     pub force: f64,
-    /// The same of each repetition \[N\].
-    pub forces: Vec<f64>,
+    /// Largest normal force after that, until the next fault \[N\].
+    pub force_again: f64,
     /// Largest distance of the setpoint from the arm at an enabling \[rad\].
     pub jump: f64,
     /// Largest step of a torque after an enabling \[Nm\].
@@ -109,26 +111,39 @@ impl Judged<'_> {
             times: self.repetitions.len(),
             ..Outcome::default()
         };
+        let enablings = self.recorded.enablings().into_iter().map(|own| own.1);
+        let enablings: Vec<Time> = enablings.collect();
         for (number, own) in self.repetitions.iter().enumerate() {
             self.hold(number + 1, own, &mut outcome);
             self.told(number + 1, own, &mut outcome);
             // Until the next fault: an arm that is armed again hits then.
             let next = self.repetitions.get(number + 1);
             let until = next.map_or(own.end.plus_seconds(1.0), |next| next.before);
-            outcome.forces.push(peak(self.forces, own.before, until));
+            let again = enablings
+                .iter()
+                .find(|at| **at > own.before && **at < until);
+            let again = again.copied().unwrap_or(until);
+            outcome.force = outcome.force.max(peak(self.forces, own.before, again));
+            outcome.force_again = outcome.force_again.max(peak(self.forces, again, until));
         }
         self.words(&mut outcome);
         self.starts(&mut outcome);
-        outcome.force = outcome.forces.iter().copied().fold(0.0, f64::max);
-        if outcome.force > self.most_force {
-            let told = self.hardest(outcome.force);
-            outcome.fail(told);
+        let most = self.most_force;
+        let share = if self.row.cuts_drives() {
+            DRIVES_CUT
+        } else {
+            1.0
+        };
+        for (force, allowed) in [(outcome.force, share * most), (outcome.force_again, most)] {
+            if force > allowed {
+                outcome.fail(self.hardest(force, allowed));
+            }
         }
         outcome
     }
 
     /// How a force that is too large came about.
-    fn hardest(&self, force: f64) -> String {
+    fn hardest(&self, force: f64, allowed: f64) -> String {
         let hit = self.forces.iter().find(|own| own.1 >= force);
         let at = hit.map_or(Time::INVALID, |own| own.0);
         let since = |times: &mut dyn Iterator<Item = Time>| {
@@ -138,8 +153,7 @@ impl Judged<'_> {
         let enabled = since(&mut self.recorded.enablings().into_iter().map(|own| own.1));
         let fault = since(&mut self.repetitions.iter().map(|own| own.before));
         format!(
-            "{force:.1} N on the tip, {:.1} N are allowed; {fault:.3} s after a fault, {enabled:.3} s after an enabling",
-            self.most_force
+            "{force:.1} N on the tip, {allowed:.1} N are allowed; {fault:.3} s after a fault, {enabled:.3} s after an enabling"
         )
     }
 

@@ -30,6 +30,8 @@ use table::{Line, Times};
 
 /// Largest force on the tip, whatever happens \[N\]: the bound of `ferntast faults`.
 const MOST_FORCE: f64 = 160.0;
+/// By how much the largest force of a few repetitions differs from that of others.
+const SPREAD: f64 = 1.05;
 /// Repetitions of each silence, under each law.
 const TIMES: usize = 50;
 
@@ -102,17 +104,20 @@ impl Table {
         Some(outcome)
     }
 
-    /// The force that a row may reach: what the session reaches by itself, where the operator
-    /// arms it again while it presses, and by how much that is more than in calm strokes.
+    /// The force that a row may reach: what the session reaches by itself, in calm strokes and
+    /// where the operator arms it again while it presses, and what maxima of a few repetitions
+    /// spread.
     fn calm(&mut self) -> f64 {
-        let forces: Vec<f64> = rows::calm()
+        let rows = rows::calm();
+        let calm: Vec<Outcome> = rows
             .iter()
-            .filter_map(|row| Some(self.row(row, MOST_FORCE)?.force))
+            .filter_map(|row| self.row(row, MOST_FORCE))
             .collect();
-        match forces[..] {
-            [calm, armed] => calm.max(armed) + (armed - calm).abs(),
-            _ => MOST_FORCE,
+        if calm.len() < rows.len() {
+            return MOST_FORCE;
         }
+        let forces = calm.iter().map(|own| own.force.max(own.force_again));
+        SPREAD * forces.fold(0.0, f64::max)
     }
 
     fn all(&mut self) {

@@ -73,7 +73,7 @@ fn told(outcome: &Outcome) -> String {
 pub fn faults(lines: &[Line]) -> String {
     let mut text = String::from(
         "| fault | party | times | must | held | last command to hold: p50 / p95 / max [ms] | fault to hold [ms] \
-         | bare timer's worst [ms] | largest force [N] | start: step of setpoint [mrad], of torque [Nm] | restarts | told | verdict |\n\
+         | bare timer's worst [ms] | largest force: by the fault, after arming again [N] | start: step of setpoint [mrad], of torque [Nm] | restarts | told | verdict |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for Line {
@@ -94,7 +94,7 @@ pub fn faults(lines: &[Line]) -> String {
         // Writing into a string cannot fail.
         let _ = writeln!(
             text,
-            "| {fault} | {party} | {} | {must} | {} | {} | {} | {} | {:.1} | {:.2}, {:.1} | {} | {} | {verdict} |",
+            "| {fault} | {party} | {} | {must} | {} | {} | {} | {} | {:.1}, {:.1} | {:.2}, {:.1} | {} | {} | {verdict} |",
             outcome.times,
             holds.len(),
             spread(&each(holds, |own| own.after_command)),
@@ -105,6 +105,7 @@ pub fn faults(lines: &[Line]) -> String {
                 format!("{:.1}", 1e3 * worst)
             },
             outcome.force,
+            outcome.force_again,
             1e3 * outcome.jump,
             outcome.torque_step,
             outcome.restarts,

@@ -13,9 +13,8 @@ const THERE: f64 = 0.006;
 /// \[rad/s²\].
 const PATIENCE: i64 = 1990;
 const HURRY: f64 = 0.2;
-/// The hand's own speed is allowed too, their squares added up, averaged over so long \[steps\], and rather more.
+/// The hand's own speed is allowed too, their squares added up, averaged over so long \[steps\].
 const AVERAGED: f64 = 250.0;
-const HAND: f64 = 1.2;
 /// Above the approach speed, for rounding \[-\].
 const ROUNDING: f64 = 1.001;
 
@@ -83,7 +82,7 @@ impl Invariant for SlowApproach {
         }
         // Who has not come to the hand in two seconds may hurry.
         let late = (seen.tick - self.began - PATIENCE).max(0) as f64 * 1e-3;
-        let energies = |hand: f64| facts.approach_speed.hypot(HAND * hand);
+        let energies = |hand: f64| facts.approach_speed.hypot(hand);
         let allowed = self.hand.map(|hand| energies(hand) + HURRY * late);
         let joint = (0..2).find(|&joint| velocity[joint].abs() > allowed[joint] * ROUNDING)?;
         self.approaching.then(|| {
