@@ -3,6 +3,8 @@
 //! It is the only process that touches ROS 2, so that no 1 kHz loop shares a
 //! process with DDS or a Zenoh router.
 
+use std::sync::atomic::Ordering;
+
 use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
 use ferntast_msgs::topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch};
 
@@ -13,7 +15,7 @@ use super::{
 };
 use crate::{
     config::{GatewaySection, HandSource, Middleware, Scenario},
-    process::{NodeError, ProcessContext},
+    process::{NodeError, ProcessContext, flag_continued, periodic},
 };
 
 /// Opens the ROS 2 side.
@@ -92,17 +94,10 @@ pub fn goes_out(topic: Row, section: &GatewaySection) -> Forwarding {
     }
 }
 
-/// Runs the gateway until it is told to stop.
-///
-/// # Errors
-///
-/// ROS 2 or a topic that cannot be opened.
-pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+/// Joins ROS 2: what is carried over, and the parameters that peers may set.
+fn join(process: &ProcessContext) -> Result<(Forwarder, [ChoiceParameter; 2]), NodeError> {
     let scenario = &process.session.loaded.scenario;
     let section = &scenario.gateway;
-    if process.generation == 0 {
-        warn_of_strangers(section)?;
-    }
     let ros = open_ros(section)?;
     let mut forwarder = Forwarder::default();
     let joints = process.session.joints();
@@ -119,7 +114,6 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     forwarder.add_topics(&ros, &process.bus, Stamp::Round, &joints, |topic| {
         comes_in(topic.authority, scenario)
     })?;
-
     let mut parameters = [
         ChoiceParameter::law(process, &ros)?,
         ChoiceParameter::friction(process, &ros)?,
@@ -127,15 +121,45 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     if !section.commands {
         parameters.iter_mut().for_each(ChoiceParameter::forbid);
     }
+    Ok((forwarder, parameters))
+}
+
+/// Runs the gateway until it is told to stop.
+///
+/// # Errors
+///
+/// ROS 2 or a topic that cannot be opened.
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
+    let section = &process.session.loaded.scenario.gateway;
+    if process.generation == 0 {
+        warn_of_strangers(section)?;
+    }
+    let continued = flag_continued().map_err(NodeError::own)?;
     let mut forwarding = ForwardingLoop::new(process)?;
-    forwarding.begin(forwarder);
-    process.run(|wake| {
-        for parameter in &mut parameters {
-            parameter.round(wake.now);
+    loop {
+        let (forwarder, mut parameters) = join(process)?;
+        forwarding.begin(forwarder);
+        let told = || process.stop.load(Ordering::Relaxed);
+        // RustDDS 0.15 ends its event loops when a signal interrupts them, and says nothing.
+        let lost = || section.middleware == Middleware::Dds && continued.load(Ordering::Relaxed);
+        periodic::run_while(
+            process.clock,
+            process.period_nanos,
+            || !told() && !lost(),
+            |wake| {
+                for parameter in &mut parameters {
+                    parameter.round(wake.now);
+                }
+                forwarding.round(wake.now, wake, |_, _| {})
+            },
+        );
+        if told() {
+            return Ok(());
         }
-        forwarding.round(wake.now, wake, |_, _| {})
-    });
-    Ok(())
+        eprintln!("node gateway: it was stopped for a while; it joins ROS 2 anew");
+        continued.store(false, Ordering::Relaxed);
+        forwarding.begin(Forwarder::default());
+    }
 }
 
 #[cfg(test)]

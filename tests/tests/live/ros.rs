@@ -1,14 +1,14 @@
 //! Stock rclpy over DDS: sees every topic, gets the streams, drives the arm.
 
-use std::path::Path;
+use std::{path::Path, thread, time::Duration};
 
 use ferntast_msgs::{
     sample::{Fault, OperatingState},
     topics,
 };
 use ferntast_tests::{
-    PATIENCE, Process, Session, await_enabled, hand_of_strokes, human_hand, messages, number,
-    operated, recording, run, start,
+    PATIENCE, Process, Session, await_enabled, hand_of_strokes, human_hand, messages, node, number,
+    operated, recording, run, signal, start,
 };
 
 #[test]
@@ -53,6 +53,28 @@ fn rclpy_lists_every_topic_with_its_type() {
     }
     process.interrupt();
     process.wait(PATIENCE).success();
+}
+
+/// What Ctrl-Z and `fg` do, or a debugger that looks at it.
+#[test]
+fn a_gateway_that_was_stopped_is_seen_again() {
+    let session = Session::new();
+    let mut process = start(&session, &[]);
+    await_enabled(&session, &mut process);
+    let gateway = node(&session, "gateway");
+    signal(gateway, libc::SIGSTOP);
+    thread::sleep(Duration::from_millis(300));
+    signal(gateway, libc::SIGCONT);
+    process.await_stderr("node gateway: it was stopped for a while", PATIENCE);
+    let name = "/follower/measured_js";
+    let arguments = ["--seconds", "20", "--until", name];
+    let listed = Process::spawn(session.peer("list_topics.py", &arguments));
+    let listed = listed.wait(PATIENCE).success().json();
+    let publishers = &listed["topics"][name]["publishers"];
+    assert_eq!(publishers[0]["node"], "/ferntast", "{listed:#}");
+    process.interrupt();
+    let summary = process.wait(PATIENCE).success().json();
+    assert_eq!(summary["nodes"]["gateway"]["restarts"], 0, "{summary:#}");
 }
 
 /// The motion of a hand, sent by rclpy at 500 Hz for so many seconds, moves the
