@@ -3,10 +3,19 @@
 //! It is the only process that touches ROS 2, so that no 1 kHz loop shares a
 //! process with DDS or a Zenoh router.
 
-use std::sync::atomic::Ordering;
+use std::{
+    process,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::Duration,
+};
 
 use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
 use ferntast_msgs::topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch};
+use signal_hook::consts::SIGCONT;
 
 use super::{
     choice_parameter::ChoiceParameter,
@@ -15,7 +24,7 @@ use super::{
 };
 use crate::{
     config::{GatewaySection, HandSource, Middleware, Scenario},
-    process::{NodeError, ProcessContext, flag_continued, periodic},
+    process::{NodeError, ProcessContext},
 };
 
 /// Opens the ROS 2 side.
@@ -94,10 +103,38 @@ pub fn goes_out(topic: Row, section: &GatewaySection) -> Forwarding {
     }
 }
 
-/// Joins ROS 2: what is carried over, and the parameters that peers may set.
-fn join(process: &ProcessContext) -> Result<(Forwarder, [ChoiceParameter; 2]), NodeError> {
+/// Ends the process when it goes on after it was stopped, by Ctrl-Z, a debugger or the
+/// system, so that the supervisor starts it again: the event loops of RustDDS 0.15 end when a
+/// signal interrupts them, silently, and calls into it may then wait for ever.
+fn end_if_stopped() -> Result<(), NodeError> {
+    let continued = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register(SIGCONT, Arc::clone(&continued)).map_err(NodeError::own)?;
+    let watch = move || {
+        while !continued.load(Ordering::Relaxed) {
+            thread::sleep(Duration::from_millis(100));
+        }
+        eprintln!("node gateway: it was stopped for a while, which its DDS does not survive");
+        process::exit(1);
+    };
+    let watcher = thread::Builder::new().name("stopped".to_owned());
+    watcher.spawn(watch).map_err(NodeError::own)?;
+    Ok(())
+}
+
+/// Runs the gateway until it is told to stop.
+///
+/// # Errors
+///
+/// ROS 2 or a topic that cannot be opened.
+pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let scenario = &process.session.loaded.scenario;
     let section = &scenario.gateway;
+    if process.generation == 0 {
+        warn_of_strangers(section)?;
+    }
+    if section.middleware == Middleware::Dds {
+        end_if_stopped()?;
+    }
     let ros = open_ros(section)?;
     let mut forwarder = Forwarder::default();
     let joints = process.session.joints();
@@ -114,6 +151,7 @@ fn join(process: &ProcessContext) -> Result<(Forwarder, [ChoiceParameter; 2]), N
     forwarder.add_topics(&ros, &process.bus, Stamp::Round, &joints, |topic| {
         comes_in(topic.authority, scenario)
     })?;
+
     let mut parameters = [
         ChoiceParameter::law(process, &ros)?,
         ChoiceParameter::friction(process, &ros)?,
@@ -121,45 +159,15 @@ fn join(process: &ProcessContext) -> Result<(Forwarder, [ChoiceParameter; 2]), N
     if !section.commands {
         parameters.iter_mut().for_each(ChoiceParameter::forbid);
     }
-    Ok((forwarder, parameters))
-}
-
-/// Runs the gateway until it is told to stop.
-///
-/// # Errors
-///
-/// ROS 2 or a topic that cannot be opened.
-pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
-    let section = &process.session.loaded.scenario.gateway;
-    if process.generation == 0 {
-        warn_of_strangers(section)?;
-    }
-    let continued = flag_continued().map_err(NodeError::own)?;
     let mut forwarding = ForwardingLoop::new(process)?;
-    loop {
-        let (forwarder, mut parameters) = join(process)?;
-        forwarding.begin(forwarder);
-        let told = || process.stop.load(Ordering::Relaxed);
-        // RustDDS 0.15 ends its event loops when a signal interrupts them, and says nothing.
-        let lost = || section.middleware == Middleware::Dds && continued.load(Ordering::Relaxed);
-        periodic::run_while(
-            process.clock,
-            process.period_nanos,
-            || !told() && !lost(),
-            |wake| {
-                for parameter in &mut parameters {
-                    parameter.round(wake.now);
-                }
-                forwarding.round(wake.now, wake, |_, _| {})
-            },
-        );
-        if told() {
-            return Ok(());
+    forwarding.begin(forwarder);
+    process.run(|wake| {
+        for parameter in &mut parameters {
+            parameter.round(wake.now);
         }
-        eprintln!("node gateway: it was stopped for a while; it joins ROS 2 anew");
-        continued.store(false, Ordering::Relaxed);
-        forwarding.begin(Forwarder::default());
-    }
+        forwarding.round(wake.now, wake, |_, _| {})
+    });
+    Ok(())
 }
 
 #[cfg(test)]

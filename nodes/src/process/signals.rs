@@ -1,8 +1,8 @@
-//! Ctrl-C, SIGTERM, the end of the supervisor, and going on after a stop.
+//! Ctrl-C, SIGTERM, and the end of the supervisor.
 
 use std::sync::{Arc, atomic::AtomicBool};
 
-use signal_hook::consts::{SIGCONT, SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 
 /// What a node is sent when its supervisor has died. Linux sends it as each thread of the
 /// supervisor ends, so more than once, and it must not be a signal whose second one ends
@@ -23,16 +23,4 @@ pub fn stop_on_signals() -> Result<Arc<AtomicBool>, std::io::Error> {
     }
     signal_hook::flag::register(SUPERVISOR_DIED, Arc::clone(&stop))?;
     Ok(stop)
-}
-
-/// A flag that is set when the process goes on after it was stopped, by Ctrl-Z, a debugger
-/// or the system: what waits for the network in a library may have given up.
-///
-/// # Errors
-///
-/// The operating system's reason when the handler cannot be installed.
-pub fn flag_continued() -> Result<Arc<AtomicBool>, std::io::Error> {
-    let continued = Arc::new(AtomicBool::new(false));
-    signal_hook::flag::register(SIGCONT, Arc::clone(&continued))?;
-    Ok(continued)
 }
