@@ -122,6 +122,16 @@ impl JointServo {
         self.generator.is_near()
     }
 
+    /// How long it takes to the first command at the approach's speed \[s\].
+    pub(super) fn time_left(&self) -> f64 {
+        self.generator.time_left()
+    }
+
+    /// Comes to the first command together with the slowest joint.
+    pub(super) fn keep_pace(&mut self, slowest: f64) {
+        self.generator.keep_pace(slowest);
+    }
+
     /// The arm has come to the first command.
     pub(super) fn end_approach(&mut self) {
         self.generator.end_approach();

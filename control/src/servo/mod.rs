@@ -426,6 +426,10 @@ impl Servo {
         output: &mut ServoOutput,
     ) {
         let state = self.machine.state();
+        let times = self.joints.iter().map(JointServo::time_left);
+        let slowest = times.fold(0.0, f64::max);
+        let joints = &mut self.joints;
+        joints.iter_mut().for_each(|own| own.keep_pace(slowest));
         let joints = self.joints.iter_mut().zip(measured.joints(weight));
         for (torque, (joint, seen)) in output.torque.iter_mut().zip(joints) {
             let driven = joint.drive(state, self.period, &seen);

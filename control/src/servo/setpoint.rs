@@ -52,6 +52,8 @@ const HAND_SPEED_TIME: f64 = 0.25;
 /// Of that speed, so much is allowed to the approach: what is in its way it meets without
 /// the hand having braked for it.
 const HAND_SHARE: f64 = 0.8;
+/// Joints that come to the first command within so long of each other need not wait \[s\].
+const EVEN: f64 = 0.01;
 /// Acceleration at the start, as a share of its limit: with that of a motor of 1 kg m²
 /// the torque begins with a step of 2 Nm, not of 40.
 const FIRST_SHARE: f64 = 0.05;
@@ -77,6 +79,9 @@ pub struct SetpointGenerator {
     since_first: f64,
     /// Speed of the commands, averaged \[rad/s\].
     hand_speed: f64,
+    /// Largest speed of the approach now \[rad/s\], and the share of it that is used.
+    top: f64,
+    share: f64,
     /// How far the acceleration is led over to its limit, 0 … 1.
     led: f64,
     setpoint: Setpoint,
@@ -96,6 +101,8 @@ impl SetpointGenerator {
             near: false,
             since_first: 0.0,
             hand_speed: 0.0,
+            top: limits.approach,
+            share: 1.0,
             led: 0.0,
             setpoint: Setpoint::default(),
             planted: Planted::NONE,
@@ -112,6 +119,7 @@ impl SetpointGenerator {
         self.near = false;
         self.since_first = 0.0;
         self.hand_speed = 0.0;
+        self.top = self.limits.approach;
         self.led = 0.0;
         self.setpoint = Setpoint {
             position,
@@ -143,8 +151,20 @@ impl SetpointGenerator {
         self.near
     }
 
+    /// How long the way to the command takes at the approach's speed \[s\].
+    pub fn time_left(&self) -> f64 {
+        (self.tracked_position - self.setpoint.position).abs() / self.top
+    }
+
+    /// Goes along with other joints, the slowest of which takes `slowest` \[s\] to the first
+    /// command: all come there together, on a straight line. One that is there before the
+    /// others takes the tip elsewhere, deeper into what the hand presses on.
+    pub fn keep_pace(&mut self, slowest: f64) {
+        self.share = ((self.time_left() + EVEN) / (slowest + EVEN)).min(1.0);
+    }
+
     /// The arm has come to the first command: from now on at full speed. That is so when
-    /// all its joints are near, as a joint that goes ahead of others takes the tip elsewhere.
+    /// all its joints are near.
     pub fn end_approach(&mut self) {
         self.approaching = false;
     }
@@ -179,7 +199,8 @@ impl SetpointGenerator {
             let hurry = HURRY * (self.since_first - PATIENCE).max(0.0);
             // What the arm runs into it hits no harder than the hand would have it hit.
             let hand = HAND_SHARE * self.hand_speed;
-            (limits.approach.hypot(hand) + hurry).min(limits.velocity)
+            self.top = (limits.approach.hypot(hand) + hurry).min(limits.velocity);
+            self.share * self.top
         } else {
             limits.velocity
         };

@@ -284,6 +284,29 @@ fn silence_pauses_within_30_ms_and_latches() {
     assert!((0.05..=0.060_01).contains(&fastest), "{fastest} rad/s");
 }
 
+/// The hand slides along what it presses on: the arm must not press deeper on its way there
+/// than the line between the two.
+#[test]
+fn the_way_to_the_first_command_is_straight() {
+    let (from, to) = ([-0.6, 1.2], [-0.55, 1.5]);
+    let mut bench = Bench::new(from);
+    let tip = Kinematics::new([0.25, 0.25]).forward(&Vector2::from(to));
+    bench.step(None, Some(StateCommand::Enable));
+    let (mut worst, mut approaching) = (0.0_f64, 0);
+    for _ in 0..8000 {
+        let command = bench.tip_command(tip.x, tip.y);
+        let output = bench.step(Some(command), None);
+        let [done, other] =
+            [0, 1].map(|j| (output.setpoint[j].position - from[j]) / (to[j] - from[j]));
+        worst = worst.max((done - other).abs() * (to[0] - from[0]));
+        approaching += i32::from(output.approaching);
+    }
+    // The shorter way's distance from the line: 40 mrad if each joint goes as fast as it may.
+    assert!(worst < 2.5e-3, "{worst} rad");
+    // 0.3 rad at 0.06 rad/s, and faster after two seconds.
+    assert!((2500..3600).contains(&approaching), "{approaching} ms");
+}
+
 #[test]
 fn what_is_silent_only_while_the_servo_was_held_up_is_not_silent() {
     // All processes held up for 40 ms, then the commands come again …
