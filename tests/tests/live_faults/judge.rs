@@ -28,8 +28,6 @@ const TORQUE: f64 = 8.0;
 const WATCHED: f64 = 0.030;
 /// Steps that are further apart are none: what lies between was not recorded \[s\].
 const STEP: f64 = 0.0025;
-/// How much harder than the session an arm may hit whose drives are cut off in motion \[-\].
-const DRIVES_CUT: f64 = 1.25;
 /// A servo that says nothing for so long does not run \[s\].
 const SILENT: f64 = 0.040;
 
@@ -128,22 +126,16 @@ impl Judged<'_> {
         }
         self.words(&mut outcome);
         self.starts(&mut outcome);
-        let most = self.most_force;
-        let share = if self.row.cuts_drives() {
-            DRIVES_CUT
-        } else {
-            1.0
-        };
-        for (force, allowed) in [(outcome.force, share * most), (outcome.force_again, most)] {
-            if force > allowed {
-                outcome.fail(self.hardest(force, allowed));
+        for force in [outcome.force, outcome.force_again] {
+            if force > self.most_force {
+                outcome.fail(self.hardest(force));
             }
         }
         outcome
     }
 
     /// How a force that is too large came about.
-    fn hardest(&self, force: f64, allowed: f64) -> String {
+    fn hardest(&self, force: f64) -> String {
         let hit = self.forces.iter().find(|own| own.1 >= force);
         let at = hit.map_or(Time::INVALID, |own| own.0);
         let since = |times: &mut dyn Iterator<Item = Time>| {
@@ -153,7 +145,8 @@ impl Judged<'_> {
         let enabled = since(&mut self.recorded.enablings().into_iter().map(|own| own.1));
         let fault = since(&mut self.repetitions.iter().map(|own| own.before));
         format!(
-            "{force:.1} N on the tip, {allowed:.1} N are allowed; {fault:.3} s after a fault, {enabled:.3} s after an enabling"
+            "{force:.1} N on the tip, {:.1} N are allowed; {fault:.3} s after a fault, {enabled:.3} s after an enabling",
+            self.most_force
         )
     }
 

@@ -124,16 +124,6 @@ impl Row {
         format!("{}: {}", self.fault_words, self.party)
     }
 
-    /// Whether it leaves the drives without commands: they are off after 10 ms, and the
-    /// motors run on.
-    pub fn cuts_drives(&self) -> bool {
-        match self.fault {
-            Fault::Kill(member) | Fault::Stop(member) => member == SERVO,
-            Fault::LoseHost(host) => host == Host::Arm,
-            _ => false,
-        }
-    }
-
     fn stop(member: Member) -> Row {
         let must = match member.name {
             // A servo that did not run goes on when the others are heard at once; without
