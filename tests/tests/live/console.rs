@@ -205,13 +205,17 @@ fn the_page_names_strangers_and_a_scenario_that_re_arms_by_itself() {
         PATIENCE,
         "return !document.querySelector('#told').textContent.includes('stranger')",
     );
-    let mut stranger = Stranger::new(session.name(), &session.link_endpoint(), None);
-    let seen = wait_for(PATIENCE, || {
-        stranger.send(&[0x7f; 60]);
-        let told = "return document.querySelector('#told').textContent.includes('link_follower: stranger on the link') ? 1 : 0";
-        (browser.number(told) == 1.0).then_some(())
+    let told = "return document.querySelector('#told').textContent.includes('link_follower: stranger on the link') ? 1 : 0";
+    // One whose connection does not come about begins again.
+    let seen = (0..4).any(|_| {
+        let mut stranger = Stranger::new(session.name(), &session.link_endpoint(), None);
+        let named = || {
+            let sent = stranger.send(&[0x7f; 60]);
+            (sent && browser.number(told) == 1.0).then_some(())
+        };
+        wait_for(PATIENCE / 4, named).is_some()
     });
-    assert!(seen.is_some(), "the stranger is not named");
+    assert!(seen, "the stranger is not named");
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);
     process.interrupt();
