@@ -207,8 +207,9 @@ fn the_page_names_strangers_and_a_scenario_that_re_arms_by_itself() {
         "return !document.querySelector('#told').textContent.includes('stranger')",
     );
     let told = "return document.querySelector('#told').textContent.includes('link_follower: stranger on the link') ? 1 : 0";
-    // One whose connection does not come about begins again.
+    // Who has no connection, stranger or page, begins again.
     let seen = (0..4).any(|_| {
+        browser.open(&format!("http://{address}"));
         let mut stranger = Stranger::new(session.name(), &session.link_endpoint(), None);
         let named = || {
             let sent = stranger.send(&[0x7f; 60]);
@@ -216,7 +217,12 @@ fn the_page_names_strangers_and_a_scenario_that_re_arms_by_itself() {
         };
         wait_for(PATIENCE / 4, named).is_some()
     });
-    assert!(seen, "the stranger is not named");
+    assert!(
+        seen,
+        "the stranger is not named, but told is: {} ({})",
+        browser.text("#told"),
+        browser.text("#status")
+    );
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);
     process.interrupt();
