@@ -206,7 +206,7 @@ fn the_page_names_strangers_and_a_scenario_that_re_arms_by_itself() {
         PATIENCE,
         "return !document.querySelector('#told').textContent.includes('stranger')",
     );
-    let told = "return document.querySelector('#told').textContent.includes('link_follower: stranger on the link') ? 1 : 0";
+    let told = "return document.querySelector('#told')?.textContent.includes('link_follower: stranger on the link') ? 1 : 0";
     // Who has no connection, stranger or page, begins again.
     let seen = (0..4).any(|_| {
         browser.open(&format!("http://{address}"));
