@@ -5,6 +5,8 @@
 //! the numbers are those of the way, not of a timer. In memory, where time is
 //! virtual, it is the cost of one publish and one read.
 
+mod link_pair;
+
 use std::{
     hint,
     sync::{
@@ -15,12 +17,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use ferntast_bus::frames::{
-    LinkDirection, LinkEndpoint, LinkTls, MAX_FRAME, ZenohLink, ZenohLinkConfig,
-};
 use ferntast_bus::{
     Bus, DdsBus, DdsConfig, Depth, MemoryBus, SharedMemoryBus, SharedMemoryConfig, ZenohBus,
-    ZenohConfig, ZenohMode,
+    ZenohConfig, ZenohMode, frames::MAX_FRAME,
 };
 use ferntast_msgs::{
     Time,
@@ -30,12 +29,6 @@ use ferntast_msgs::{
 use zenoh::Wait;
 
 const TOPIC: Topic<JointSample> = Topic::new(TopicName::constant("/bench/hop"), Delivery::Stream);
-/// The seed of both ends' certificates, and its Ed25519 key.
-const SEED: [u8; 32] = [7; 32];
-const KEY_OF_SEED: [u8; 32] = [
-    0xea, 0x4a, 0x6c, 0x63, 0xe2, 0x9c, 0x52, 0x0a, 0xbe, 0xf5, 0x50, 0x7b, 0x13, 0x2e, 0xc5, 0xf9,
-    0x95, 0x47, 0x76, 0xae, 0xbe, 0xbe, 0x7b, 0x92, 0x42, 0x1e, 0xea, 0x69, 0x14, 0x46, 0xd2, 0x2c,
-];
 const HOPS: usize = 5_000;
 const PERIOD: Duration = Duration::from_micros(500);
 
@@ -76,7 +69,7 @@ fn main() {
         ("the link's frames, QUIC", "quic", 38_400),
     ] {
         let endpoint = format!("{kind}/127.0.0.1:{}", port + process % 2000);
-        let own = match link(process, &endpoint) {
+        let own = match link(&endpoint) {
             Ok(times) => print(way, times),
             Err(error) => {
                 eprintln!("{way}: {error}");
@@ -239,27 +232,10 @@ fn bare_zenoh(process: u32) -> Result<Vec<f64>, zenoh::Error> {
 }
 
 /// One way, from `send` to the stamp of arrival; the next when the last is there.
-fn link(process: u32, endpoint: &str) -> Result<Vec<f64>, String> {
+fn link(endpoint: &str) -> Result<Vec<f64>, String> {
     let start = Instant::now();
     let clock = move || Time::from_nanos(1 + start.elapsed().as_nanos() as i64);
-    let open = |endpoint, sends| {
-        ZenohLink::open(ZenohLinkConfig {
-            session: format!("bench_{process}"),
-            endpoint,
-            sends,
-            tls: Some(LinkTls {
-                seed: SEED,
-                known: vec![KEY_OF_SEED],
-            }),
-            clock: Arc::new(clock),
-        })
-        .map_err(|error| error.to_string())
-    };
-    let mut there = open(LinkEndpoint::Listen(endpoint.into()), LinkDirection::Back)?;
-    let mut here = open(
-        LinkEndpoint::Connect(endpoint.into()),
-        LinkDirection::Forward,
-    )?;
+    let [mut there, mut here] = link_pair::open(endpoint.into(), endpoint.into(), clock)?;
     let mut buffer = [0; MAX_FRAME];
     let mut hop = || -> Result<Option<f64>, String> {
         let sent = clock();

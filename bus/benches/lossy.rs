@@ -2,11 +2,12 @@
 //! down where it sees losses: how many arrive, and how old. A relay in between delays
 //! and drops packets; 500 frames a second go each way, as in a session.
 
+mod link_pair;
+
 use std::{
     collections::VecDeque,
     io,
     net::{SocketAddr, UdpSocket},
-    process,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -15,17 +16,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use ferntast_bus::frames::{
-    LinkDirection, LinkEndpoint, LinkTls, MAX_FRAME, ZenohLink, ZenohLinkConfig,
-};
+use ferntast_bus::frames::MAX_FRAME;
 use ferntast_msgs::Time;
 
-/// The seed of both ends' certificates, and its Ed25519 key.
-const SEED: [u8; 32] = [7; 32];
-const KEY_OF_SEED: [u8; 32] = [
-    0xea, 0x4a, 0x6c, 0x63, 0xe2, 0x9c, 0x52, 0x0a, 0xbe, 0xf5, 0x50, 0x7b, 0x13, 0x2e, 0xc5, 0xf9,
-    0x95, 0x47, 0x76, 0xae, 0xbe, 0xbe, 0x7b, 0x92, 0x42, 0x1e, 0xea, 0x69, 0x14, 0x46, 0xd2, 0x2c,
-];
 const PERIOD: Duration = Duration::from_millis(2);
 /// Until the two have met and QUIC knows the way \[s\].
 const SETTLE: f64 = 5.0;
@@ -67,27 +60,8 @@ fn measured(kind: &str, round_trip_ms: u64, loss: f64) -> Result<(f64, [f64; 3])
 
     let start = Instant::now();
     let clock = move || Time::from_nanos(1 + start.elapsed().as_nanos() as i64);
-    let open = |endpoint, sends| {
-        ZenohLink::open(ZenohLinkConfig {
-            session: format!("lossy_{}", process::id()),
-            endpoint,
-            sends,
-            tls: Some(LinkTls {
-                seed: SEED,
-                known: vec![KEY_OF_SEED],
-            }),
-            clock: Arc::new(clock),
-        })
-        .map_err(|error| error.to_string())
-    };
-    let mut there = open(
-        LinkEndpoint::Listen(format!("{kind}/{arm}")),
-        LinkDirection::Back,
-    )?;
-    let mut here = open(
-        LinkEndpoint::Connect(format!("{kind}/{relay}")),
-        LinkDirection::Forward,
-    )?;
+    let [mut there, mut here] =
+        link_pair::open(format!("{kind}/{arm}"), format!("{kind}/{relay}"), clock)?;
 
     let mut ages = Vec::new();
     let mut sent = 0_usize;

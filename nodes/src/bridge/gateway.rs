@@ -3,19 +3,8 @@
 //! It is the only process that touches ROS 2, so that no 1 kHz loop shares a
 //! process with DDS or a Zenoh router.
 
-use std::{
-    process,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
-    thread,
-    time::Duration,
-};
-
 use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
 use ferntast_msgs::topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch};
-use signal_hook::consts::SIGCONT;
 
 use super::{
     choice_parameter::ChoiceParameter,
@@ -24,7 +13,7 @@ use super::{
 };
 use crate::{
     config::{GatewaySection, HandSource, Middleware, Scenario},
-    process::{NodeError, ProcessContext},
+    process::{NodeError, ProcessContext, end_after_a_stop},
 };
 
 /// Opens the ROS 2 side.
@@ -103,24 +92,6 @@ pub fn goes_out(topic: Row, section: &GatewaySection) -> Forwarding {
     }
 }
 
-/// Ends the process when it goes on after it was stopped, by Ctrl-Z, a debugger or the
-/// system, so that the supervisor starts it again: the event loops of RustDDS 0.15 end when a
-/// signal interrupts them, silently, and calls into it may then wait for ever.
-fn end_if_stopped() -> Result<(), NodeError> {
-    let continued = Arc::new(AtomicBool::new(false));
-    signal_hook::flag::register(SIGCONT, Arc::clone(&continued)).map_err(NodeError::own)?;
-    let watch = move || {
-        while !continued.load(Ordering::Relaxed) {
-            thread::sleep(Duration::from_millis(100));
-        }
-        eprintln!("node gateway: it was stopped for a while, which its DDS does not survive");
-        process::exit(1);
-    };
-    let watcher = thread::Builder::new().name("stopped".to_owned());
-    watcher.spawn(watch).map_err(NodeError::own)?;
-    Ok(())
-}
-
 /// Runs the gateway until it is told to stop.
 ///
 /// # Errors
@@ -133,7 +104,12 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         warn_of_strangers(section)?;
     }
     if section.middleware == Middleware::Dds {
-        end_if_stopped()?;
+        // The event loops of RustDDS 0.15 end when a signal interrupts them, silently, and
+        // calls into it may then wait for ever.
+        end_after_a_stop(
+            "node gateway: it was stopped for a while, which its DDS does not survive",
+        )
+        .map_err(NodeError::own)?;
     }
     let ros = open_ros(section)?;
     let mut forwarder = Forwarder::default();

@@ -16,4 +16,4 @@ pub use context::ProcessContext;
 pub use error::NodeError;
 pub use priority::{Priority, Scheduling};
 pub use session_context::{ConsoleOptions, ContextError, PlayOptions, SessionContext};
-pub use signals::{SUPERVISOR_DIED, stop_on_signals};
+pub use signals::{SUPERVISOR_DIED, end_after_a_stop, stop_on_signals};
