@@ -82,11 +82,17 @@ fn in_a_session_the_servo_is_told_and_tells_back() {
     assert_eq!(taken[1]["source"], "twin", "{taken:#}");
     let told = twin("give-back").success().json();
     assert_eq!(told[1]["source"], "configured", "{told:#}");
-    let set = set_parameter(&session, ["/servo", "friction", "twin"]);
-    assert_eq!(set["before"], "configured", "{set:#}");
-    assert_eq!(set["after"], "twin", "{set:#}");
-    let told = twin("friction").success().json();
-    assert_eq!(told[1]["source"], "twin", "{told:#}");
+    // The servo may refuse a later model of the twin's, and goes back by itself.
+    let stays = wait_for(PATIENCE, || {
+        let set = set_parameter(&session, ["/servo", "friction", "twin"]);
+        assert_eq!(set["before"], "configured", "{set:#}");
+        assert_eq!(set["after"], "twin", "{set:#}");
+        let told = twin("friction").success().json();
+        let by_twin = told[1]["source"] == "twin";
+        assert!(by_twin || told[1]["refused"].is_string(), "{told:#}");
+        by_twin.then_some(())
+    });
+    stays.expect("the servo takes the twin's model");
     process.interrupt();
     process.wait(PATIENCE).success();
 }
