@@ -28,9 +28,9 @@ ORIGINS = {
 
 RUST_PROGRAM = re.compile(r"^\s+Running .*[/(](\w+)-[0-9a-f]+\)$")
 RUST_IGNORED = re.compile(r"^test (\S+) \.\.\. ignored(?:, (.*))?$")
+RUST_FAILED = re.compile(r"^test (\S+) \.\.\. FAILED$")
+RUST_PASSED = re.compile(r"^test (\S+) \.\.\. ok$")
 RUST_RESULT = re.compile(r"^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored;")
-
-
 RUST_TIME = re.compile(r"^test result: .* finished in ([0-9.]+)s$")
 
 
@@ -59,6 +59,10 @@ class Count(NamedTuple):
         not_run = dict.fromkeys(self.not_run + other.not_run)
         return Count(self.passed + other.passed, self.failed + other.failed, tuple(not_run))
 
+    def with_passed_again(self, tests: int) -> "Count":
+        """The same, with so many of the failed ones passed."""
+        return self._replace(passed=self.passed + tests, failed=self.failed - tests)
+
 
 def count_rust(log: str) -> Count:
     """What the output of `cargo test` tells."""
@@ -77,6 +81,24 @@ def count_rust(log: str) -> Count:
             failed += int(found[2])
             ignored += int(found[3])
     return Count(passed, failed + ignored, tuple(dict.fromkeys(not_run)))
+
+
+def ended_so(log: str, ended: re.Pattern[str]) -> list[tuple[str, str]]:
+    """The tests, each with its program, that ended so in the output of `cargo test`."""
+    program = ""
+    found: list[tuple[str, str]] = []
+    for line in log.splitlines():
+        if running := RUST_PROGRAM.match(line):
+            program = running[1]
+        elif test := ended.match(line):
+            found.append((program, test[1]))
+    return found
+
+
+def held_up(log: str, again: str) -> list[tuple[str, str]]:
+    """The tests that failed in `log` and passed in `again`."""
+    passed = ended_so(again, RUST_PASSED)
+    return [test for test in ended_so(log, RUST_FAILED) if test in passed]
 
 
 def count_python(path: Path) -> Count:
@@ -123,19 +145,31 @@ def main() -> int:
     """Reads the reports and prints the total."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rust-log", type=Path, required=True)
-    parser.add_argument("--rust-status", type=int, required=True)
+    parser.add_argument("--rust-status", type=int, default=0)
+    parser.add_argument("--list-failed", nargs="+", metavar="PROGRAM")
+    parser.add_argument("--again-log", type=Path, help="what was run again, alone")
     parser.add_argument("--python-xml", type=Path, nargs="*", default=[])
     parser.add_argument("--python-status", type=int, default=0)
     parser.add_argument("--not-run", action="append", default=[], help="left out on purpose")
     arguments = parser.parse_args()
     log = arguments.rust_log.read_text(errors="replace")
+    if arguments.list_failed:
+        for program, test in ended_so(log, RUST_FAILED):
+            if program in arguments.list_failed:
+                print(program, test)
+        return 0
     rust = count_rust(log)
     python = Count(not_run=tuple(arguments.not_run))
     for path in arguments.python_xml:
         python = python.plus(count_python(path))
     result = total(rust, arguments.rust_status, python, arguments.python_status)
+    again = arguments.again_log
+    passed_again = held_up(log, again.read_text(errors="replace") if again else "")
+    result = result.with_passed_again(len(passed_again))
     print(f"took longest: {slowest(log) or 'nothing more than 10 s'}")
     print("\n".join(explanation(result.not_run)))
+    for program, test in passed_again:
+        print(f"failed, and passed when run again alone: {program}::{test}")
     skipped = f", {len(result.not_run)} skipped" if result.not_run else ""
     print(f"{result.passed} passed, {result.failed} failed{skipped}")
     return int(result.failed > 0)

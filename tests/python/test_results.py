@@ -6,7 +6,18 @@ import subprocess
 import sys
 from pathlib import Path
 
-from count_results import NEEDS, Count, count_python, count_rust, explanation, slowest, total
+from count_results import (
+    NEEDS,
+    RUST_FAILED,
+    Count,
+    count_python,
+    count_rust,
+    explanation,
+    held_up,
+    slowest,
+    ended_so,
+    total,
+)
 
 HERE = Path(__file__).parent
 
@@ -47,6 +58,23 @@ def test_every_rust_result_is_added_and_ignored_counts_as_failed():
 def test_what_took_longest_comes_first():
     assert slowest(TIMES) == "offline 100 s, live 61 s"
     assert slowest("") == ""
+
+
+def test_only_what_passed_when_run_again_is_forgiven():
+    log = """
+     Running tests/live/main.rs (target/release/deps/live-0123456789abcdef)
+test crashes::a ... FAILED
+test crashes::b ... ok
+     Running tests/timing/main.rs (target/release/deps/timing-0123456789abcdef)
+test crashes::a ... FAILED
+"""
+    again = log.replace("crashes::a ... FAILED", "crashes::a ... ok", 1)
+    assert ended_so(log, RUST_FAILED) == [("live", "crashes::a"), ("timing", "crashes::a")]
+    assert held_up(log, again) == [("live", "crashes::a")]
+    assert held_up(log, log) == held_up(log, "") == []
+    assert Count(1, 2).with_passed_again(1) == Count(2, 1)
+    # A program that broke off is not forgiven by it.
+    assert total(Count(1, 2), 101, Count(), 3).with_passed_again(2) == Count(3, 1)
 
 
 def test_every_python_case_is_counted_and_skipped_counts_as_failed(tmp_path):
