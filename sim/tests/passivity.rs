@@ -1,6 +1,7 @@
-//! Every law between seeded channels, hands and things to touch: what leaves the
-//! two-port between hand and tip is never more than what entered it, for each
-//! law that claims it.
+//! Every law between seeded channels, hands and things to touch, with the tip that the laws
+//! reckon with: a mass on the servo's spring whose contact force is known at once. What
+//! leaves the two-port between hand and tip is never more than what entered it, for each law
+//! whose books say so. What that is worth with a whole arm, `whole_arm.rs` tells.
 //!
 //! A case comes from its seed alone; a case that fails prints its seed, and
 //! `FERNTAST_PASSIVITY_CASES` sets how many seeds are tried.
@@ -171,10 +172,10 @@ fn report(failures: &[String]) {
 }
 
 #[test]
-fn a_law_that_claims_it_gives_out_no_more_than_it_took_in() {
+fn a_law_whose_books_say_so_gives_out_no_more_than_it_took_in() {
     let claiming: Vec<&str> = Law::all()
         .iter()
-        .filter(|law| law.guarantee() == Guarantee::Passive)
+        .filter(|law| law.guarantee() == Guarantee::ByItsBooks)
         .map(Law::name)
         .collect();
     assert!(claiming.contains(&"wave") && claiming.contains(&"tdpa"));
@@ -188,11 +189,11 @@ fn a_law_that_claims_it_gives_out_no_more_than_it_took_in() {
 }
 
 #[test]
-fn a_law_that_claims_it_while_connected_does_so_while_frames_come() {
+fn a_law_whose_books_say_so_while_connected_does_so_while_frames_come() {
     let claiming = Law::all();
     let claiming = claiming
         .iter()
-        .filter(|law| law.guarantee() == Guarantee::PassiveWhileConnected);
+        .filter(|law| law.guarantee() == Guarantee::ByItsBooksWhileConnected);
     for law in claiming {
         report(&failures(|seed| {
             let mut draw = Draw(Pcg64Mcg::seed_from_u64(seed));

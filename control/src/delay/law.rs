@@ -143,8 +143,8 @@ impl Law {
         Law::all().into_iter().find(|law| law.name() == name)
     }
 
-    /// Whether it claims that the two-port gives out no more energy than it
-    /// took in, whatever the channel does.
+    /// Whether it claims that no more energy leaves at hand and tip than entered, whatever the
+    /// channel does, with the arm, the servo and the estimator that ship.
     pub const fn claims_passivity(&self) -> bool {
         matches!(self.guarantee(), Guarantee::Passive)
     }

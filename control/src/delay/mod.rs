@@ -171,14 +171,22 @@ pub trait Follower {
 
 /// What a law guarantees about the energy of the two-port between hand and tip.
 /// Under which assumptions, the law's file says.
+///
+/// A law's own books take the servo for a spring with a damper, the estimated contact force
+/// for the true one, and the force asked for at the hand for the one that is there. With a
+/// whole arm, its servo and its estimator each of the laws that are passive by these makes
+/// energy (`sim/tests/whole_arm.rs`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guarantee {
     /// Nothing.
     Nothing,
-    /// It gives out no more than it took in while frames arrive; an outage may
-    /// add energy.
-    PassiveWhileConnected,
-    /// It gives out no more than it took in, whatever the channel does.
+    /// By its own books it gives out no more than it took in while frames arrive; an outage
+    /// may add energy.
+    ByItsBooksWhileConnected,
+    /// By its own books it gives out no more than it took in, whatever the channel does.
+    ByItsBooks,
+    /// At hand and tip it gives out no more than it took in, whatever the channel does, with
+    /// the arm, the servo and the estimator that ship.
     Passive,
 }
 

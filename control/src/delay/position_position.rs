@@ -9,7 +9,7 @@
 //! **What it guarantees.** Their condition, 4 B_h B_s ≥ (T₁ + T₂)² K², for the longest
 //! age of what is acted on, holding and loss included, makes ½K |x_h − x_s|² and
 //! what the dampers take bound what the ports can give: the two-port is
-//! passive. B = ½ K τ + b with τ = `round_trip`; what is older than τ/2 is not
+//! passive by its own books. B = ½ K τ + b with τ = `round_trip`; what is older than τ/2 is not
 //! acted on. Assumed: the tip is where it was told to be; both ends' clocks agree. Not over an outage: coming back with hand and tip
 //! apart stretches the spring at nobody's cost, by ½ K |x_h − x_s|². A long
 //! delay feels like syrup.
@@ -38,7 +38,7 @@ law_parameters! {
 law_ends!(
     PositionPosition,
     "position_position",
-    PassiveWhileConnected,
+    ByItsBooksWhileConnected,
     PositionPositionLeader,
     PositionPositionFollower
 );

@@ -25,7 +25,7 @@
 //! keeps a share of what it took in, as the stores of Franken et al. 2011 do: a hand
 //! that pressed against the force is pushed back with its own energy.
 //!
-//! **What it guarantees.** The two-port gives out no more than it took in, but
+//! **What it guarantees.** By its own books it gives out no more than it took in, but
 //! for what one step may overdraw, which is paid back first: for any
 //! delay, jitter, loss, reordering, duplication and outage. Assumed: the force
 //! on the hand is the one asked for; the servo from command to tip
@@ -69,7 +69,7 @@ law_parameters! {
         pub servo_stiffness: f64 [1.0..=1000000.0, "N/m"] = 7000.0,
     }
 }
-law_ends!(Tdpa, "tdpa", Passive, TdpaLeader, TdpaFollower);
+law_ends!(Tdpa, "tdpa", ByItsBooks, TdpaLeader, TdpaFollower);
 
 /// Slower than this counts as standing [m/s].
 const STANDING: f64 = 1e-6;

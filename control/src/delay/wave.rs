@@ -33,8 +33,8 @@
 //! pays. So a steady contact is felt as it is, after some round trips.
 //!
 //! **What it guarantees.** Each end sends no more wave energy than waves and port
-//! have brought it, and overdraws by no more than a step, paid back first; so
-//! the two-port is passive for any delay, jitter and loss. A long line is
+//! have brought it, and overdraws by no more than a step, paid back first; so by its
+//! own books the two-port is passive for any delay, jitter and loss. A long line is
 //! soft at first: delay T each way acts as a spring b/T. Assumed: clocks that run
 //! equally fast (their offset changes the absorption only); the servo from command to
 //! tip is passive, up to the kinetic energy of the arm.
@@ -160,7 +160,7 @@ fn paid(tank: &mut EnergyTank, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
     share.sqrt() * wave
 }
 
-law_ends!(Wave, "wave", Passive, WaveLeader, WaveFollower);
+law_ends!(Wave, "wave", ByItsBooks, WaveLeader, WaveFollower);
 
 /// The leader's end: sends position of the hand and the integral of u \[√J·√s\].
 #[derive(Clone, Debug)]

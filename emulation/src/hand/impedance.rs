@@ -45,6 +45,11 @@ impl HandImpedance {
         }
     }
 
+    /// From now on it holds like this.
+    pub fn hold(&mut self, parameters: ImpedanceParameters) {
+        self.parameters = parameters;
+    }
+
     /// Position \[m\].
     pub fn position(&self) -> [f64; 2] {
         self.position

@@ -83,8 +83,8 @@ impl Loaded {
 /// Key of the stiffness of the arm's servo at the tip \[N/m\].
 const SERVO_STIFFNESS: &str = "servo_stiffness";
 
-/// `law` with a servo no softer than `least` \[N/m\], if it asks for one.
-fn stiff_enough(law: &Law, least: f64) -> Law {
+/// `law` with a servo no softer than `least` \[N/m\] ([`servo::stiffest`]), if it asks for one.
+pub fn stiff_enough(law: &Law, least: f64) -> Law {
     let Ok(Value::Object(mut own)) = serde_json::to_value(law) else {
         return law.clone();
     };

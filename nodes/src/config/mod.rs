@@ -16,7 +16,7 @@ pub use arm::load_model_only;
 pub use arm::{ArmFile, LoadArm};
 pub use error::ConfigError;
 pub use file::{ARM, FileKind, load};
-pub use laws::UnknownLaw;
+pub use laws::{UnknownLaw, stiff_enough};
 pub use load::{Loaded, load_scenario, read_hand_recording};
 pub use scenario::*;
 

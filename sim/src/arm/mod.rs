@@ -123,6 +123,8 @@ pub struct Truth {
     pub sliding_velocity: f64,
     /// Energy of all parts, kinetic, elastic and potential \[J\].
     pub energy: f64,
+    /// Work that the contact did on the tip since the start \[J\].
+    pub contact_work: f64,
 }
 
 /// The simulated arm.
@@ -231,6 +233,13 @@ impl SimulatedArm {
         flags
     }
 
+    /// From now on the whole contour is `shift` \[m\] from its place and moves at
+    /// `velocity` \[m/s\], base frame.
+    pub fn move_contour(&mut self, shift: [f64; 2], velocity: [f64; 2]) {
+        self.plant.shift = shift.into();
+        self.plant.shift_velocity = velocity.into();
+    }
+
     /// Reads all sensors now.
     pub fn measure(&mut self) -> Measurement {
         let torque = self.plant.joint_torque();
@@ -292,6 +301,7 @@ impl SimulatedArm {
             sliding_velocity: pushing
                 .map_or(0.0, |front| tip_velocity.dot(&front.feature().tangent())),
             energy: plant.energy(),
+            contact_work: plant.contact_work,
         }
     }
 }

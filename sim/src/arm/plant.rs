@@ -44,6 +44,12 @@ pub(super) struct Plant {
     pub(super) thetad: Vector2<f64>,
     /// Force on the tip at the last substep \[N\], base frame.
     pub(super) force: Vector2<f64>,
+    /// Work that the contact did on the tip since the start \[J\].
+    pub(super) contact_work: f64,
+    /// How far the contour is from its place \[m\], base frame.
+    pub(super) shift: Vector2<f64>,
+    /// How fast it moves \[m/s\].
+    pub(super) shift_velocity: Vector2<f64>,
 }
 
 impl Plant {
@@ -86,6 +92,9 @@ impl Plant {
             theta,
             thetad: Vector2::zeros(),
             force: Vector2::zeros(),
+            contact_work: 0.0,
+            shift: Vector2::zeros(),
+            shift_velocity: Vector2::zeros(),
         }
     }
 
@@ -110,7 +119,7 @@ impl Plant {
 
     /// Kinetic, elastic and potential energy of all parts \[J\].
     pub(super) fn energy(&self) -> f64 {
-        let tip = self.tip();
+        let tip = self.tip() - self.shift;
         let joints: f64 = (0..JOINTS)
             .map(|joint| {
                 let parameters = &self.joints[joint];
@@ -135,12 +144,15 @@ impl Plant {
         dt: f64,
     ) -> [f64; JOINTS] {
         let half = 0.5 * dt;
+        let before = self.q;
         self.q += self.qd * half;
         self.theta += self.thetad * half;
+        self.shift += self.shift_velocity * half;
 
         let torque = self.joint_torque();
         let (tip, jacobian) = self.arm.kinematics().forward_and_jacobian(&self.q);
-        let velocity = jacobian * self.qd;
+        let velocity = jacobian * self.qd - self.shift_velocity;
+        let tip = tip - self.shift;
         self.force = self
             .fronts
             .iter_mut()
@@ -169,6 +181,9 @@ impl Plant {
 
         self.q += self.qd * half;
         self.theta += self.thetad * half;
+        self.shift += self.shift_velocity * half;
+        // As the integration has it: the force in the middle, over the whole way.
+        self.contact_work += self.force.dot(&(jacobian * (self.q - before)));
         heat
     }
 }

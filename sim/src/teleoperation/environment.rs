@@ -60,11 +60,16 @@ impl Environment {
         }
     }
 
+    /// Whether its place changes.
+    pub const fn moves(self) -> bool {
+        matches!(self, Environment::MovingWall)
+    }
+
     /// Place \[m\] and velocity \[m/s\] of the surface, `time` \[s\] after it
     /// began to move; negative before.
     pub fn place(self, time: f64) -> (f64, f64) {
         const PERIOD: f64 = 2.0;
-        if self != Environment::MovingWall || !(0.0..2.0 * PERIOD).contains(&time) {
+        if !self.moves() || !(0.0..2.0 * PERIOD).contains(&time) {
             return (0.0, 0.0);
         }
         let rate = std::f64::consts::TAU / PERIOD;

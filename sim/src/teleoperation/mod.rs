@@ -1,24 +1,32 @@
 //! Two ends of a delay law with everything that is around them: a hand, two
-//! channels, a tip behind its servo, and something to touch.
+//! channels, an arm behind its servo, and something to touch.
 //!
-//! One trial is one task of an operator: reach, press, slide, come back
-//! ([`Trial`]); its [`Outcome`] says how law and link served. The two ends are
-//! those that the nodes of a session run ([`ferntast_control::link`]). Time is counted in ticks of 1 ms; the same trial gives
-//! the same outcome.
+//! One trial is one [`Task`] of an operator; its [`Outcome`] says how law and link served. The two ends are
+//! those that the nodes of a session run ([`ferntast_control::link`]), and so are servo,
+//! contact-force estimator and limiter of the hand's force where the follower is the
+//! [whole arm](FollowerModel::Arm). Energy is that of the simulated bodies at hand and tip:
+//! what laws, estimator and limiter believe does not come into it. Time is counted in ticks
+//! of 1 ms; the same trial gives the same outcome.
 //!
 //! Axes: x into the surface, y along it. Positions and forces of the outcome
 //! are at the hand's scale.
 
 mod environment;
+mod follower;
 mod task;
 mod tip;
 mod watch;
+mod whole_arm;
 
 pub use environment::Environment;
+pub use follower::FollowerModel;
+pub use task::Task;
 pub use tip::TipParameters;
+pub use whole_arm::ArmUnderTrial;
 
-use ferntast_control::delay::{Energy, EnergyMeter, Law};
+use ferntast_control::delay::Law;
 use ferntast_control::frame::{FRAME_LENGTH, WIRE_LENGTH};
+use ferntast_control::haptics::{ForceLimiter, MasterConfig};
 use ferntast_control::link::{
     FollowerLink, FollowerReadings, FollowerStep, LeaderLink, LeaderReadings, LeaderStep,
     StampedPosition,
@@ -28,8 +36,8 @@ use ferntast_control::switching::Laws;
 use ferntast_emulation::channel::{Channel, LinkConfig};
 use ferntast_emulation::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_model::ParameterError;
+use follower::{Follower, TipCommand};
 use task::Schedule;
-use tip::Tip;
 use watch::{Tick, Watch};
 
 /// One tick \[s\].
@@ -37,8 +45,6 @@ pub const TICK: f64 = 1e-3;
 const TICK_NS: i64 = 1_000_000;
 /// Time of the first tick [ns].
 const START_NS: i64 = 1_000_000_000_000_000;
-/// Hand and tip reach no further from the surface than this [m].
-const WORKSPACE: f64 = 0.5;
 
 /// What is tried.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,10 +55,14 @@ pub struct Trial {
     pub link: LinkConfig,
     /// What the tip meets.
     pub environment: Environment,
+    /// What the operator does.
+    pub task: Task,
     /// The operator's hand.
     pub hand: ImpedanceParameters,
     /// The arm behind its servo.
-    pub tip: TipParameters,
+    pub follower: FollowerModel,
+    /// The master, which limits the force on the hand; without one it is as the law asks.
+    pub master: Option<MasterConfig>,
     /// Jitter buffer at both ends \[s\]; none by default.
     pub buffer: f64,
     /// Of all chance.
@@ -66,12 +76,14 @@ impl Trial {
             law,
             link,
             environment,
+            task: Task::PressAndSlide,
             hand: ImpedanceParameters {
                 mass: 0.5,
                 damping: 20.0,
                 stiffness: 300.0,
             },
-            tip: TipParameters::default(),
+            follower: FollowerModel::default(),
+            master: None,
             buffer: 0.0,
             seed,
         }
@@ -95,14 +107,17 @@ impl Trial {
         self.law.validate()?;
         self.link.validate()?;
         self.hand.validate()?;
-        self.tip.validate()?;
+        self.follower.validate()?;
+        if let Some(master) = &self.master {
+            master.validate()?;
+        }
         let (forth, back) = (
             self.link.up.nominal_delay(WIRE_LENGTH),
             self.link.down.nominal_delay(WIRE_LENGTH),
         );
-        let schedule = Schedule::new(forth + back);
+        let schedule = Schedule::new(self.task, forth + back);
         let ticks = |delay: f64| (delay / TICK).round() as usize;
-        let mut watch = Watch::new(schedule, ticks(forth), ticks(back));
+        let mut watch = Watch::new(schedule, ticks(forth), ticks(back), self.environment);
         let mut run = Run::new(self, schedule)?;
         for k in 0..ticks(schedule.end) {
             let moment = run.step(k as i64);
@@ -129,19 +144,28 @@ pub struct Outcome {
     pub force_rmse: f64,
     /// Hand less tip at the end \[m\].
     pub drift: f64,
+    /// Stiffness that the hand feels while it presses, on a surface that moves while that
+    /// moves \[N/m\]: of the surface where it was one way back ago. `None` where the hand
+    /// is nowhere behind it.
+    pub felt_stiffness: Option<f64>,
+    /// Largest change of the force on the hand in a tick \[N\].
+    pub force_step: f64,
+    /// For how long the arm did not obey, from the start on \[s\].
+    pub held: f64,
     /// Largest force of the contact on the tip \[N\].
     pub peak_force: f64,
     /// Largest force on the hand \[N\].
     pub peak_felt: f64,
-    /// Least of what entered less what left the two-port, over both ports and
-    /// at every moment; never above zero \[J\].
+    /// Least of what entered less what left at hand and tip, at every moment, as the
+    /// simulated bodies have it; never above zero \[J\].
     pub energy_margin: f64,
     /// Stiffness that the hand feels while it presses by that which the tip
     /// touches \[-\]; `None` where nothing is pressed.
     pub transparency: Option<f64>,
     /// Damping that the hand feels on the free way to the surface \[N·s/m\].
     pub felt_damping: f64,
-    /// When the tip is back where it began \[s\]; `None` when it is not in time.
+    /// When the tip is back where it began, or the hand let go \[s\]; `None` when it is not in
+    /// time, or nothing was touched that there is.
     pub task_time: Option<f64>,
 }
 
@@ -149,10 +173,6 @@ pub struct Outcome {
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
     tick: Tick,
-    /// Energy at the leader's port \[J\].
-    pub leader: Energy,
-    /// Energy at the follower's port \[J\], at the tip's scale.
-    pub follower: Energy,
 }
 
 impl Moment {
@@ -181,7 +201,7 @@ impl Moment {
         self.tick.touched
     }
 
-    /// Entered less left, over both ports, at the hand's scale \[J\].
+    /// True work of hand and surface since the start, at the hand's scale \[J\].
     pub fn energy(&self) -> f64 {
         self.tick.energy
     }
@@ -189,38 +209,49 @@ impl Moment {
 
 struct Run<'a> {
     law: &'a Law,
+    environment: Environment,
     schedule: Schedule,
     leader: LeaderLink,
     follower: FollowerLink,
     up: Channel,
     down: Channel,
     hand: HandImpedance,
-    tip: Tip,
-    ports: Ports,
+    grip: ImpedanceParameters,
+    limiter: Option<ForceLimiter>,
+    arm: Box<dyn Follower>,
+    /// By the hand since the start [J].
+    hand_work: f64,
     /// On the hand since the last tick [N].
     felt: [f64; 2],
-    /// Where the tip is told to be [m].
-    command: [f64; 2],
+    /// Where the tip is told to be.
+    command: Option<TipCommand>,
 }
 
 impl<'a> Run<'a> {
     fn new(trial: &'a Trial, schedule: Schedule) -> Result<Self, ParameterError> {
         let start = schedule.start();
-        let scale = trial.law.mapping().position_scale;
-        let tip = [scale * start[0], scale * start[1]];
+        let mapping = trial.law.mapping();
+        let tip = start.map(|own| mapping.position_scale * own);
+        let [x, y, _] = mapping.workspace_offset;
         let laws = || Laws::new(trial.law.clone());
+        let limiter = |own: &MasterConfig| ForceLimiter::new(own.force_limit, own.force_rate_limit);
         Ok(Run {
             law: &trial.law,
+            environment: trial.environment,
             schedule,
             leader: LeaderLink::new(laws(), trial.buffer),
             follower: FollowerLink::new(laws(), trial.buffer),
             up: Channel::new(trial.link.up.clone(), trial.seed)?,
             down: Channel::new(trial.link.down.clone(), !trial.seed)?,
             hand: HandImpedance::new(trial.hand, start),
-            tip: Tip::new(trial.tip, trial.environment, tip),
-            ports: Ports::default(),
+            grip: trial.hand,
+            limiter: trial.master.as_ref().map(limiter),
+            arm: trial
+                .follower
+                .make(trial.environment, [x, y], tip, trial.seed)?,
+            hand_work: 0.0,
             felt: [0.0; 2],
-            command: tip,
+            command: None,
         })
     }
 
@@ -228,31 +259,38 @@ impl<'a> Run<'a> {
         let time = k as f64 * TICK;
         let now_ns = START_NS + k * TICK_NS;
         let mapping = self.law.mapping();
-        let offset = mapping.workspace_offset;
         let (target, target_speed) = self.schedule.target(time);
+        let before = self.hand.position();
+        self.hand.hold(self.schedule.grip(time, self.grip));
         self.hand.step(TICK, target, target_speed, self.felt);
         let since = time - self.schedule.wall;
-        self.tip.step(TICK, since, self.command);
+        self.arm.step(now_ns, since, self.command.take());
 
-        let (hand, tip) = (self.hand.position(), self.tip.position);
-        self.ports.step(hand, self.felt, tip, self.tip.force);
+        let (hand, tip) = (self.hand.position(), self.arm.tip());
+        // The force was the same all the way.
+        self.hand_work -= (0..2)
+            .map(|axis| self.felt[axis] * (hand[axis] - before[axis]))
+            .sum::<f64>();
+        let felt = self.felt;
 
         let output = self.leader_step(now_ns, hand);
-        let answer = self.follower_step(now_ns, tip);
+        let answer = self.follower_step(now_ns);
         if let Some(frame) = output.frame {
             self.up.push(now_ns, &on_the_wire(&frame));
         }
         if let Some(frame) = answer.frame {
             self.down.push(now_ns, &on_the_wire(&frame));
         }
-        self.felt = [output.force[0], output.force[1]];
-        if let Some(command) = answer.command {
-            self.command = [0, 1].map(|axis: usize| {
-                (command.position[axis] - offset[axis]).clamp(-WORKSPACE, WORKSPACE)
-            });
-        }
+        let force = match &mut self.limiter {
+            Some(limiter) => limiter.step(TICK, output.force).force,
+            None => output.force,
+        };
+        self.felt = [force[0], force[1]];
+        self.command = answer.command.map(|command| TipCommand {
+            made_ns: answer.command_ns,
+            position: command.position,
+        });
         let scaled = |own: [f64; 2], scale: f64| [scale * own[0], scale * own[1]];
-        let (leader, follower) = (self.ports.leader.energy(), self.ports.follower.energy());
         Moment {
             tick: Tick {
                 time,
@@ -260,11 +298,12 @@ impl<'a> Run<'a> {
                 hand_speed: self.hand.velocity(),
                 tip: scaled(tip, 1.0 / mapping.position_scale),
                 felt: self.felt,
-                touched: scaled(self.tip.force, mapping.force_scale),
-                energy: leader.balance() + mapping.power_scale() * follower.balance(),
+                force_step: (self.felt[0] - felt[0]).hypot(self.felt[1] - felt[1]),
+                touched: scaled(self.arm.force(), mapping.force_scale),
+                place: self.environment.place(since).0 / mapping.position_scale,
+                held: self.arm.sensed().state != OperatingState::Enabled,
+                energy: self.hand_work + mapping.power_scale() * self.arm.work(),
             },
-            leader,
-            follower,
         }
     }
 
@@ -273,34 +312,28 @@ impl<'a> Run<'a> {
             self.leader.arrived(bytes, at_ns);
         });
         let readings = LeaderReadings {
-            hand: Some(measured(now_ns, [hand[0], hand[1], 0.0])),
+            hand: Some(StampedPosition {
+                stamp_ns: now_ns,
+                position: [hand[0], hand[1], 0.0],
+                silence: 0.0,
+            }),
             state: OperatingState::Enabled,
         };
         self.leader.step(now_ns, &readings)
     }
 
-    fn follower_step(&mut self, now_ns: i64, tip: [f64; 2]) -> FollowerStep {
+    fn follower_step(&mut self, now_ns: i64) -> FollowerStep {
         deliver(&mut self.up, now_ns, |bytes, at_ns| {
             self.follower.arrived(bytes, at_ns);
         });
-        let offset = self.law.mapping().workspace_offset;
-        let tip = [offset[0] + tip[0], offset[1] + tip[1], offset[2]];
+        let sensed = self.arm.sensed();
         let readings = FollowerReadings {
-            tip: Some(measured(now_ns, tip)),
-            contact_force: Some([self.tip.force[0], self.tip.force[1], 0.0]),
-            state: OperatingState::Enabled,
+            tip: sensed.tip,
+            contact_force: sensed.contact_force,
+            state: sensed.state,
             told_to_stop: false,
         };
         self.follower.step(now_ns, &readings)
-    }
-}
-
-/// A position as it was measured now.
-fn measured(now_ns: i64, position: [f64; 3]) -> StampedPosition {
-    StampedPosition {
-        stamp_ns: now_ns,
-        position,
-        silence: 0.0,
     }
 }
 
@@ -316,28 +349,6 @@ fn deliver(channel: &mut Channel, now_ns: i64, mut arrived: impl FnMut(&[u8], i6
     let mut bytes = [0; WIRE_LENGTH];
     while let Some((length, at_ns)) = channel.pop(now_ns, &mut bytes) {
         arrived(&bytes[..length.min(FRAME_LENGTH)], at_ns);
-    }
-}
-
-/// Energy at both ports, measured from outside: the laws do not count for themselves.
-#[derive(Debug, Default)]
-struct Ports {
-    leader: EnergyMeter,
-    follower: EnergyMeter,
-    /// Of the contact on the tip, one tick ago [N].
-    touched: [f64; 2],
-}
-
-impl Ports {
-    /// `felt` acted on the hand since the last tick, and the contact's force
-    /// changed to `touched` on the way: its mean did the work.
-    fn step(&mut self, hand: [f64; 2], felt: [f64; 2], tip: [f64; 2], touched: [f64; 2]) {
-        let space = |own: [f64; 2]| [own[0], own[1], 0.0];
-        let against = space(felt.map(|force| -force));
-        self.leader.step(against, Some(space(hand)));
-        let mean = [0, 1].map(|axis: usize| 0.5 * (touched[axis] + self.touched[axis]));
-        self.follower.step(space(mean), Some(space(tip)));
-        self.touched = touched;
     }
 }
 

@@ -1,5 +1,8 @@
-//! What the operator does: reach, press, slide, come back, with pauses that are
-//! long enough for the link to settle, and in which it is judged.
+//! What the operator does, with pauses that are long enough for the link to settle, and in
+//! which it is judged.
+
+use ferntast_emulation::hand::ImpedanceParameters;
+use serde::{Deserialize, Serialize};
 
 /// Where the hand begins and ends, before the surface [m].
 const START: f64 = -0.04;
@@ -11,21 +14,61 @@ const SLIDE: f64 = 0.02;
 const WAIT: f64 = 0.5;
 /// Time of each motion [s].
 const MOTION: f64 = 1.0;
+/// Where a tap begins and ends, before the surface, and where it wants to be, behind it [m].
+const LIFTED: f64 = -0.01;
+const TAPPED: f64 = 0.004;
+/// From one tap to the next, and of that the time of a stroke, down and up [s].
+const TAP_PERIOD: f64 = 1.0;
+const STROKE: f64 = 0.15;
+const TAPS: u32 = 3;
+/// What is in nobody's hand: a light handle on its bearings.
+const LEFT_ALONE: ImpedanceParameters = ImpedanceParameters {
+    mass: 0.2,
+    damping: 1.0,
+    stiffness: 1.0,
+};
+
+/// What an operator does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Task {
+    /// Reaches, presses while the surface may move, slides, comes back: 0.1 m/s at the surface.
+    PressAndSlide,
+    /// Taps the surface three times, a stroke takes 0.15 s, and comes back.
+    Tap,
+    /// Lets go of the handle while it presses.
+    LetGo,
+}
+
+impl Task {
+    /// All of them.
+    pub const ALL: [Task; 3] = [Task::PressAndSlide, Task::Tap, Task::LetGo];
+
+    /// As in configurations.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Task::PressAndSlide => "press_and_slide",
+            Task::Tap => "tap",
+            Task::LetGo => "let_go",
+        }
+    }
+}
 
 /// Times of the task [s since the start].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Schedule {
+    pub task: Task,
     /// The hand begins to move: by then both ends have heard of each other.
     pub reach: f64,
     /// The surface begins to move.
     pub wall: f64,
-    /// Sliding begins.
+    /// Sliding, or tapping, begins.
     pub slide: f64,
     /// From here on the hand at the surface is watched.
     pub watch_pressed: f64,
-    /// The way back begins.
+    /// The way back begins, or the hand lets go.
     pub retreat: f64,
-    /// From here on the hand back at the start is watched.
+    /// From here on the hand back at the start, or the handle left alone, is watched.
     pub watch_free: f64,
     /// The end.
     pub end: f64,
@@ -34,14 +77,19 @@ pub(super) struct Schedule {
 impl Schedule {
     /// For a link of `round_trip` \[s\]. An instability needs some round trips
     /// to show, a slow law some to arrive.
-    pub(super) fn new(round_trip: f64) -> Self {
+    pub(super) fn new(task: Task, round_trip: f64) -> Self {
         let reach = WAIT + round_trip;
         let wall = reach + MOTION + 1.0 + round_trip;
         let slide = wall + 4.0;
-        let watch_pressed = slide + 2.0 * MOTION + 2.0 + 5.0 * round_trip;
+        let work = match task {
+            Task::PressAndSlide | Task::LetGo => 2.0 * MOTION,
+            Task::Tap => f64::from(TAPS) * TAP_PERIOD,
+        };
+        let watch_pressed = slide + work + 2.0 + 5.0 * round_trip;
         let retreat = watch_pressed + 1.0 + 2.0 * round_trip;
         let watch_free = retreat + MOTION + 3.0 + 3.0 * round_trip;
         Schedule {
+            task,
             reach,
             wall,
             slide,
@@ -58,14 +106,49 @@ impl Schedule {
         let (back, back_rate) = minimum_jerk((time - self.retreat) / MOTION);
         let (out, out_rate) = minimum_jerk((time - self.slide) / MOTION);
         let (home, home_rate) = minimum_jerk((time - self.slide - MOTION) / MOTION);
-        let travel = PRESSED - START;
+        let reached = match self.task {
+            Task::Tap => LIFTED,
+            Task::PressAndSlide | Task::LetGo => PRESSED,
+        };
+        let (along, along_rate) = match self.task {
+            Task::PressAndSlide => (out - home, (out_rate - home_rate) / MOTION),
+            Task::Tap | Task::LetGo => (0.0, 0.0),
+        };
+        let (tap, tap_rate) = self.tap(time);
+        let travel = reached - START;
         (
-            [START + travel * (reach - back), SLIDE * (out - home)],
+            [START + travel * (reach - back) + tap, SLIDE * along],
             [
-                travel * (reach_rate - back_rate) / MOTION,
-                SLIDE * (out_rate - home_rate) / MOTION,
+                travel * (reach_rate - back_rate) / MOTION + tap_rate,
+                SLIDE * along_rate,
             ],
         )
+    }
+
+    /// How far the hand is into a tap \[m\], and how fast \[m/s\].
+    fn tap(&self, time: f64) -> (f64, f64) {
+        let since = time - self.slide;
+        if self.task != Task::Tap || !(0.0..f64::from(TAPS) * TAP_PERIOD).contains(&since) {
+            return (0.0, 0.0);
+        }
+        let since = since % TAP_PERIOD;
+        let (down, down_rate) = minimum_jerk(since / STROKE);
+        let (up, up_rate) = minimum_jerk((since - STROKE) / STROKE);
+        let depth = TAPPED - LIFTED;
+        (depth * (down - up), depth * (down_rate - up_rate) / STROKE)
+    }
+
+    /// What holds the handle, where `hand` does until it lets go.
+    pub(super) fn grip(&self, time: f64, hand: ImpedanceParameters) -> ImpedanceParameters {
+        match self.lets_go(time) {
+            true => LEFT_ALONE,
+            false => hand,
+        }
+    }
+
+    /// Whether nobody holds the handle any more.
+    pub(super) fn lets_go(&self, time: f64) -> bool {
+        self.task == Task::LetGo && time >= self.retreat
     }
 
     /// Where the task begins and ends \[m\].
@@ -89,7 +172,7 @@ mod tests {
     #[test]
     fn the_hand_reaches_presses_slides_and_comes_back() {
         for round_trip in [0.0, 2.0] {
-            let schedule = Schedule::new(round_trip);
+            let schedule = Schedule::new(Task::PressAndSlide, round_trip);
             assert_eq!(schedule.target(0.0).0, schedule.start());
             let at = |time| schedule.target(time).0;
             assert!((at(schedule.wall)[0] - PRESSED).abs() < 1e-12);
@@ -100,17 +183,38 @@ mod tests {
     }
 
     #[test]
+    fn it_taps_three_times_and_is_back_in_between() {
+        let schedule = Schedule::new(Task::Tap, 0.1);
+        let at = |time| schedule.target(time).0[0];
+        for k in 0..TAPS {
+            let begin = schedule.slide + TAP_PERIOD * f64::from(k);
+            assert!((at(begin) - LIFTED).abs() < 1e-12);
+            assert!((at(begin + STROKE) - TAPPED).abs() < 1e-12);
+        }
+        assert!((at(schedule.watch_pressed) - LIFTED).abs() < 1e-12);
+    }
+
+    #[test]
+    fn who_lets_go_lets_go_while_pressing() {
+        let schedule = Schedule::new(Task::LetGo, 0.1);
+        let hand = ImpedanceParameters::default();
+        assert_eq!(schedule.grip(schedule.retreat - 1e-3, hand), hand);
+        assert_eq!(schedule.grip(schedule.retreat, hand), LEFT_ALONE);
+        assert!((schedule.target(schedule.retreat).0[0] - PRESSED).abs() < 1e-12);
+    }
+
+    #[test]
     fn speeds_are_the_rates_of_positions() {
-        let schedule = Schedule::new(0.3);
-        for k in 0..300 {
-            let time = 0.05 * f64::from(k);
-            let (before, after) = (schedule.target(time - 1e-6), schedule.target(time + 1e-6));
-            for axis in 0..2 {
-                let rate = (after.0[axis] - before.0[axis]) / 2e-6;
-                assert!(
-                    (rate - schedule.target(time).1[axis]).abs() < 1e-6,
-                    "{time}"
-                );
+        for task in Task::ALL {
+            let schedule = Schedule::new(task, 0.3);
+            for k in 0..600 {
+                let time = 0.025 * f64::from(k);
+                let (before, after) = (schedule.target(time - 1e-6), schedule.target(time + 1e-6));
+                for axis in 0..2 {
+                    let rate = (after.0[axis] - before.0[axis]) / 2e-6;
+                    let told = schedule.target(time).1[axis];
+                    assert!((rate - told).abs() < 1e-5, "{task:?} {time}");
+                }
             }
         }
     }

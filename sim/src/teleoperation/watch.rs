@@ -1,7 +1,8 @@
 //! What is measured in a trial.
 
-use super::Outcome;
-use super::task::Schedule;
+use super::environment::Environment;
+use super::task::{Schedule, Task};
+use super::{Outcome, TICK};
 use std::collections::VecDeque;
 
 /// A hand or tip that moves to and fro by more than this while it is watched is
@@ -25,9 +26,15 @@ pub(super) struct Tick {
     pub tip: [f64; 2],
     /// On the hand [N].
     pub felt: [f64; 2],
+    /// By how much that changed in this tick [N].
+    pub force_step: f64,
     /// Of the contact on the tip [N].
     pub touched: [f64; 2],
-    /// Entered less left, over both ports [J].
+    /// Surface [m].
+    pub place: f64,
+    /// The arm does not obey.
+    pub held: bool,
+    /// True work of hand and surface since the start [J].
     pub energy: f64,
 }
 
@@ -90,6 +97,8 @@ pub(super) struct Watch {
     /// Hand as it was a way forward ago, contact force as it was a way back ago.
     hands: VecDeque<[f64; 2]>,
     forces: VecDeque<[f64; 2]>,
+    /// The surface as it was a way back ago.
+    places: VecDeque<f64>,
     position: Square,
     force: Square,
     rest: [Swing; 6],
@@ -98,6 +107,12 @@ pub(super) struct Watch {
     peak_felt: f64,
     /// Sums while pressing: felt, hand's depth, touched, tip's depth.
     pressed: [f64; 4],
+    /// Sums while pressing or while the surface moves: force by depth, depth by depth.
+    stiffness: [f64; 2],
+    environment: Environment,
+    touched: bool,
+    force_step: f64,
+    held: f64,
     /// Sums on the free way: F·v and v².
     free: [f64; 2],
     away_until: Option<f64>,
@@ -106,12 +121,18 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// `forth` and `back`: delay each way [ticks].
-    pub(super) fn new(schedule: Schedule, forth: usize, back: usize) -> Self {
+    /// `forth` and `back`: delay each way [ticks]; what the tip meets.
+    pub(super) fn new(
+        schedule: Schedule,
+        forth: usize,
+        back: usize,
+        environment: Environment,
+    ) -> Self {
         Watch {
             schedule,
             hands: std::iter::repeat_n(schedule.start(), forth).collect(),
             forces: std::iter::repeat_n([0.0; 2], back).collect(),
+            places: std::iter::repeat_n(0.0, back).collect(),
             position: Square::default(),
             force: Square::default(),
             rest: [Swing::NONE; 6],
@@ -119,6 +140,11 @@ impl Watch {
             peak: 0.0,
             peak_felt: 0.0,
             pressed: [0.0; 4],
+            stiffness: [0.0; 2],
+            environment,
+            touched: false,
+            force_step: 0.0,
+            held: 0.0,
             free: [0.0; 2],
             away_until: None,
             drift: 0.0,
@@ -135,11 +161,15 @@ impl Watch {
         let met = self.forces.pop_front().unwrap_or(tick.touched);
         let difference = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
         let touching = tick.touched != [0.0; 2];
+        self.touched |= touching;
         if !touching {
             self.position.add(difference(sent, tick.tip));
         }
         self.force.add(difference(met, tick.felt));
         self.margin = self.margin.min(tick.energy);
+        self.force_step = self.force_step.max(tick.force_step);
+        self.held += if tick.held { TICK } else { 0.0 };
+        self.feel(tick);
         self.peak = self.peak.max(tick.touched[0].hypot(tick.touched[1]));
         self.peak_felt = self.peak_felt.max(tick.felt[0].hypot(tick.felt[1]));
         let Schedule {
@@ -182,19 +212,44 @@ impl Watch {
         self.drift = (tick.hand[0] - tick.tip[0]).hypot(tick.hand[1] - tick.tip[1]);
     }
 
+    /// The stiffness in the hand: of the surface where it was a way back ago, as the hand
+    /// cannot know of it earlier.
+    fn feel(&mut self, tick: &Tick) {
+        self.places.push_back(tick.place);
+        let place = self.places.pop_front().unwrap_or(tick.place);
+        let window = match self.environment.moves() {
+            true => self.schedule.wall..self.schedule.slide,
+            false => self.schedule.watch_pressed..self.schedule.retreat,
+        };
+        let depth = tick.hand[0] - place;
+        if window.contains(&tick.time) && depth > TOUCH {
+            self.stiffness[0] -= tick.felt[0] * depth;
+            self.stiffness[1] += depth * depth;
+        }
+    }
+
     /// After the last tick.
     pub(super) fn outcome(&self) -> Outcome {
         let swing = self.rest.iter().map(Swing::width).fold(0.0, f64::max);
         let [felt, hand, touched, tip] = self.pressed;
-        let done = self
-            .away_until
-            .filter(|time| *time > self.schedule.retreat && *time < self.schedule.watch_free);
+        let done = match self.schedule.task {
+            // The handle is where it was left: there is no way back to be in time for.
+            Task::LetGo => Some(self.schedule.retreat),
+            Task::PressAndSlide | Task::Tap => self
+                .away_until
+                .filter(|time| *time > self.schedule.retreat && *time < self.schedule.watch_free),
+        };
+        let done = done.filter(|_| self.touched || self.environment == Environment::Free);
         Outcome {
             stable: self.finite && swing < REST,
             swing,
             position_rmse: self.position.root(),
             force_rmse: self.force.root(),
             drift: self.drift,
+            felt_stiffness: (self.stiffness[1] > 0.0)
+                .then(|| self.stiffness[0] / self.stiffness[1]),
+            force_step: self.force_step,
+            held: self.held,
             peak_force: self.peak,
             peak_felt: self.peak_felt,
             energy_margin: self.margin,

@@ -1,10 +1,13 @@
 //! What a sweep is made of: a file such as `config/scenarios/delay_sweep.toml`.
 
 use ferntast_control::delay::Law;
+use ferntast_control::haptics::MasterConfig;
+use ferntast_control::servo::ServoConfig;
+use ferntast_drivers::simulated;
 use ferntast_emulation::hand::ImpedanceParameters;
 use ferntast_model::{ParameterError, check, parameters};
 use ferntast_nodes::config::{self, ConfigError, FileKind};
-use ferntast_sim::teleoperation::{Environment, TipParameters};
+use ferntast_sim::teleoperation::{ArmUnderTrial, Environment, FollowerModel, Task, TipParameters};
 
 /// Trials of one sweep at most.
 const MAX_TRIALS: usize = 1_000_000;
@@ -24,16 +27,34 @@ parameters! {
         pub loss: Vec<f64> [0.0..=1.0, "-"],
         /// What the tip meets.
         pub environments: Vec<Environment>,
+        /// What the operator does.
+        #[serde(default = "one_task")]
+        pub tasks: Vec<Task>,
         /// Seeds; where neither jitter nor loss leaves anything to chance, the
         /// first one stands for all.
         pub seeds: Vec<u64>,
         /// The operator's hand.
         pub hand: ImpedanceParameters [section],
-        /// The arm behind its servo.
+        /// The arm, as in a scenario: with its servo, its estimator and the master's limits as
+        /// they ship. Left out: a light tip, known without error.
+        #[serde(default)]
+        pub arm: Option<String>,
+        /// The arm's servo.
+        #[serde(default)]
+        pub servo: ServoConfig [section],
+        /// The master.
+        #[serde(default)]
+        pub master: MasterConfig [section],
+        /// The light tip behind its servo, where there is no arm.
         #[serde(default)]
         pub tip: TipParameters [section],
     }
     check SweepConfig::has_neither_nothing_nor_too_much;
+}
+
+/// What the operator does where a file does not say.
+fn one_task() -> Vec<Task> {
+    vec![Task::PressAndSlide]
 }
 
 /// Where sweeps are.
@@ -52,6 +73,23 @@ impl SweepConfig {
         config::load(FILE, name, SweepConfig::validate)
     }
 
+    /// What follows the hand, and what limits the force on it.
+    ///
+    /// # Errors
+    ///
+    /// The arm's file cannot be loaded.
+    pub fn follower(&self) -> Result<(FollowerModel, Option<MasterConfig>), ConfigError> {
+        let Some(name) = &self.arm else {
+            return Ok((FollowerModel::Light(self.tip), None));
+        };
+        let arm = ArmUnderTrial {
+            arm: simulated::load_config(name)?,
+            servo: self.servo.clone(),
+        };
+        let follower = FollowerModel::Arm(Box::new(arm));
+        Ok((follower, Some(self.master.clone())))
+    }
+
     fn has_neither_nothing_nor_too_much(&self) -> Result<(), ParameterError> {
         let counts = [
             ("laws", self.laws.len()),
@@ -59,6 +97,7 @@ impl SweepConfig {
             ("jitter_ms", self.jitter_ms.len()),
             ("loss", self.loss.len()),
             ("environments", self.environments.len()),
+            ("tasks", self.tasks.len()),
             ("seeds", self.seeds.len()),
         ];
         let mut trials = 1_usize;

@@ -2,7 +2,7 @@
 
 use ferntast_control::delay::Law;
 use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig, Loss};
-use ferntast_sim::teleoperation::{Environment, Trial};
+use ferntast_sim::teleoperation::{Environment, Task};
 
 use super::SweepConfig;
 
@@ -19,6 +19,8 @@ pub struct Condition {
     pub loss: f64,
     /// What the tip meets.
     pub environment: Environment,
+    /// What the operator does.
+    pub task: Task,
     /// Of all chance.
     pub seed: u64,
 }
@@ -28,7 +30,8 @@ impl SweepConfig {
     pub fn conditions(&self) -> Vec<Condition> {
         let mut all = Vec::new();
         for law in &self.laws {
-            for &environment in &self.environments {
+            let here = |&environment| self.tasks.iter().map(move |&task| (environment, task));
+            for (environment, task) in self.environments.iter().flat_map(here) {
                 for &rtt_ms in &self.rtt_ms {
                     for &jitter_ms in &self.jitter_ms {
                         for &loss in &self.loss {
@@ -40,6 +43,7 @@ impl SweepConfig {
                                 jitter_ms,
                                 loss,
                                 environment,
+                                task,
                                 seed,
                             }));
                         }
@@ -52,6 +56,12 @@ impl SweepConfig {
 }
 
 impl Condition {
+    /// Stiffness of what is touched, at the hand's scale \[N/m\].
+    pub fn true_stiffness(&self) -> f64 {
+        let mapping = self.law.mapping();
+        mapping.force_scale * mapping.position_scale * self.environment.surface().0
+    }
+
     /// The channel.
     pub fn link(&self) -> LinkConfig {
         let one_way = ChannelConfig {
@@ -68,15 +78,6 @@ impl Condition {
             description: String::new(),
             up: one_way.clone(),
             down: one_way,
-        }
-    }
-
-    /// The trial, with the hand and the arm of `config`.
-    pub fn trial(&self, config: &SweepConfig) -> Trial {
-        Trial {
-            hand: config.hand,
-            tip: config.tip,
-            ..Trial::new(self.law.clone(), self.link(), self.environment, self.seed)
         }
     }
 }

@@ -2,10 +2,10 @@
 //! loss and environment, in simulation and virtual time.
 //!
 //! A row is one trial of [`ferntast_sim::teleoperation`]: the same laws, frames
-//! and meters as in a session, a hand with impedance, a tip behind its servo,
-//! something to touch. The same file gives the same rows, whatever the number
+//! as in a session, a hand with impedance, an arm behind its servo, something to touch. The same file gives the same rows, whatever the number
 //! of processors.
 
+mod bench;
 mod config;
 mod grid;
 mod page;
@@ -16,10 +16,11 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub use bench::Bench;
 pub use config::SweepConfig;
 pub use grid::Condition;
 pub use page::{RenderError, render};
 pub use row::Row;
-pub use run::run;
+pub use run::{RunError, run};
 pub use stable::{LargestStable, largest_stable};
 pub use table::table;

@@ -21,6 +21,8 @@ pub struct Row {
     pub loss: f64,
     /// What the tip meets.
     pub environment: &'static str,
+    /// What the operator does.
+    pub task: &'static str,
     /// Of all chance.
     pub seed: u64,
     /// Hand and tip come to rest.
@@ -32,23 +34,38 @@ pub struct Row {
     /// Force on the hand less the contact's as it was one delay ago \[N\].
     #[serde(rename = "force_rmse_N")]
     pub force_rmse: f64,
-    /// Hand less tip at the end \[m\].
-    pub drift_m: f64,
+    /// It came to rest and the tip was back in time.
+    pub done: bool,
+    /// Stiffness felt in the hand \[N/m\]; `null` where the hand is nowhere behind the surface.
+    #[serde(rename = "felt_stiffness_N_per_m")]
+    pub felt_stiffness: Option<f64>,
+    /// Stiffness of what is touched, at the hand's scale \[N/m\].
+    #[serde(rename = "true_stiffness_N_per_m")]
+    pub true_stiffness: f64,
+    /// Largest change of the force on the hand in a millisecond \[N/ms\].
+    #[serde(rename = "force_step_N_per_ms")]
+    pub force_step: f64,
+    /// For how long the arm did not obey \[s\].
+    pub held_s: f64,
+    /// Hand less tip at the end \[mm\].
+    pub drift_mm: f64,
     /// Largest force of the contact on the tip \[N\].
     #[serde(rename = "peak_force_N")]
     pub peak_force: f64,
     /// Largest force on the hand \[N\].
     #[serde(rename = "peak_felt_N")]
     pub peak_felt: f64,
-    /// Least of energy entered less energy left, over both ports; never above zero \[J\].
-    #[serde(rename = "energy_margin_J")]
-    pub energy_margin: f64,
+    /// Least of energy entered less energy left at hand and tip, of the simulated bodies; never
+    /// above zero \[J\].
+    #[serde(rename = "true_energy_J")]
+    pub true_energy: f64,
     /// Stiffness felt by stiffness touched \[-\]; `null` where nothing is pressed.
     pub transparency: Option<f64>,
     /// Damping felt on the free way to the surface \[N·s/m\].
-    #[serde(rename = "felt_damping_Ns_m")]
-    pub felt_damping: f64,
-    /// When the tip is back where it began \[s\]; `null` when it is not in time.
+    #[serde(rename = "drag_N_s_per_m")]
+    pub drag: f64,
+    /// When the tip is back where it began, or the hand let go \[s\]; `null` when it is not in
+    /// time, or nothing was touched.
     pub task_time_s: Option<f64>,
 }
 
@@ -62,17 +79,23 @@ impl Row {
             jitter_ms: condition.jitter_ms,
             loss: condition.loss,
             environment: condition.environment.name(),
+            task: condition.task.name(),
             seed: condition.seed,
             stable: outcome.stable,
             swing_m: outcome.swing,
             position_rmse_m: outcome.position_rmse,
             force_rmse: outcome.force_rmse,
-            drift_m: outcome.drift,
+            done: outcome.stable && outcome.task_time.is_some(),
+            felt_stiffness: outcome.felt_stiffness,
+            true_stiffness: condition.true_stiffness(),
+            force_step: outcome.force_step,
+            held_s: outcome.held,
+            drift_mm: 1e3 * outcome.drift,
             peak_force: outcome.peak_force,
             peak_felt: outcome.peak_felt,
-            energy_margin: outcome.energy_margin,
+            true_energy: outcome.energy_margin,
             transparency: outcome.transparency,
-            felt_damping: outcome.felt_damping,
+            drag: outcome.felt_damping,
             task_time_s: outcome.task_time,
         }
     }

@@ -6,17 +6,30 @@ use std::{
 };
 
 use ferntast_model::ParameterError;
+use ferntast_nodes::config::ConfigError;
 
-use super::{Row, SweepConfig};
+use super::{Bench, Row, SweepConfig};
+
+/// Why there are no rows.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A value is out of bounds.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// The arm cannot be loaded.
+    #[error(transparent)]
+    Arm(#[from] ConfigError),
+}
 
 /// Every row of `config`, in the order of its conditions; `done` is called once
 /// a trial, from any thread.
 ///
 /// # Errors
 ///
-/// The first value that is out of bounds.
-pub fn run(config: &SweepConfig, done: impl Fn() + Sync) -> Result<Vec<Row>, ParameterError> {
+/// The first value that is out of bounds, an arm that cannot be loaded.
+pub fn run(config: &SweepConfig, done: impl Fn() + Sync) -> Result<Vec<Row>, RunError> {
     config.validate()?;
+    let bench = Bench::new(config)?;
     let conditions = config.conditions();
     let next = AtomicUsize::new(0);
     let failed = AtomicBool::new(false);
@@ -27,7 +40,7 @@ pub fn run(config: &SweepConfig, done: impl Fn() + Sync) -> Result<Vec<Row>, Par
             let Some(condition) = conditions.get(place) else {
                 break;
             };
-            match condition.trial(config).run() {
+            match bench.run(condition) {
                 Ok(outcome) => rows.push((place, Row::new(condition, &outcome))),
                 Err(error) => {
                     failed.store(true, Ordering::Relaxed);
@@ -49,7 +62,7 @@ pub fn run(config: &SweepConfig, done: impl Fn() + Sync) -> Result<Vec<Row>, Par
                 Err(panic) => std::panic::resume_unwind(panic),
             }
         }
-        Ok(())
+        Ok::<(), ParameterError>(())
     })?;
     rows.sort_by_key(|(place, _)| *place);
     Ok(rows.into_iter().map(|(_, row)| row).collect())

@@ -4,11 +4,14 @@ const QUANTITIES = [
   ["position_rmse_m", "position error, free [mm]", 1e3],
   ["force_rmse_N", "force error [N]", 1],
   ["transparency", "stiffness felt by stiffness touched", 1],
-  ["drift_m", "drift at the end [mm]", 1e3],
+  ["felt_stiffness_N_per_m", "stiffness felt in the hand [N/m]", 1],
+  ["force_step_N_per_ms", "largest step of the force in the hand [N/ms]", 1],
+  ["held_s", "time for which the arm was held [s]", 1],
+  ["drift_mm", "drift at the end [mm]", 1],
   ["peak_force_N", "peak contact force [N]", 1],
   ["peak_felt_N", "peak force in the hand [N]", 1],
-  ["energy_margin_J", "energy margin [J]", 1],
-  ["felt_damping_Ns_m", "damping felt in free space [N·s/m]", 1],
+  ["true_energy_J", "true energy margin [J]", 1],
+  ["drag_N_s_per_m", "damping felt in free space [N·s/m]", 1],
   ["task_time_s", "time of the task [s]", 1],
 ];
 

@@ -55,7 +55,7 @@ pub fn table(rows: &[Row]) -> String {
             median(good.iter().filter_map(|row| value(row)).collect())
         };
         let done = own.iter().filter(|row| row.task_time_s.is_some()).count();
-        let gain = own.iter().map(|row| -row.energy_margin).fold(0.0, f64::max);
+        let gain = own.iter().map(|row| -row.true_energy).fold(0.0, f64::max);
         let _ = write!(
             text,
             "\n{law:20} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9} {:>12} {:>8} {:>14}",
@@ -63,7 +63,7 @@ pub fn table(rows: &[Row]) -> String {
             format!("{done}/{}", own.len()),
             number(of(&|row| Some(row.position_rmse_m * 1e3)), 2),
             number(of(&|row| Some(row.force_rmse)), 2),
-            number(of(&|row| Some(row.drift_m * 1e3)), 2),
+            number(of(&|row| Some(row.drift_mm)), 2),
             number(of(&|row| Some(row.peak_force)), 1),
             number(of(&|row| row.transparency), 3),
             number(of(&|row| row.task_time_s), 1),

@@ -1,5 +1,5 @@
 use ferntast_control::delay::Law;
-use ferntast_sim::teleoperation::Environment;
+use ferntast_sim::teleoperation::{Environment, Task};
 
 use super::*;
 
@@ -8,6 +8,8 @@ fn small() -> SweepConfig {
     config.laws.retain(|law| law.name() == "position_force");
     config.environments = vec![Environment::SoftSpring, Environment::HardWall];
     config.rtt_ms = vec![0.0, 300.0];
+    config.tasks = vec![Task::PressAndSlide];
+    config.arm = None;
     config
 }
 
@@ -20,6 +22,8 @@ fn the_shipped_sweep_holds_every_law_and_what_it_has_to() {
         assert!(config.rtt_ms.contains(&rtt), "{rtt}");
     }
     assert_eq!(config.environments, Environment::ALL);
+    assert_eq!(config.tasks, Task::ALL);
+    assert_eq!(config.arm.as_deref(), Some("rokviss"));
     // Compared at the same scales.
     let scales = config.laws.iter().map(|law| law.mapping().force_scale);
     assert!(scales.into_iter().all(|scale| scale == 1.0));
@@ -70,7 +74,7 @@ fn row(rtt_ms: f64, loss: f64, stable: bool) -> Row {
         loss,
         ..config.conditions().remove(0)
     };
-    let outcome = condition.trial(&config).run().unwrap();
+    let outcome = Bench::new(&config).unwrap().run(&condition).unwrap();
     Row {
         stable,
         ..Row::new(&condition, &outcome)
@@ -107,14 +111,21 @@ fn json_has_the_keys_and_the_page_is_whole_in_itself() {
         "stable",
         "position_rmse_m",
         "force_rmse_N",
-        "drift_m",
+        "drift_mm",
         "peak_force_N",
-        "energy_margin_J",
+        "true_energy_J",
         "jitter_ms",
         "loss",
         "seed",
         "transparency",
         "task_time_s",
+        "task",
+        "done",
+        "felt_stiffness_N_per_m",
+        "true_stiffness_N_per_m",
+        "force_step_N_per_ms",
+        "drag_N_s_per_m",
+        "held_s",
     ] {
         assert!(value[0].get(key).is_some(), "{key}");
     }

@@ -25,12 +25,7 @@ fn gives_rows_a_page_and_the_largest_stable_delays() {
     // 2 laws, 2 environments, 2 delays, one trial without chance and six with.
     assert_eq!(rows.len(), 2 * 2 * 2 * 7);
     for row in &rows {
-        for key in [
-            "position_rmse_m",
-            "energy_margin_J",
-            "peak_force_N",
-            "rtt_ms",
-        ] {
+        for key in ["position_rmse_m", "true_energy_J", "peak_force_N", "rtt_ms"] {
             assert!(number(row, key).is_finite(), "{row:#}");
         }
     }

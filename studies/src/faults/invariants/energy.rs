@@ -37,8 +37,10 @@ impl Invariant for Energy {
         self.hand = seen.hand.or(before);
         let force = std::mem::replace(&mut self.force, seen.hand_force.unwrap_or([0.0; 3]));
         let claims = match facts.guarantee {
-            Guarantee::Passive | Guarantee::PassiveWhileConnected => !log.law_switched,
             Guarantee::Nothing => false,
+            Guarantee::ByItsBooksWhileConnected | Guarantee::ByItsBooks | Guarantee::Passive => {
+                !log.law_switched
+            }
         };
         let both = seen.follower.enabled() && seen.leader.enabled();
         if !claims || !both || log.sensor_wrong == i64::MAX {

@@ -1,0 +1,103 @@
+//! What is between the link's tip command and the surface.
+
+use super::environment::Environment;
+use super::tip::{Tip, TipParameters};
+use super::whole_arm::{ArmUnderTrial, WholeArm};
+use ferntast_control::link::StampedPosition;
+use ferntast_control::operating::OperatingState;
+use ferntast_model::ParameterError;
+
+/// What moves the tip of a trial.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FollowerModel {
+    /// A mass behind a spring, whose place and contact force are known without error: quick
+    /// to try, and kinder than any arm.
+    Light(TipParameters),
+    /// The simulated arm behind the servo and the estimator that ship.
+    Arm(Box<ArmUnderTrial>),
+}
+
+impl Default for FollowerModel {
+    fn default() -> FollowerModel {
+        FollowerModel::Light(TipParameters::default())
+    }
+}
+
+impl FollowerModel {
+    /// Checks every value against its bounds.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        match self {
+            FollowerModel::Light(tip) => tip.validate(),
+            FollowerModel::Arm(own) => {
+                own.arm.validate()?;
+                own.servo.validate()
+            }
+        }
+    }
+
+    /// The follower at rest with its tip at `start` \[m\] before a surface at `origin`, base
+    /// frame \[m\].
+    pub(super) fn make(
+        &self,
+        environment: Environment,
+        origin: [f64; 2],
+        start: [f64; 2],
+        seed: u64,
+    ) -> Result<Box<dyn Follower>, ParameterError> {
+        Ok(match self {
+            FollowerModel::Light(tip) => Box::new(Tip::new(*tip, environment, origin, start)),
+            FollowerModel::Arm(own) => {
+                Box::new(WholeArm::new(own, environment, origin, start, seed)?)
+            }
+        })
+    }
+}
+
+/// Where the tip is to be, base frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TipCommand {
+    /// When it counts as made [ns].
+    pub made_ns: i64,
+    /// [m]
+    pub position: [f64; 3],
+}
+
+/// What the link's end is told, base frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sensed {
+    /// The tip.
+    pub tip: Option<StampedPosition>,
+    /// Force of the contact on the tip [N].
+    pub contact_force: Option<[f64; 3]>,
+    /// Whether the arm obeys.
+    pub state: OperatingState,
+}
+
+impl Default for Sensed {
+    fn default() -> Sensed {
+        Sensed {
+            tip: None,
+            contact_force: None,
+            state: OperatingState::Disabled,
+        }
+    }
+}
+
+/// A follower with what it touches. What is true is told from the surface's origin on.
+pub(super) trait Follower {
+    /// Moves on by a tick to `now_ns`; the surface began to move `since` [s] ago. A command
+    /// holds until there is another one.
+    fn step(&mut self, now_ns: i64, since: f64, command: Option<TipCommand>);
+    /// Where the tip is [m].
+    fn tip(&self) -> [f64; 2];
+    /// True force of the contact on the tip [N].
+    fn force(&self) -> [f64; 2];
+    /// True work of the contact on the tip since the start [J].
+    fn work(&self) -> f64;
+    /// What the link's end is told.
+    fn sensed(&self) -> Sensed;
+}

@@ -1,0 +1,190 @@
+//! Every law on the whole arm: servo, contact-force estimator and limiter of the hand's force
+//! as they ship, energy as the simulated bodies have it.
+
+use std::thread;
+
+use ferntast_control::{
+    delay::Law,
+    haptics::MasterConfig,
+    servo::{self, ServoConfig},
+};
+use ferntast_emulation::channel::{ChannelConfig, LinkConfig};
+use ferntast_sim::arm::{ArmConfig, SimulatedArm};
+use ferntast_sim::teleoperation::{
+    ArmUnderTrial, Environment, FollowerModel, Outcome, Task, Trial,
+};
+
+/// Energy that may leave beyond what entered \[J\].
+const BOUND: f64 = 0.02;
+
+fn arm() -> ArmUnderTrial {
+    let text = include_str!("../../config/arms/rokviss.toml");
+    ArmUnderTrial {
+        arm: toml::from_str::<ArmConfig>(text).expect("the shipped arm"),
+        servo: ServoConfig::default(),
+    }
+}
+
+/// The law at scale 1:1, told how stiff the servo is, as a session does.
+fn law(name: &str, arm: &ArmUnderTrial) -> Law {
+    let stiffest = servo::stiffest(&arm.arm.model(), &arm.servo).expect("a stiffness");
+    let keys = match name {
+        "position_force" | "position_position" => String::new(),
+        _ => format!("servo_stiffness = {stiffest}"),
+    };
+    toml::from_str(&format!("kind = \"{name}\"\nforce_scale = 1.0\n{keys}"))
+        .expect("keys of the law")
+}
+
+fn trial(name: &str, round_trip: f64, environment: Environment, task: Task) -> Trial {
+    let arm = arm();
+    let law = law(name, &arm);
+    let one_way = ChannelConfig::with_delay(0.5 * round_trip);
+    let link = LinkConfig {
+        up: one_way.clone(),
+        down: one_way,
+        ..LinkConfig::default()
+    };
+    Trial {
+        task,
+        follower: FollowerModel::Arm(Box::new(arm)),
+        master: Some(MasterConfig::default()),
+        ..Trial::new(law, link, environment, 1)
+    }
+}
+
+fn run(name: &str, round_trip: f64, environment: Environment, task: Task) -> Outcome {
+    let trial = trial(name, round_trip, environment, task);
+    trial.run().expect("a valid trial")
+}
+
+/// The least energy over round trips and tasks, and where.
+fn worst(name: &str, environment: Environment) -> (f64, String) {
+    let mut worst = (0.0, String::new());
+    for task in Task::ALL {
+        for round_trip in [0.02, 0.1, 0.3, 1.0] {
+            let outcome = run(name, round_trip, environment, task);
+            if outcome.energy_margin < worst.0 {
+                let told = format!("{}, {}, {round_trip} s", environment.name(), task.name());
+                worst = (outcome.energy_margin, told);
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn a_law_claims_passivity_where_it_makes_no_energy_and_only_there() {
+    for law in Law::all() {
+        let name = law.name();
+        let worst = thread::scope(|scope| {
+            let tried = Environment::ALL.map(|own| scope.spawn(move || worst(name, own)));
+            let all = tried.map(|own| own.join().expect("no panic"));
+            all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
+        });
+        let (energy, told) = worst.expect("some environment");
+        match law.claims_passivity() {
+            true => assert!(energy > -BOUND, "{name} makes {energy:.3} J: {told}"),
+            false => assert!(
+                energy < -BOUND,
+                "{name} makes {energy:.3} J at most: it may claim passivity"
+            ),
+        }
+    }
+}
+
+/// A stiff wall behind 20 ms: what the estimator's lag alone does to four channels.
+#[test]
+fn four_channels_make_energy_on_a_hard_wall() {
+    let outcome = run(
+        "four_channel",
+        0.02,
+        Environment::HardWall,
+        Task::PressAndSlide,
+    );
+    let made = -outcome.energy_margin;
+    assert!((0.3..3.0).contains(&made), "{outcome:?}");
+}
+
+#[test]
+fn a_free_arm_follows_and_nothing_is_felt_with_position_force() {
+    let outcome = run(
+        "position_force",
+        0.1,
+        Environment::Free,
+        Task::PressAndSlide,
+    );
+    assert!(outcome.stable && outcome.task_time.is_some(), "{outcome:?}");
+    assert_eq!(outcome.peak_felt, 0.0, "{outcome:?}");
+    assert!(outcome.energy_margin > -1e-6, "{outcome:?}");
+    // Off for two or three ticks at the start.
+    assert!((1e-3..5e-3).contains(&outcome.held), "{outcome:?}");
+    // The setpoint's tracker lags by 2/ω = 25 ms, at 0.1 m/s.
+    assert!((2e-5..1e-3).contains(&outcome.position_rmse), "{outcome:?}");
+}
+
+#[test]
+fn a_soft_spring_is_felt_as_it_is_without_delay() {
+    let outcome = run(
+        "position_force",
+        0.0,
+        Environment::SoftSpring,
+        Task::PressAndSlide,
+    );
+    let felt = outcome.felt_stiffness.expect("it presses");
+    assert!((98.0..102.0).contains(&felt), "{outcome:?}");
+}
+
+#[test]
+fn an_arm_that_is_not_heard_holds_and_goes_on_after_the_operators_word() {
+    let mut trial = trial(
+        "position_force",
+        0.02,
+        Environment::Free,
+        Task::PressAndSlide,
+    );
+    trial.link.up.blackout = vec![ferntast_emulation::channel::Blackout {
+        start: 3.0,
+        duration: 0.2,
+        period: 0.0,
+    }];
+    let outcome = trial.run().expect("a valid trial");
+    // Paused after 25 ms of silence, resumed half a second later.
+    assert!((0.45..0.60).contains(&outcome.held), "{outcome:?}");
+    assert!(outcome.task_time.is_some(), "{outcome:?}");
+}
+
+/// A wall that comes and goes pushes, and its work is the tip's.
+#[test]
+fn the_work_of_a_contour_that_moves_is_its_force_over_the_way_of_the_tip() {
+    let mut config = arm().arm;
+    let [x, y] = config.contour.nominal_tip;
+    let kinematics = config.model().arm.kinematics();
+    let posture = kinematics.inverse(&[x, y].into(), config.contour.nominal_elbow);
+    config.truth.start_position = posture.expect("in reach").into();
+    let mut arm = SimulatedArm::new(&config, 1).expect("the shipped arm");
+    let (mut counted, mut pushed) = (0.0, x);
+    let mut before = arm.truth();
+    for tick in 0..4000 {
+        // The unlubricated edge, 30 mm away in x, comes by 36 mm and goes again.
+        let time = 0.25e-3 * f64::from(tick);
+        let (place, speed) = match time {
+            time if time < 0.5 => (-0.072 * time, -0.072),
+            time => (-0.072 * (1.0 - time), 0.072),
+        };
+        arm.move_contour([place, 0.0], [speed, 0.0]);
+        arm.advance([0.0; 2], 0.25e-3);
+        let now = arm.truth();
+        for axis in 0..2 {
+            let force = 0.5 * (before.force[axis] + now.force[axis]);
+            counted += force * (now.tip[axis] - before.tip[axis]);
+        }
+        pushed = pushed.min(now.tip[0]);
+        before = now;
+    }
+    assert!(pushed < x - 1e-3, "the tip was pushed to {pushed} m");
+    let told = before.contact_work;
+    // What it took to turn the gears against their friction.
+    assert!((0.01..1.0).contains(&told), "{told} J");
+    assert!((told - counted).abs() < 0.01 * told, "{told} {counted}");
+}
