@@ -83,6 +83,45 @@ fn a_schedule_in_a_file_is_run_again_and_recorded() {
     );
 }
 
+/// Two of a million schedules in which the arm held a millisecond late: what a dead master
+/// had said was good for 4 ms then.
+const LATE: [&str; 2] = [
+    r#"
+scenario = "rokviss"
+seed = 119569
+law = "model_mediated"
+length_ms = 2200
+event = [
+    { at_ms = 444, fault = "clock_jump", side = "arm", ms = 4 },
+    { at_ms = 2130, fault = "crash", node = "master" },
+]
+"#,
+    r#"
+scenario = "rokviss"
+seed = 123225
+law = "position_position"
+length_ms = 1200
+event = [
+    { at_ms = 348, fault = "clock_jump", side = "arm", ms = -10 },
+    { at_ms = 693, fault = "loss", way = "forth", share = 0.7844969014442567, ms = 18 },
+    { at_ms = 1087, fault = "loss", way = "forth", share = 0.7303030969275016, ms = 31 },
+    { at_ms = 1093, fault = "word", device = "follower", word = "enable" },
+    { at_ms = 1117, fault = "crash", node = "master" },
+]
+"#,
+];
+
+#[test]
+fn a_master_that_dies_is_missed_in_time() {
+    for schedule in LATE {
+        let session = Session::new();
+        fs::write(session.folder().join("late.toml"), schedule).expect("scratch folder");
+        let json = faults(&session, &["--replay", "late.toml"]);
+        let found = json["violations"].as_array();
+        assert!(found.is_some_and(Vec::is_empty), "{json:#}");
+    }
+}
+
 #[test]
 fn what_cannot_be_run_is_refused() {
     let session = Session::new();
