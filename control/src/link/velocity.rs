@@ -9,9 +9,9 @@ const TIME_CONSTANT: f64 = 0.005;
 /// After a gap longer than this \[s\] the filter starts again at rest.
 const LONGEST_GAP: f64 = 0.050;
 
-/// A hand is good for no less than this \[s\]: with the way to the arm, the watchdog of its servo
-/// and their steps 30 ms after a master has died …
-pub const SHORTEST_LIFE: f64 = 0.003;
+/// A hand is good for no less than this \[s\]: with a step on the way and the watchdog of the
+/// arm's servo it is 30 ms from the last frame of a master that has died to the hold …
+pub const SHORTEST_LIFE: f64 = 0.004;
 /// … and no longer than this \[s\], however slowly it is measured.
 pub const LONGEST_LIFE: f64 = 0.025;
 /// For how many of its periods a hand is good: the next may be late by half of one.
@@ -116,8 +116,8 @@ mod tests {
 
     #[test]
     fn a_slow_hand_is_there_between_two_measurements_and_a_quick_one_is_missed_soon() {
-        assert_eq!(lives(1), 4);
-        assert_eq!(lives(2), 4);
+        assert_eq!(lives(1), 5);
+        assert_eq!(lives(2), 5);
         assert_eq!(lives(4), 7);
         assert_eq!(lives(10), 16);
         assert_eq!(lives(16), 25);

@@ -11,7 +11,7 @@ parameters! {
         /// Step of the loop \[s\].
         pub period: f64 [1e-4..=1e-2, "s"] = 1e-3,
         /// Silence of valid commands after which the arm pauses \[s\].
-        pub command_watchdog: f64 [0.005..=0.030, "s"] = 0.025,
+        pub command_watchdog: f64 [0.005..=0.030, "s"] = 0.024,
         /// Age of the newest measurement that is a fault \[s\].
         pub measurement_watchdog: f64 [0.002..=0.1, "s"] = 0.020,
         /// Oldest command that is acted on, by its stamp \[s\].

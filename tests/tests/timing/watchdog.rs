@@ -13,7 +13,7 @@ use ferntast_tests::{
     rearmed, recording, run, signal, start, state, state_of_follower, wait_until,
 };
 
-/// From the last valid command to the hold \[s\]: the watchdog of 25 ms rides
+/// From the last valid command to the hold \[s\]: the watchdog of 24 ms rides
 /// over single lost frames.
 const HOLD: std::ops::RangeInclusive<f64> = 0.015..=0.030;
 /// For so long after it was held up itself, the servo waits for others \[s\].
