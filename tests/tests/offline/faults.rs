@@ -83,8 +83,8 @@ fn a_schedule_in_a_file_is_run_again_and_recorded() {
     );
 }
 
-/// Two of a million schedules in which the arm held a millisecond late: what a dead master
-/// had said is good for 4 ms, and the servo waited 25 ms more.
+/// Two of a million schedules in which the arm held late: what a dead master had said is good
+/// for 4 ms, and the servo waited 25 ms more.
 const LATE: [&str; 2] = [
     r#"
 scenario = "rokviss"

@@ -14,8 +14,8 @@ const PATIENCE: i64 = 6;
 
 /// 30 ms after the last frame by which the arm may move has arrived, no motion is
 /// commanded. A frame is such a one if it is genuine and undamaged and was sent
-/// while the master was enabled, the hand was heard of within 25 ms, and frames
-/// came back within 30 ms. Time that frames wait to be played out is added, and
+/// while the master was enabled or had died no more than 4 ms ago, the hand was heard of
+/// within 25 ms, and frames came back within 30 ms. Time that frames wait to be played out is added, and
 /// what the page's sliders ask for.
 #[derive(Default)]
 pub struct HoldInTime;

@@ -6,6 +6,7 @@ mod other;
 use std::{path::Path, rc::Rc};
 
 use ferntast_bus::{Bus, CreateError, McapBus};
+use ferntast_control::link::SHORTEST_HAND_LIFE;
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Message, Time,
@@ -42,6 +43,8 @@ const ENABLE_AT: i64 = 20;
 const HELD_UP: i64 = 13;
 /// A hand that was heard of so long ago is none \[steps\].
 const HAND_LIFE: i64 = 25;
+/// A master that died is missed after so long: its last hand is good till then \[steps\].
+const MISSED: i64 = (1e3 * SHORTEST_HAND_LIFE) as i64;
 /// A link back that was silent for so long is none \[steps\].
 const BACK_LIFE: i64 = 30;
 
@@ -104,6 +107,8 @@ pub struct World<'a> {
     digest: Option<Digest>,
     recording: Option<(McapBus, [Forwarder; 2])>,
     hand_at: i64,
+    /// When the master was enabled last.
+    master_at: i64,
     /// Where the hand was when a client took it \[m\].
     client: Option<[f64; 3]>,
     /// What was said and done.
@@ -214,6 +219,7 @@ impl<'a> World<'a> {
             digest,
             recording,
             hand_at: i64::MIN / 2,
+            master_at: i64::MIN / 2,
             client: None,
             log: Log {
                 sensor_wrong: i64::MIN / 2,
@@ -300,7 +306,10 @@ impl<'a> World<'a> {
         self.look();
         // What comes back is heard after the way through the page's channel.
         let back_life = BACK_LIFE + self.log.channel_delay;
-        let valid = self.seen.leader.enabled()
+        if self.seen.leader.enabled() {
+            self.master_at = tick;
+        }
+        let valid = tick - self.master_at <= MISSED
             && tick - self.hand_at <= HAND_LIFE
             && tick - self.seen.back.genuine.unwrap_or(0) <= back_life;
         self.forth.collect(tick, valid);
