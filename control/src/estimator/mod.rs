@@ -187,7 +187,10 @@ impl ContactEstimator {
         self.started = true;
         let torque = measurement.joint_torque;
         let link = Joints::from_fn(self.count, |joint| {
-            self.joints[joint].link_position(measurement.motor_position[joint], torque[joint])
+            let (own, motor) = (&self.joints[joint], measurement.motor_position[joint]);
+            // Beyond its range a sensor says nothing, least of all how far the gear is wound.
+            let range = own.torque_sensor_range;
+            own.link_position(motor, torque[joint].clamp(-range, range))
         });
         if anew {
             self.contact.reset(&self.arm, &link, &torque);

@@ -45,6 +45,24 @@ fn a_wrong_parameter_is_refused_by_name() {
 }
 
 #[test]
+fn a_sensor_beyond_its_range_leads_the_tip_no_further_astray() {
+    let (model, parameters) = shipped([0.0, 0.0]);
+    let range = model.joint[0].torque_sensor_range;
+    let tip = |torque: f64| {
+        let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
+        let measurement = JointMeasurement {
+            motor_position: [-0.8, 1.6].into(),
+            joint_torque: [torque, 0.0].into(),
+        };
+        let estimate = estimator.step(1e-3, &measurement);
+        assert_eq!(estimate.saturated, torque.abs() >= range);
+        estimate.tip
+    };
+    assert_eq!(tip(3.0 * range), tip(range));
+    assert_ne!(tip(0.5 * range), tip(range));
+}
+
+#[test]
 fn the_split_follows_the_surface() {
     let (model, parameters) = shipped([0.0, 0.0]);
     let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();

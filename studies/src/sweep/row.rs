@@ -25,7 +25,7 @@ pub struct Row {
     pub task: &'static str,
     /// Of all chance.
     pub seed: u64,
-    /// Hand and tip come to rest.
+    /// Hand and tip come to rest, and the task was done: a law that does nothing is not stable.
     pub stable: bool,
     /// By how much hand or tip moved while they should rest \[m\].
     pub swing_m: f64,
@@ -34,7 +34,7 @@ pub struct Row {
     /// Force on the hand less the contact's as it was one delay ago \[N\].
     #[serde(rename = "force_rmse_N")]
     pub force_rmse: f64,
-    /// It came to rest and the tip was back in time.
+    /// The task was done in time.
     pub done: bool,
     /// Stiffness felt in the hand \[N/m\]; `null` where the hand is nowhere behind the surface.
     #[serde(rename = "felt_stiffness_N_per_m")]
@@ -81,11 +81,11 @@ impl Row {
             environment: condition.environment.name(),
             task: condition.task.name(),
             seed: condition.seed,
-            stable: outcome.stable,
+            stable: outcome.stable && outcome.task_time.is_some(),
             swing_m: outcome.swing,
             position_rmse_m: outcome.position_rmse,
             force_rmse: outcome.force_rmse,
-            done: outcome.stable && outcome.task_time.is_some(),
+            done: outcome.task_time.is_some(),
             felt_stiffness: outcome.felt_stiffness,
             true_stiffness: condition.true_stiffness(),
             force_step: outcome.force_step,
