@@ -115,6 +115,8 @@ pub struct PositionPositionFollower {
     mapping: Mapping,
     /// Hand units [m].
     command: Option<Vector3<f64>>,
+    /// Time since that was given [s].
+    since: f64,
     dissipated: f64,
 }
 
@@ -124,6 +126,7 @@ impl PositionPositionFollower {
             parameters: law.clone(),
             mapping: law.mapping(),
             command: None,
+            since: 0.0,
             dissipated: 0.0,
         }
     }
@@ -146,7 +149,15 @@ impl Follower for PositionPositionFollower {
             self.dissipated += own.whole_damping() * velocity.norm_squared() * dt;
             (here + velocity * dt, velocity)
         });
-        self.command = command.map(|(position, _)| position);
+        self.since += dt;
+        if let Some((position, _)) = command {
+            self.command = Some(position);
+            self.since = 0.0;
+        } else if self.since > own.deadline || !input.connected {
+            // Not sooner: where now and then a packet is too old to be acted on, a tip that is
+            // measured beside where it was told to be would lead the command astray.
+            self.command = None;
+        }
         FollowerOutput {
             command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
             packet: input.tip.map_or(Packet::empty(energy), |tip| {
@@ -157,5 +168,43 @@ impl Follower for PositionPositionFollower {
 
     fn dissipated(&self) -> f64 {
         self.dissipated
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::{Motion, Parameters};
+
+    /// Each second packet is too old, and the tip is measured 5 mm ahead of where it was told
+    /// to be, as with a wrong torque sensor.
+    #[test]
+    fn packets_that_are_now_and_then_too_old_lead_nothing_astray() {
+        let law = PositionPosition::default();
+        let mut follower = law.follower();
+        let offset = Vector3::from(law.workspace_offset);
+        let mut at = offset;
+        for step in 0..2000 {
+            let age = if step % 2 == 0 { 0.01 } else { law.round_trip };
+            let input = FollowerInput {
+                tip: Some(Motion {
+                    position: (at + Vector3::new(0.0, 0.005, 0.0)).into(),
+                    velocity: [0.0; 3],
+                }),
+                contact_force: None,
+                received: Some(Received {
+                    packet: Packet::new([0.0; 3], [0.0; 3], Energy::default()),
+                    fresh: true,
+                    silence: 0.0,
+                    age,
+                }),
+                connected: true,
+            };
+            let output = follower.step(1e-3, &input, Energy::default());
+            assert_eq!(output.command.is_some(), step % 2 == 0);
+            at = output.command.map_or(at, |own| Vector3::from(own.position));
+        }
+        // It began at the measured tip, and has gone where the hand is.
+        assert!((at - offset).norm() < 1e-4, "{at}");
     }
 }
