@@ -15,7 +15,8 @@ use super::{Failure, output::print_json};
 /// Hold the delay laws against each other over delay, jitter, loss and environment.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Every trial is an operator who reaches, presses, slides and comes back, in virtual time, on every processor.\n\
+    after_help = "Every trial is an operator at a task (presses and slides, taps, lets go) on the simulated arm with the servo, the\n\
+    estimator and the limits of the hand's force that a session has, in virtual time, on every processor.\n\
     With -o DIR: DIR/sweep.json (every trial) and DIR/sweep.html (stability maps and curves)."
 )]
 pub struct Arguments {
