@@ -4,8 +4,8 @@
 use std::{
     fmt::{self, Write},
     sync::{
-        Arc, Mutex, MutexGuard, OnceLock, PoisonError,
-        atomic::{AtomicBool, AtomicU64, Ordering},
+        Arc, Mutex, OnceLock, PoisonError,
+        atomic::{AtomicU64, Ordering},
     },
 };
 
@@ -32,8 +32,6 @@ pub struct Door(Arc<Seen>);
 
 #[derive(Debug, Default)]
 struct Seen {
-    /// There is something to tell.
-    any: AtomicBool,
     turned_away: AtomicU64,
     last: Mutex<Reasons>,
 }
@@ -64,19 +62,12 @@ impl Door {
 
     /// Why the last of them was; waits for nobody.
     pub fn last_turned_away(&self) -> Option<Reason> {
-        self.last()?.turned_away
+        self.0.last.try_lock().ok()?.turned_away
     }
 
     /// Why this end was not let in when it last tried; waits for nobody.
     pub fn not_let_in(&self) -> Option<Reason> {
-        self.last()?.not_let_in
-    }
-
-    fn last(&self) -> Option<MutexGuard<'_, Reasons>> {
-        if !self.0.any.load(Ordering::Acquire) {
-            return None;
-        }
-        self.0.last.try_lock().ok()
+        self.0.last.try_lock().ok()?.not_let_in
     }
 
     fn note(&self, turned_away: bool, text: &str) {
@@ -89,7 +80,6 @@ impl Door {
         } else {
             last.not_let_in = reason;
         }
-        self.0.any.store(true, Ordering::Release);
     }
 }
 

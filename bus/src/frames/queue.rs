@@ -61,10 +61,6 @@ impl Queue {
         let frame = waiting
             .frames
             .pop_front_if(|frame| before.is_none_or(|before| frame.arrived < before))?;
-        if waiting.frames.is_empty() {
-            // The next one goes to the front, which is in the processor's cache.
-            waiting.frames.clear();
-        }
         *buffer = frame.bytes;
         Some((frame.length, frame.arrived))
     }
