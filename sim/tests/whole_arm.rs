@@ -149,7 +149,7 @@ fn an_arm_that_is_not_heard_holds_and_goes_on_after_the_operators_word() {
         period: 0.0,
     }];
     let outcome = trial.run().expect("a valid trial");
-    // Paused after 25 ms of silence, resumed half a second later.
+    // Paused after 24 ms of silence, resumed half a second later.
     assert!((0.45..0.60).contains(&outcome.held), "{outcome:?}");
     assert!(outcome.task_time.is_some(), "{outcome:?}");
 }

@@ -12,7 +12,7 @@ import argparse
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,14 +34,21 @@ RUST_RESULT = re.compile(r"^test result: \w+\. (\d+) passed; (\d+) failed; (\d+)
 RUST_TIME = re.compile(r"^test result: .* finished in ([0-9.]+)s$")
 
 
-def slowest(log: str, least: float = 10.0) -> str:
-    """The test programs that took longer than `least` [s], in a line."""
+def lines_by_program(log: str) -> Iterator[tuple[str, str]]:
+    """The lines of the output of `cargo test`, each with the test program that it is of."""
     program = ""
-    times: dict[str, float] = {}
     for line in log.splitlines():
         if found := RUST_PROGRAM.match(line):
             program = found[1]
-        elif found := RUST_TIME.match(line):
+        else:
+            yield program, line
+
+
+def slowest(log: str, least: float = 10.0) -> str:
+    """The test programs that took longer than `least` [s], in a line."""
+    times: dict[str, float] = {}
+    for program, line in lines_by_program(log):
+        if found := RUST_TIME.match(line):
             times[program] = times.get(program, 0.0) + float(found[1])
     long = sorted((-time, name) for name, time in times.items() if time > least)
     return ", ".join(f"{name} {-time:.0f} s" for time, name in long)
@@ -68,11 +75,8 @@ def count_rust(log: str) -> Count:
     """What the output of `cargo test` tells."""
     passed = failed = ignored = 0
     not_run: list[str] = []
-    program = ""
-    for line in log.splitlines():
-        if found := RUST_PROGRAM.match(line):
-            program = found[1]
-        elif found := RUST_IGNORED.match(line):
+    for program, line in lines_by_program(log):
+        if found := RUST_IGNORED.match(line):
             if (found[2] or "").startswith(NEEDS):
                 ignored -= 1
                 not_run.append(f"{program}::{found[1]} ({found[2]})")
@@ -85,14 +89,8 @@ def count_rust(log: str) -> Count:
 
 def ended_so(log: str, ended: re.Pattern[str]) -> list[tuple[str, str]]:
     """The tests, each with its program, that ended so in the output of `cargo test`."""
-    program = ""
-    found: list[tuple[str, str]] = []
-    for line in log.splitlines():
-        if running := RUST_PROGRAM.match(line):
-            program = running[1]
-        elif test := ended.match(line):
-            found.append((program, test[1]))
-    return found
+    each = ((program, ended.match(line)) for program, line in lines_by_program(log))
+    return [(program, test[1]) for program, test in each if test]
 
 
 def held_up(log: str, again: str) -> list[tuple[str, str]]:

@@ -51,7 +51,7 @@ impl Mapping {
     }
 
     /// A stiffness at the tip in hand units \[N/m\].
-    pub(super) fn stiffness_at_hand(&self, stiffness: f64) -> f64 {
+    pub fn stiffness_at_hand(&self, stiffness: f64) -> f64 {
         self.force_scale * self.position_scale * stiffness
     }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Stiffness of the bristle of friction [N/m].
-const BRISTLE: f64 = 3000.0;
+pub(super) const BRISTLE: f64 = 3000.0;
 
 /// What the tip meets beyond x = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

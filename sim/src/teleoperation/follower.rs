@@ -3,8 +3,7 @@
 use super::environment::Environment;
 use super::tip::{Tip, TipParameters};
 use super::whole_arm::{ArmUnderTrial, WholeArm};
-use ferntast_control::link::StampedPosition;
-use ferntast_control::operating::OperatingState;
+use ferntast_control::link::FollowerReadings;
 use ferntast_model::ParameterError;
 
 /// What moves the tip of a trial.
@@ -66,38 +65,24 @@ pub(super) struct TipCommand {
     pub position: [f64; 3],
 }
 
-/// What the link's end is told, base frame.
+/// What is true of the tip, from the surface's origin on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sensed {
-    /// The tip.
-    pub tip: Option<StampedPosition>,
-    /// Force of the contact on the tip [N].
-    pub contact_force: Option<[f64; 3]>,
-    /// Whether the arm obeys.
-    pub state: OperatingState,
+pub(super) struct TrueTip {
+    /// [m]
+    pub position: [f64; 2],
+    /// Of the contact on it [N].
+    pub force: [f64; 2],
+    /// Of the contact on it since the start [J].
+    pub work: f64,
 }
 
-impl Default for Sensed {
-    fn default() -> Sensed {
-        Sensed {
-            tip: None,
-            contact_force: None,
-            state: OperatingState::Disabled,
-        }
-    }
-}
-
-/// A follower with what it touches. What is true is told from the surface's origin on.
+/// A follower with what it touches.
 pub(super) trait Follower {
     /// Moves on by a tick to `now_ns`; the surface began to move `since` [s] ago. A command
     /// holds until there is another one.
     fn step(&mut self, now_ns: i64, since: f64, command: Option<TipCommand>);
-    /// Where the tip is [m].
-    fn tip(&self) -> [f64; 2];
-    /// True force of the contact on the tip [N].
-    fn force(&self) -> [f64; 2];
-    /// True work of the contact on the tip since the start [J].
-    fn work(&self) -> f64;
-    /// What the link's end is told.
-    fn sensed(&self) -> Sensed;
+    /// What is true now.
+    fn truth(&self) -> TrueTip;
+    /// What the link's end is told, base frame.
+    fn readings(&self) -> FollowerReadings;
 }

@@ -1,12 +1,12 @@
 //! Two ends of a delay law with everything that is around them: a hand, two
 //! channels, an arm behind its servo, and something to touch.
 //!
-//! One trial is one [`Task`] of an operator; its [`Outcome`] says how law and link served. The two ends are
-//! those that the nodes of a session run ([`ferntast_control::link`]), and so are servo,
-//! contact-force estimator and limiter of the hand's force where the follower is the
-//! [whole arm](FollowerModel::Arm). Energy is that of the simulated bodies at hand and tip:
-//! what laws, estimator and limiter believe does not come into it. Time is counted in ticks
-//! of 1 ms; the same trial gives the same outcome.
+//! One trial is one [`Task`] of an operator; its [`Outcome`] says how law and link served.
+//! The two ends are those that the nodes of a session run ([`ferntast_control::link`]), and
+//! so are servo, contact-force estimator and limiter of the hand's force where the follower
+//! is the [whole arm](FollowerModel::Arm). Energy is that of the simulated bodies at hand
+//! and tip: what laws, estimator and limiter believe does not come into it. Time is counted
+//! in ticks of 1 ms; the same trial gives the same outcome.
 //!
 //! Axes: x into the surface, y along it. Positions and forces of the outcome
 //! are at the hand's scale.
@@ -95,15 +95,6 @@ impl Trial {
     ///
     /// The first value of law, link, hand or tip that is out of bounds.
     pub fn run(&self) -> Result<Outcome, ParameterError> {
-        self.run_with(|_| {})
-    }
-
-    /// Runs it and shows each tick to `each`.
-    ///
-    /// # Errors
-    ///
-    /// As [`Trial::run`].
-    pub fn run_with(&self, mut each: impl FnMut(&Moment)) -> Result<Outcome, ParameterError> {
         self.law.validate()?;
         self.link.validate()?;
         self.hand.validate()?;
@@ -120,9 +111,7 @@ impl Trial {
         let mut watch = Watch::new(schedule, ticks(forth), ticks(back), self.environment);
         let mut run = Run::new(self, schedule)?;
         for k in 0..ticks(schedule.end) {
-            let moment = run.step(k as i64);
-            watch.add(&moment.tick);
-            each(&moment);
+            watch.add(&run.step(k as i64));
         }
         Ok(watch.outcome())
     }
@@ -167,44 +156,6 @@ pub struct Outcome {
     /// When the tip is back where it began, or the hand let go \[s\]; `None` when it is not in
     /// time, or nothing was touched that there is.
     pub task_time: Option<f64>,
-}
-
-/// One tick of a trial.
-#[derive(Clone, Copy, Debug)]
-pub struct Moment {
-    tick: Tick,
-}
-
-impl Moment {
-    /// Time since the start \[s\].
-    pub fn time(&self) -> f64 {
-        self.tick.time
-    }
-
-    /// Position of the hand along x and y \[m\].
-    pub fn hand(&self) -> [f64; 2] {
-        self.tick.hand
-    }
-
-    /// Position of the tip along x and y, at the hand's scale \[m\].
-    pub fn tip(&self) -> [f64; 2] {
-        self.tick.tip
-    }
-
-    /// Force on the hand \[N\].
-    pub fn felt(&self) -> [f64; 2] {
-        self.tick.felt
-    }
-
-    /// Force of the contact on the tip, at the hand's scale \[N\].
-    pub fn touched(&self) -> [f64; 2] {
-        self.tick.touched
-    }
-
-    /// True work of hand and surface since the start, at the hand's scale \[J\].
-    pub fn energy(&self) -> f64 {
-        self.tick.energy
-    }
 }
 
 struct Run<'a> {
@@ -255,7 +206,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    fn step(&mut self, k: i64) -> Moment {
+    fn step(&mut self, k: i64) -> Tick {
         let time = k as f64 * TICK;
         let now_ns = START_NS + k * TICK_NS;
         let mapping = self.law.mapping();
@@ -266,15 +217,15 @@ impl<'a> Run<'a> {
         let since = time - self.schedule.wall;
         self.arm.step(now_ns, since, self.command.take());
 
-        let (hand, tip) = (self.hand.position(), self.arm.tip());
+        let (hand, tip) = (self.hand.position(), self.arm.truth());
+        let readings = self.arm.readings();
         // The force was the same all the way.
         self.hand_work -= (0..2)
             .map(|axis| self.felt[axis] * (hand[axis] - before[axis]))
             .sum::<f64>();
-        let felt = self.felt;
 
         let output = self.leader_step(now_ns, hand);
-        let answer = self.follower_step(now_ns);
+        let answer = self.follower_step(now_ns, &readings);
         if let Some(frame) = output.frame {
             self.up.push(now_ns, &on_the_wire(&frame));
         }
@@ -291,19 +242,16 @@ impl<'a> Run<'a> {
             position: command.position,
         });
         let scaled = |own: [f64; 2], scale: f64| [scale * own[0], scale * own[1]];
-        Moment {
-            tick: Tick {
-                time,
-                hand,
-                hand_speed: self.hand.velocity(),
-                tip: scaled(tip, 1.0 / mapping.position_scale),
-                felt: self.felt,
-                force_step: (self.felt[0] - felt[0]).hypot(self.felt[1] - felt[1]),
-                touched: scaled(self.arm.force(), mapping.force_scale),
-                place: self.environment.place(since).0 / mapping.position_scale,
-                held: self.arm.sensed().state != OperatingState::Enabled,
-                energy: self.hand_work + mapping.power_scale() * self.arm.work(),
-            },
+        Tick {
+            time,
+            hand,
+            hand_speed: self.hand.velocity(),
+            tip: scaled(tip.position, 1.0 / mapping.position_scale),
+            felt: self.felt,
+            touched: scaled(tip.force, mapping.force_scale),
+            place: self.environment.place(since).0 / mapping.position_scale,
+            held: readings.state != OperatingState::Enabled,
+            energy: self.hand_work + mapping.power_scale() * tip.work,
         }
     }
 
@@ -322,18 +270,11 @@ impl<'a> Run<'a> {
         self.leader.step(now_ns, &readings)
     }
 
-    fn follower_step(&mut self, now_ns: i64) -> FollowerStep {
+    fn follower_step(&mut self, now_ns: i64, readings: &FollowerReadings) -> FollowerStep {
         deliver(&mut self.up, now_ns, |bytes, at_ns| {
             self.follower.arrived(bytes, at_ns);
         });
-        let sensed = self.arm.sensed();
-        let readings = FollowerReadings {
-            tip: sensed.tip,
-            contact_force: sensed.contact_force,
-            state: sensed.state,
-            told_to_stop: false,
-        };
-        self.follower.step(now_ns, &readings)
+        self.follower.step(now_ns, readings)
     }
 }
 

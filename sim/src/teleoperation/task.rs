@@ -140,15 +140,10 @@ impl Schedule {
 
     /// What holds the handle, where `hand` does until it lets go.
     pub(super) fn grip(&self, time: f64, hand: ImpedanceParameters) -> ImpedanceParameters {
-        match self.lets_go(time) {
-            true => LEFT_ALONE,
-            false => hand,
+        match self.task {
+            Task::LetGo if time >= self.retreat => LEFT_ALONE,
+            _ => hand,
         }
-    }
-
-    /// Whether nobody holds the handle any more.
-    pub(super) fn lets_go(&self, time: f64) -> bool {
-        self.task == Task::LetGo && time >= self.retreat
     }
 
     /// Where the task begins and ends \[m\].

@@ -3,8 +3,8 @@
 
 use super::TICK;
 use super::environment::{Environment, Surface};
-use super::follower::{Follower, Sensed, TipCommand};
-use ferntast_control::link::StampedPosition;
+use super::follower::{Follower, TipCommand, TrueTip};
+use ferntast_control::link::{FollowerReadings, StampedPosition};
 use ferntast_control::operating::OperatingState;
 use ferntast_model::parameters;
 
@@ -108,21 +108,17 @@ impl Follower for Tip {
         self.advance(TICK, since);
     }
 
-    fn tip(&self) -> [f64; 2] {
-        self.position
+    fn truth(&self) -> TrueTip {
+        TrueTip {
+            position: self.position,
+            force: self.force,
+            work: self.work,
+        }
     }
 
-    fn force(&self) -> [f64; 2] {
-        self.force
-    }
-
-    fn work(&self) -> f64 {
-        self.work
-    }
-
-    fn sensed(&self) -> Sensed {
+    fn readings(&self) -> FollowerReadings {
         let [x, y] = [0, 1].map(|axis: usize| self.origin[axis] + self.position[axis]);
-        Sensed {
+        FollowerReadings {
             tip: Some(StampedPosition {
                 stamp_ns: self.now_ns,
                 position: [x, y, 0.0],
@@ -130,6 +126,7 @@ impl Follower for Tip {
             }),
             contact_force: Some([self.force[0], self.force[1], 0.0]),
             state: OperatingState::Enabled,
+            told_to_stop: false,
         }
     }
 }

@@ -26,8 +26,6 @@ pub(super) struct Tick {
     pub tip: [f64; 2],
     /// On the hand [N].
     pub felt: [f64; 2],
-    /// By how much that changed in this tick [N].
-    pub force_step: f64,
     /// Of the contact on the tip [N].
     pub touched: [f64; 2],
     /// Surface [m].
@@ -110,7 +108,8 @@ pub(super) struct Watch {
     /// Sums while pressing or while the surface moves: force by depth, depth by depth.
     stiffness: [f64; 2],
     environment: Environment,
-    touched: bool,
+    /// On the hand one tick ago [N].
+    felt: [f64; 2],
     force_step: f64,
     held: f64,
     /// Sums on the free way: F·v and v².
@@ -142,7 +141,7 @@ impl Watch {
             pressed: [0.0; 4],
             stiffness: [0.0; 2],
             environment,
-            touched: false,
+            felt: [0.0; 2],
             force_step: 0.0,
             held: 0.0,
             free: [0.0; 2],
@@ -161,13 +160,14 @@ impl Watch {
         let met = self.forces.pop_front().unwrap_or(tick.touched);
         let difference = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
         let touching = tick.touched != [0.0; 2];
-        self.touched |= touching;
         if !touching {
             self.position.add(difference(sent, tick.tip));
         }
         self.force.add(difference(met, tick.felt));
         self.margin = self.margin.min(tick.energy);
-        self.force_step = self.force_step.max(tick.force_step);
+        let step = difference(tick.felt, self.felt);
+        self.force_step = self.force_step.max(step[0].hypot(step[1]));
+        self.felt = tick.felt;
         self.held += if tick.held { TICK } else { 0.0 };
         self.feel(tick);
         self.peak = self.peak.max(tick.touched[0].hypot(tick.touched[1]));
@@ -239,7 +239,7 @@ impl Watch {
                 .away_until
                 .filter(|time| *time > self.schedule.retreat && *time < self.schedule.watch_free),
         };
-        let done = done.filter(|_| self.touched || self.environment == Environment::Free);
+        let done = done.filter(|_| self.peak > 0.0 || self.environment == Environment::Free);
         Outcome {
             stable: self.finite && swing < REST,
             swing,

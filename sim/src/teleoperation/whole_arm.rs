@@ -5,11 +5,11 @@
 //! measurement to the link's end 2 ms, from its command to the drives 2 ms.
 
 use super::TICK;
-use super::environment::Environment;
-use super::follower::{Follower, Sensed, TipCommand};
+use super::environment::{BRISTLE, Environment};
+use super::follower::{Follower, TipCommand, TrueTip};
 use crate::arm::{ArmConfig, JOINTS, SimulatedArm, SimulatedArmError, TrueSurface};
 use ferntast_control::estimator::{ContactEstimate, ContactEstimator, JointMeasurement};
-use ferntast_control::link::StampedPosition;
+use ferntast_control::link::{FollowerReadings, StampedPosition};
 use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{Command, Measurement, Servo, ServoConfig, ServoInput, Target};
 use ferntast_model::contact::ContactParameters;
@@ -17,8 +17,6 @@ use ferntast_model::contour::{Contour, EdgeParameters, Surface};
 use ferntast_model::kinematics::Elbow;
 use ferntast_model::{ParameterError, Vector2};
 
-/// Stiffness of the surface against sliding [N/m].
-const BRISTLE: f64 = 3000.0;
 /// Half of the surface's length [m].
 const HALF_LENGTH: f64 = 0.15;
 /// The operator says `resume` so long after the arm paused [ns].
@@ -51,7 +49,7 @@ pub(super) struct WholeArm {
     /// When the arm was left not enabled [ns].
     stopped_ns: Option<i64>,
     state: OperatingState,
-    sensed: Sensed,
+    readings: FollowerReadings,
 }
 
 impl WholeArm {
@@ -96,7 +94,12 @@ impl WholeArm {
             command: None,
             stopped_ns: None,
             state: OperatingState::Disabled,
-            sensed: Sensed::default(),
+            readings: FollowerReadings {
+                tip: None,
+                contact_force: None,
+                state: OperatingState::Disabled,
+                told_to_stop: false,
+            },
         })
     }
 
@@ -131,7 +134,7 @@ impl WholeArm {
         self.torque = std::array::from_fn(|joint| torque.get(joint).copied().unwrap_or(0.0));
     }
 
-    fn estimate(&mut self, measured: &Measurement) -> Sensed {
+    fn estimate(&mut self, measured: &Measurement) -> FollowerReadings {
         let estimate = self.estimator.step(
             TICK,
             &JointMeasurement {
@@ -139,7 +142,7 @@ impl WholeArm {
                 joint_torque: measured.torque,
             },
         );
-        Sensed {
+        FollowerReadings {
             tip: (!estimate.input_invalid).then_some(StampedPosition {
                 stamp_ns: measured.stamp_ns,
                 position: [estimate.tip[0], estimate.tip[1], 0.0],
@@ -147,6 +150,7 @@ impl WholeArm {
             }),
             contact_force: contact_force(&estimate),
             state: self.state,
+            told_to_stop: false,
         }
     }
 }
@@ -166,7 +170,7 @@ impl Follower for WholeArm {
         self.arm.advance(self.torque, TICK);
         self.drive(now_ns);
         if let Some(measured) = self.measured {
-            self.sensed = self.estimate(&measured);
+            self.readings = self.estimate(&measured);
         }
         let measured = self.arm.measure();
         self.measured = Some(Measurement {
@@ -186,20 +190,17 @@ impl Follower for WholeArm {
         }
     }
 
-    fn tip(&self) -> [f64; 2] {
-        (Vector2::from(self.arm.truth().tip) - self.origin).into()
+    fn truth(&self) -> TrueTip {
+        let truth = self.arm.truth();
+        TrueTip {
+            position: (Vector2::from(truth.tip) - self.origin).into(),
+            force: truth.force,
+            work: truth.contact_work,
+        }
     }
 
-    fn force(&self) -> [f64; 2] {
-        self.arm.truth().force
-    }
-
-    fn work(&self) -> f64 {
-        self.arm.truth().contact_work
-    }
-
-    fn sensed(&self) -> Sensed {
-        self.sensed
+    fn readings(&self) -> FollowerReadings {
+        self.readings
     }
 }
 

@@ -59,7 +59,7 @@ impl Condition {
     /// Stiffness of what is touched, at the hand's scale \[N/m\].
     pub fn true_stiffness(&self) -> f64 {
         let mapping = self.law.mapping();
-        mapping.force_scale * mapping.position_scale * self.environment.surface().0
+        mapping.stiffness_at_hand(self.environment.surface().0)
     }
 
     /// The channel.

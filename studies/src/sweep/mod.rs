@@ -1,9 +1,9 @@
 //! Delay laws held against each other: every law over every delay, jitter,
 //! loss and environment, in simulation and virtual time.
 //!
-//! A row is one trial of [`ferntast_sim::teleoperation`]: the same laws, frames
-//! as in a session, a hand with impedance, an arm behind its servo, something to touch. The same file gives the same rows, whatever the number
-//! of processors.
+//! A row is one trial of [`ferntast_sim::teleoperation`]: laws and frames as in a session, a
+//! hand with impedance, an arm behind its servo, something to touch. The same file gives the
+//! same rows, whatever the number of processors.
 
 mod bench;
 mod config;

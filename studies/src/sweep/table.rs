@@ -54,7 +54,7 @@ pub fn table(rows: &[Row]) -> String {
         let of = |value: &dyn Fn(&Row) -> Option<f64>| {
             median(good.iter().filter_map(|row| value(row)).collect())
         };
-        let done = own.iter().filter(|row| row.task_time_s.is_some()).count();
+        let done = own.iter().filter(|row| row.done).count();
         let gain = own.iter().map(|row| -row.true_energy).fold(0.0, f64::max);
         let _ = write!(
             text,
