@@ -54,10 +54,14 @@ impl VelocityFilter {
         (measured.silence <= life).then_some(motion)
     }
 
-    /// How long a measurement is good \[s\].
+    /// How long a measurement is good \[s\]: by the middle one of its last periods, as one
+    /// gap, of a host that was held up, is no period.
     fn life(&self) -> f64 {
-        let longest = self.periods.iter().copied().fold(0.0, f64::max);
-        (PERIODS * longest).clamp(SHORTEST_LIFE, LONGEST_LIFE)
+        let mut periods = self.periods;
+        let known = &mut periods[..self.next.min(REMEMBERED)];
+        known.sort_unstable_by(f64::total_cmp);
+        let middle = known.get(known.len() / 2).copied().unwrap_or(0.0);
+        (PERIODS * middle).clamp(SHORTEST_LIFE, LONGEST_LIFE)
     }
 
     /// Position and velocity at the newest measurement; a repeated stamp changes nothing.
@@ -67,7 +71,7 @@ impl VelocityFilter {
             // What is longer was a silence, not a period.
             if dt > 0.0 && dt <= LONGEST_LIFE {
                 self.periods[self.next % REMEMBERED] = dt;
-                self.next = self.next.wrapping_add(1);
+                self.next = self.next.saturating_add(1);
             }
             if !(0.0..=LONGEST_GAP).contains(&dt) {
                 self.velocity = [0.0; 3];
@@ -121,6 +125,27 @@ mod tests {
         assert_eq!(lives(4), 7);
         assert_eq!(lives(10), 16);
         assert_eq!(lives(16), 25);
+    }
+
+    #[test]
+    fn one_gap_of_a_host_that_was_held_up_is_no_period() {
+        let mut filter = VelocityFilter::default();
+        let mut at = |ms: i64, silence: f64| {
+            filter.fresh_by_its_rate(Some(StampedPosition {
+                stamp_ns: 1_000_000_000_000 + ms * 1_000_000,
+                position: [1e-3 * ms as f64, 0.0, 0.0],
+                silence,
+            }))
+        };
+        for ms in 0..20 {
+            at(ms, 0.0);
+        }
+        // Held up for 9 ms, heard once, and silent from then on: it is not good for 13 ms, nor
+        // led on from where it was.
+        let heard = at(29, 0.0).map(|own| own.position[0]);
+        assert_eq!(heard, Some(0.029));
+        assert_eq!(at(29, 0.004).map(|own| own.position[0]), Some(0.029));
+        assert_eq!(at(29, 0.005), None);
     }
 
     #[test]

@@ -57,6 +57,7 @@ pub(super) struct JointServo {
     fault_range: [f64; 2],
     overspeed: f64,
     torque_limit: f64,
+    torque_sensor_range: f64,
     planted: Planted,
 }
 
@@ -93,6 +94,7 @@ impl JointServo {
             fault_range: limits,
             overspeed: config.overspeed_share * joint.velocity_limit,
             torque_limit: joint.motor_torque_limit,
+            torque_sensor_range: joint.torque_sensor_range,
             planted: Planted::NONE,
         })
     }
@@ -151,6 +153,11 @@ impl JointServo {
         self.fault_range = [position.min(lower) - margin, position.max(upper) + margin];
     }
 
+    /// The motor is given nothing, as the joint is not measured.
+    pub(super) fn let_go(&mut self) {
+        self.torque = 0.0;
+    }
+
     /// What the motor was given last \[Nm\].
     pub(super) fn motor_torque(&self) -> f64 {
         self.torque
@@ -186,7 +193,13 @@ impl JointServo {
 
     /// One step of `dt` \[s\].
     pub(super) fn drive(&mut self, state: OperatingState, dt: f64, seen: &Seen) -> Driven {
-        let mut driven = self.law(state, dt, seen);
+        // Beyond its range a sensor says nothing, least of all of friction that goes with it.
+        let range = self.torque_sensor_range;
+        let seen = Seen {
+            torque: seen.torque.clamp(-range, range),
+            ..*seen
+        };
+        let mut driven = self.law(state, dt, &seen);
         if state == OperatingState::Enabled && self.led < 1.0 {
             self.led = (self.led + dt / LEAD_TIME).min(1.0);
             let own = &mut driven.torque.torque;

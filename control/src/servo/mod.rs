@@ -268,22 +268,24 @@ impl Servo {
             }
             Ok(measured) => {
                 if self.state() == OperatingState::Enabled {
+                    let fresh = self.is_fresh(measured, now_ns);
                     if was != OperatingState::Enabled {
                         self.last_command_ns = None;
-                        self.was_held_up = false;
+                        self.was_held_up = !fresh;
                         self.begin(measured);
-                    } else if self.was_held_up {
+                    } else if self.was_held_up || self.is_stale(measured, now_ns) {
                         // Until it is measured again: where it was measured last.
                         self.begin(measured);
-                        self.was_held_up = !self.is_fresh(measured, now_ns);
+                        self.was_held_up = !fresh;
                     }
                 }
                 self.supervise(measured);
             }
         }
-        let refused = input
-            .command
-            .and_then(|command| self.take(&command, now_ns, listens).err());
+        let refused = input.command.and_then(|command| {
+            self.take(&command, now_ns, listens && !self.was_held_up)
+                .err()
+        });
         self.watch(now_ns - stalled_ns);
         if was == OperatingState::Enabled
             && self.state() == OperatingState::Paused
@@ -313,8 +315,9 @@ impl Servo {
                 .measurement
                 .map_or(f64::NAN, |own| seconds(now_ns.saturating_sub(own.stamp_ns))),
         };
-        if let Ok(measured) = measurement {
-            self.drive(&measured, input.weight, &mut output);
+        match measurement {
+            Ok(measured) => self.drive(&measured, input.weight, &mut output),
+            Err(_) => self.joints.iter_mut().for_each(JointServo::let_go),
         }
         output.setpoint = self.setpoint();
         output
@@ -340,6 +343,13 @@ impl Servo {
     fn is_fresh(&self, measured: &Measurement, now_ns: i64) -> bool {
         let age_ns = now_ns.saturating_sub(measured.stamp_ns);
         age_ns <= nanoseconds(MEASURED_AFTER * self.period)
+    }
+
+    /// Whether it was measured so long ago that the arm is not where it was any more: who
+    /// measures it drives it, too, and lets go of the drives meanwhile.
+    fn is_stale(&self, measured: &Measurement, now_ns: i64) -> bool {
+        let age_ns = now_ns.saturating_sub(measured.stamp_ns);
+        age_ns > nanoseconds(BEGINS_ANEW) && !self.planted.lacks(Rule::BeginAfterStall)
     }
 
     /// Starts from where the arm is.

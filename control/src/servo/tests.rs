@@ -1,5 +1,7 @@
 //! The servo on a plant of its own: motor, elasticity and link of each joint.
 
+mod beginning;
+
 use super::*;
 use ferntast_model::Vector2;
 use ferntast_model::arm::{ArmParameters, LinkParameters};

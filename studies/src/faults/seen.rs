@@ -76,6 +76,8 @@ pub struct Seen {
     pub setpoint: Option<([f64; 2], [f64; 2])>,
     /// What the arm measures, positions \[rad\].
     pub measured: Option<[f64; 2]>,
+    /// When, by the clock of its host.
+    pub measured_at: Time,
     /// The tip that the link commands \[m\].
     pub tip_command: Option<[f64; 3]>,
     /// The hand as its device measures it \[m\].
@@ -162,7 +164,9 @@ impl ArmTaps {
         seen.torque = self.torque.take(now).map(|own| own.effort());
         let setpoint = self.setpoint.take(now);
         seen.setpoint = setpoint.map(|own| (own.position(), own.velocity()));
-        seen.measured = self.measured.take(now).map(|own| own.position());
+        let measured = self.measured.take(now);
+        seen.measured = measured.map(|own| own.position());
+        seen.measured_at = measured.map_or(seen.measured_at, |own| own.stamp);
         seen.tip_command = self.tip_command.take(now).map(|own| own.position);
         link(&mut self.link, now, seen.tick, &mut seen.link_told[1]);
         gateway(&mut self.health, now, seen.tick, &mut seen.gateway_told[1]);
@@ -268,6 +272,7 @@ impl Seen {
             torque: None,
             setpoint: None,
             measured: None,
+            measured_at: Time::from_nanos(0),
             tip_command: None,
             hand: None,
             accepted_hand: None,

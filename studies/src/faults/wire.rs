@@ -324,14 +324,16 @@ impl WireWay {
 
     fn hand_over(&mut self, frame: Frame, tick: i64, now: Time) {
         match frame.origin {
-            Origin::Genuine => {
-                self.arrivals.genuine = Some(tick);
+            // The first of a frame and its copy is the one that counts.
+            Origin::Genuine | Origin::Repeated => {
                 let mut heard = self.overheard.iter_mut().rev();
-                if let Some(own) = heard.find(|own| own.sent <= frame.sent) {
-                    own.arrived = true;
-                }
-                if frame.valid {
-                    self.arrivals.valid = Some(tick);
+                let own = heard.find(|own| own.sent <= frame.sent);
+                let known = own.map(|own| std::mem::replace(&mut own.arrived, true));
+                if !known.unwrap_or(frame.origin == Origin::Repeated) {
+                    self.arrivals.genuine = Some(tick);
+                    if frame.valid {
+                        self.arrivals.valid = Some(tick);
+                    }
                 }
             }
             // A genuine frame comes through, by whatever hand.
@@ -341,7 +343,6 @@ impl WireWay {
                     self.arrivals.valid = Some(tick);
                 }
             }
-            Origin::Repeated => {}
             Origin::Damaged | Origin::Foreign if frame.length <= ASKS => {}
             Origin::Damaged | Origin::Foreign => {
                 self.arrivals.refusable += 1;

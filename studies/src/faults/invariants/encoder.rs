@@ -1,5 +1,7 @@
 //! An arm that is measured where it cannot be is not driven.
 
+use ferntast_msgs::Time;
+
 use super::{
     super::{facts::Facts, log::Log, seen::Seen},
     Invariant,
@@ -11,10 +13,11 @@ const BEYOND: f64 = 0.02;
 const IN_TIME: i64 = 3;
 
 /// A joint that is measured elsewhere at once, further than it can have moved since it was
-/// measured before, is not driven by that measurement: the servo is in FAULT.
+/// measured before, is not driven by that measurement: the servo is in FAULT. How long that was
+/// ago its host's clock says: one that jumps in the same moment hides as much of the way.
 #[derive(Default)]
 pub struct EncoderWatched {
-    before: Option<([f64; 2], i64)>,
+    before: Option<([f64; 2], i64, Time)>,
     jumped: Option<i64>,
 }
 
@@ -26,10 +29,12 @@ impl EncoderWatched {
         let Some(measured) = measured.filter(|own| own.iter().all(|q| q.is_finite())) else {
             return false;
         };
-        let Some((before, at)) = self.before.replace((measured, seen.tick)) else {
+        let now = (measured, seen.tick, seen.measured_at);
+        let Some((before, tick, at)) = self.before.replace(now) else {
             return false;
         };
-        let passed = (seen.tick - at) as f64 * 1e-3;
+        let by_clock = seen.measured_at.seconds_since(at);
+        let passed = by_clock.max((seen.tick - tick) as f64 * 1e-3);
         (0..2).any(|joint| {
             (measured[joint] - before[joint]).abs() > facts.overspeed[joint] * passed + BEYOND
         })
