@@ -10,7 +10,7 @@ use super::{
 pub struct LeaderEnd {
     law: LeaderLaw,
     energy: EnergyMeter,
-    /// Given at the last step, acting until this one [N].
+    /// On the hand since the last step [N].
     force: [f64; 3],
 }
 
@@ -34,7 +34,13 @@ impl LeaderEnd {
         output
     }
 
-    /// Energy at the leader's port, counted from the force that this end asks for.
+    /// `force` \[N\] is on the hand until the next step: what the master made of the
+    /// force that the last step asked for, which is taken for it otherwise.
+    pub fn rendered(&mut self, force: [f64; 3]) {
+        self.force = force;
+    }
+
+    /// Energy at the leader's port, of the force that was on the hand.
     pub fn energy(&self) -> Energy {
         self.energy.energy()
     }

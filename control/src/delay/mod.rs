@@ -172,8 +172,8 @@ pub trait Follower {
 /// What a law guarantees about the energy of the two-port between hand and tip.
 /// Under which assumptions, the law's file says.
 ///
-/// A law's own books take the servo for a spring with a damper, the estimated contact force
-/// for the true one, and the force asked for at the hand for the one that is there. With a
+/// A law's own books take the servo for a spring with a damper and the estimated contact
+/// force for the true one; at the hand they have the force that the master rendered. With a
 /// whole arm, its servo and its estimator each of the laws that are passive by these makes
 /// energy (`sim/tests/whole_arm.rs`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -28,7 +28,8 @@
 //! **What it guarantees.** By its own books it gives out no more than it took in, but
 //! for what one step may overdraw, which is paid back first: for any
 //! delay, jitter, loss, reordering, duplication and outage. Assumed: the force
-//! on the hand is the one asked for; the servo from command to tip
+//! on the hand is the one asked for (the books have what the master's limits leave of it, but
+//! the controller cannot act faster than they let it); the servo from command to tip
 //! is passive, as a spring and a damper are, up to the kinetic energy of the arm.
 //!
 //! **On loss.** No command, the force fades out. Afterwards the command begins at the

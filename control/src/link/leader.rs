@@ -93,6 +93,12 @@ impl LeaderLink {
         }
     }
 
+    /// `force` \[N\] is on the hand until the next step, after every limit of the master:
+    /// law and meter count its energy, in place of that of the force asked for.
+    pub fn rendered(&mut self, force: [f64; 3]) {
+        self.law.rendered(force);
+    }
+
     /// What is known at `now_ns`.
     pub fn state(&mut self, now_ns: i64) -> LinkState {
         LinkState {

@@ -31,7 +31,7 @@ pub struct LeaderSwitch {
     held: [f64; 3],
     wish: Option<u8>,
     energy: EnergyMeter,
-    /// Given at the last step, acting until this one [N].
+    /// On the hand since the last step [N].
     force: [f64; 3],
     /// By the laws that were left [J].
     dissipated: f64,
@@ -141,6 +141,15 @@ impl LeaderSwitch {
         output
     }
 
+    /// `force` \[N\] is on the hand until the next step, as in [`LeaderEnd::rendered`].
+    pub fn rendered(&mut self, force: [f64; 3]) {
+        self.force = force;
+        self.current.end.rendered(force);
+        if let Some(next) = &mut self.next {
+            next.end.rendered(force);
+        }
+    }
+
     /// Name of the law that makes the force, or is about to.
     pub fn name(&self) -> &'static str {
         match &self.next {
@@ -154,7 +163,7 @@ impl LeaderSwitch {
         self.next.is_some() || self.wish.is_some()
     }
 
-    /// Energy at the leader's port, of the force that was asked for.
+    /// Energy at the leader's port, of the force that was on the hand.
     pub fn energy(&self) -> Energy {
         self.energy.energy()
     }

@@ -27,6 +27,7 @@ ports! {
     /// What the leader end takes.
     input LeaderLinkInput {
         setpoint_cp: Newest<PoseSample> = LEADER_SETPOINT_CP,
+        servo_cf: Newest<WrenchSample> = LEADER_SERVO_CF,
         operating_state: Newest<OperatingStateSample> = LEADER_OPERATING_STATE,
         state_command: Batch<StateCommandSample> = LEADER_STATE_COMMAND,
         law_command: Batch<LawCommandSample> = LINK_LAW_COMMAND,
@@ -104,6 +105,9 @@ impl Node for LeaderLinkNode {
             state: operating_state(&input.operating_state),
         };
         let step = self.link.step(now.nanos(), &readings);
+        // With the pose of this step the master published the force from there on.
+        let rendered = input.servo_cf.message.map(|wrench| wrench.force);
+        self.link.rendered(rendered.unwrap_or_default());
         output.reflected_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
         output.frame.frame = step.frame;
         let state = self.link.state(now.nanos());

@@ -1,12 +1,27 @@
 //! What an end counts comes out as a message.
 
-use ferntast_control::{delay::Law, frame::FRAME_LENGTH, link::FollowerLink, switching::Laws};
-use ferntast_msgs::{Time, sample::LinkEnd};
+use ferntast_control::{
+    delay::Law,
+    frame::FRAME_LENGTH,
+    haptics::MasterConfig,
+    link::{FollowerLink, FollowerReadings, LeaderLink, StampedPosition},
+    operating::OperatingState,
+    switching::Laws,
+};
+use ferntast_emulation::hand::{Hand, ScriptedHand, ScriptedHandConfig};
+use ferntast_msgs::{
+    Time,
+    sample::{Frame, LinkEnd, PoseSample, StateCommand, StateCommandSample},
+};
 
 use ferntast_seal::Refusal;
 
-use super::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FrameInput};
-use crate::node::{Node, Output};
+use super::{
+    FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FrameInput, LeaderLinkInput,
+    LeaderLinkNode, LeaderLinkOutput,
+};
+use crate::master::{MasterInput, MasterNode, MasterOutput};
+use crate::node::{Newest, Node, Output};
 
 #[test]
 fn the_status_says_every_10_ms_what_was_refused() {
@@ -42,4 +57,144 @@ fn the_status_says_every_10_ms_what_was_refused() {
         output.health.refused,
         21 + 5 + last.refused_time + last.refused_replayed
     );
+}
+
+const START: i64 = 1_700_000_000_000_000_000;
+
+fn newest<M>(now: Time, message: Option<M>) -> Newest<M> {
+    Newest {
+        message,
+        received: now,
+        fresh: true,
+    }
+}
+
+/// Master and leader's end on a bus that takes a step, and an arm's end that sends
+/// `force` \[N\] along x.
+struct Operator {
+    master: MasterNode,
+    leader: LeaderLinkNode,
+    arm: FollowerLink,
+    into_master: MasterInput,
+    into_leader: LeaderLinkInput,
+    /// What the hand gave to the two-port \[J\], as hand and master have it.
+    work: f64,
+    hand: Option<[f64; 3]>,
+    force: [f64; 3],
+}
+
+impl Operator {
+    /// A master whose force changes by 100 N/s at most; without a `hand` a client is it.
+    fn new(hand: Option<Hand>) -> Operator {
+        let config = MasterConfig {
+            force_rate_limit: 100.0,
+            ..MasterConfig::default()
+        };
+        let laws = || Laws::new(Law::default());
+        let mut into_master = MasterInput::default();
+        let enable = StateCommandSample::new(Time::from_nanos(START), StateCommand::ENABLE);
+        into_master.state_command.push(enable);
+        Operator {
+            master: MasterNode::new(&config, hand).expect("valid"),
+            leader: LeaderLinkNode::new(LeaderLink::new(laws(), 0.0), 7),
+            arm: FollowerLink::new(laws(), 0.0),
+            into_master,
+            into_leader: LeaderLinkInput::default(),
+            work: 0.0,
+            hand: None,
+            force: [0.0; 3],
+        }
+    }
+
+    /// One step; gives what the leader's end says of the energy that its port kept \[J\].
+    fn step(&mut self, tick: i64, client: Option<[f64; 3]>, force: f64) -> Option<f64> {
+        let now = Time::from_nanos(START + tick * 1_000_000);
+        if let Some(position) = client {
+            let pose = PoseSample {
+                source: 5,
+                ..PoseSample::at(now, Frame::LEADER_BASE, position)
+            };
+            self.into_master.measured_cp.push(pose);
+        }
+        let (mut felt, mut told) = (MasterOutput::default(), LeaderLinkOutput::default());
+        self.master.step(now, &self.into_master, &mut felt);
+        self.leader.step(now, &self.into_leader, &mut told);
+        let tip = StampedPosition {
+            stamp_ns: now.nanos(),
+            position: Law::default().mapping().workspace_offset,
+            silence: 0.0,
+        };
+        let arm = FollowerReadings {
+            tip: Some(tip),
+            contact_force: Some([force, 0.0, 0.0]),
+            state: OperatingState::Enabled,
+            told_to_stop: false,
+        };
+        if let Some(frame) = told.frame.frame {
+            self.arm.arrived(&frame, now.nanos());
+        }
+        let sent = self.arm.step(now.nanos(), &arm).frame;
+
+        // The hand as it is, under the force that was the same all the way.
+        let hand = client.or(felt.own_hand.map(|own| own.position));
+        if let (Some(hand), Some(before)) = (hand, self.hand) {
+            let axes = self.force.iter().zip(hand.iter().zip(before));
+            self.work -= axes.map(|(f, (now, then))| f * (now - then)).sum::<f64>();
+        }
+        self.hand = hand;
+        self.force = felt.servo_cf.map(|own| own.force).expect("in every step");
+        self.into_master = MasterInput {
+            reflected_cf: newest(now, told.reflected_cf),
+            ..MasterInput::default()
+        };
+        self.into_leader = LeaderLinkInput {
+            setpoint_cp: newest(now, felt.setpoint_cp),
+            servo_cf: newest(now, felt.servo_cf),
+            operating_state: newest(now, felt.operating_state),
+            frames: FrameInput::of(sent.as_slice(), now),
+            ..LeaderLinkInput::default()
+        };
+        told.status.map(|own| own.energy_in - own.energy_out)
+    }
+
+    /// Energy that the port kept by the leader's end and in truth \[J\], after 2 s under a force
+    /// that goes on and off.
+    fn run(&mut self, client: impl Fn(f64) -> Option<[f64; 3]>) -> (f64, f64) {
+        let mut last = (0.0, 0.0);
+        let mut work = 0.0;
+        for tick in 0..2000 {
+            let at = tick as f64 * 1e-3;
+            let force = if (at * 2.5).fract() < 0.5 { -40.0 } else { 0.0 };
+            if let Some(balance) = self.step(tick, client(at), force) {
+                // The leader's end has the hand of the step before.
+                last = (balance, work);
+            }
+            work = self.work;
+        }
+        last
+    }
+}
+
+/// To and fro by 5 cm.
+const SWAY: &str = r#"
+[script]
+phase = [{ label = "sway", kind = "sine", amplitude = [0.05, 0.0], frequency = 1.7, duration = 10.0 }]
+"#;
+
+/// A hand of its own, and a client's.
+#[test]
+fn the_status_counts_the_force_that_the_master_rendered() {
+    let own: ScriptedHandConfig = toml::from_str(SWAY).expect("valid");
+    let own = Hand::Scripted(Box::new(ScriptedHand::new(&own, 1).expect("valid")));
+    let sway = |at: f64| Some([0.05 * (std::f64::consts::TAU * 1.7 * at).sin(), 0.0, 0.0]);
+    for (what, (metered, work)) in [
+        ("own", Operator::new(Some(own)).run(|_| None)),
+        ("client", Operator::new(None).run(sway)),
+    ] {
+        assert!(work.abs() > 0.01, "{what}: nothing happened, {work} J");
+        assert!(
+            (metered - work).abs() < 1e-3 * work.abs(),
+            "{what}: {metered} J of {work} J"
+        );
+    }
 }

@@ -236,6 +236,7 @@ impl<'a> Run<'a> {
             Some(limiter) => limiter.step(TICK, output.force).force,
             None => output.force,
         };
+        self.leader.rendered(force);
         self.felt = [force[0], force[1]];
         self.command = answer.command.map(|command| TipCommand {
             made_ns: answer.command_ns,

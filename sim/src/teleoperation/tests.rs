@@ -78,3 +78,48 @@ fn the_same_trial_gives_the_same_outcome() {
     assert_eq!(run(7), run(7));
     assert_ne!(run(7), run(8));
 }
+
+/// Balance of the leader's port less the work that the hand did \[J\]: the largest at any
+/// moment, with a force that changes by `rate` \[N/s\] at most; and by how much at most that
+/// changed the force \[N\].
+fn error_of_the_meter(law: Law, rate: f64) -> (f64, f64) {
+    let name = law.name();
+    let trial = Trial {
+        master: Some(MasterConfig {
+            force_rate_limit: rate,
+            ..MasterConfig::default()
+        }),
+        ..Trial::new(law, link(0.1), Environment::HardWall, 1)
+    };
+    let free = Trial {
+        master: None,
+        ..trial.clone()
+    };
+    let schedule = Schedule::new(Task::PressAndSlide, 0.1);
+    let mut run = Run::new(&trial, schedule).expect(name);
+    let mut unlimited = Run::new(&free, schedule).expect(name);
+    let (mut worst, mut bit) = (0.0_f64, 0.0_f64);
+    for k in 0..5000 {
+        let (own, other) = (run.step(k), unlimited.step(k));
+        bit = bit.max((own.felt[0] - other.felt[0]).abs());
+        let balance = run.leader.state(START_NS + k * TICK_NS).energy.balance();
+        worst = worst.max((balance - run.hand_work).abs());
+    }
+    (worst, bit)
+}
+
+#[test]
+fn the_meter_counts_the_force_that_the_limiter_left() {
+    let mut limited = 0;
+    for law in Law::all() {
+        let name = law.name();
+        let keys = format!("kind = \"{name}\"\nforce_scale = 1.0");
+        let law = toml::from_str(&keys).expect("keys of the law");
+        let (error, bit) = error_of_the_meter(law, 100.0);
+        println!("{name}: the limit takes {bit:.2} N, the meter is off by {error:.1e} J");
+        limited += usize::from(bit > 1.0);
+        // The meter's sums are those of the hand's work: rounding alone.
+        assert!(error < 1e-9, "{name}: the meter is off by {error:.3} J");
+    }
+    assert!(limited >= 4, "the limit bit with {limited} laws only");
+}
