@@ -15,6 +15,7 @@ mod coefficient;
 mod estimate;
 mod filter;
 mod form;
+mod motor_current;
 mod observer;
 mod parameters;
 mod sensors;
@@ -24,6 +25,7 @@ pub use coefficient::{Coefficient, CoefficientEstimator};
 pub use estimate::{ContactEstimate, JointMeasurement};
 pub use filter::DerivativeFilter;
 pub use form::Form;
+pub use motor_current::{MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor};
 pub use parameters::EstimatorParameters;
 
 use ferntast_model::arm::Arm;
