@@ -20,6 +20,7 @@ mod plant;
 mod sensors;
 mod temperature;
 mod thermal;
+mod torque_sensor;
 mod wear;
 
 pub use contact::TrueSurface;
@@ -29,6 +30,7 @@ pub use parameters::{ArmConfig, TrueJoint, TrueSpringHead, TrueSurfaces, TruthPa
 pub use sensors::SensorParameters;
 pub use temperature::TemperatureDependence;
 pub use thermal::{TEMPERATURE_SENSORS, ThermalParameters};
+pub use torque_sensor::TorqueSensorErrors;
 pub use wear::{GearWear, SurfaceWear};
 
 use ferntast_model::contour::Surface;
@@ -38,6 +40,7 @@ use noise::Noise;
 use plant::Plant;
 use sensors::Encoder;
 use thermal::Thermal;
+use torque_sensor::TorqueSensor;
 
 /// Joints of the simulated arm: ROKVISS has two.
 pub const JOINTS: usize = 2;
@@ -136,6 +139,7 @@ pub struct SimulatedArm {
     noise: Noise,
     thermal: [Thermal; JOINTS],
     encoders: [Encoder; JOINTS],
+    torque_sensors: [TorqueSensor; JOINTS],
     /// True motor torque of the last command \[Nm\].
     motor_torque: Vector2<f64>,
     /// Time since the last measurement \[s\].
@@ -181,12 +185,18 @@ impl SimulatedArm {
                 plant.theta[joint],
             )
         });
+        let at_start = plant.joint_torque();
+        let torque_sensors = std::array::from_fn(|joint| {
+            let errors = truth.joint[joint].sensor.torque_errors;
+            TorqueSensor::new(errors.unwrap_or_default(), at_start[joint])
+        });
         Ok(Self {
             plant,
             believed: config.arm.joints_of_links(&config.joint)?.clone(),
             noise,
             thermal,
             encoders,
+            torque_sensors,
             motor_torque: Vector2::zeros(),
             since_measurement: 0.0,
             truth,
@@ -256,6 +266,7 @@ impl SimulatedArm {
             let parameters = &self.truth.joint[joint];
             let sensor = &parameters.sensor;
             let noise = &mut self.noise;
+            let feels = self.torque_sensors[joint].feel(torque[joint], self.since_measurement);
             (
                 measurement.motor_position[joint],
                 measurement.motor_velocity[joint],
@@ -263,7 +274,7 @@ impl SimulatedArm {
             (
                 measurement.joint_torque[joint],
                 measurement.torque_saturated[joint],
-            ) = sensors::joint_torque(torque[joint], sensor, parameters.torque_sensor_range, noise);
+            ) = sensors::joint_torque(feels, sensor, parameters.torque_sensor_range, noise);
             let current =
                 self.motor_torque[joint] * parameters.motor_constant / parameters.gear_ratio;
             let current = sensors::current(current, sensor, noise);

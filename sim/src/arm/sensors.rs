@@ -1,6 +1,8 @@
-//! What the sensors make of the truth: range, noise, steps.
+//! What the sensors make of the truth: errors of the torque sensor
+//! ([`TorqueSensorErrors`]), noise, steps, range, in this order.
 
 use super::noise::Noise;
+use super::torque_sensor::TorqueSensorErrors;
 use ferntast_model::parameters;
 
 parameters! {
@@ -19,6 +21,9 @@ parameters! {
         pub current_noise: f64 [0.0..=10.0, "A"],
         /// Step of the current measurement \[A\].
         pub current_step: f64 [0.0..=10.0, "A"],
+        /// What else the torque sensor has wrong; nothing when left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub torque_errors: Option<TorqueSensorErrors> [section],
     }
 }
 
@@ -56,15 +61,16 @@ impl Encoder {
     }
 }
 
-/// Joint torque \[Nm\] as the sensor with range ±`range` gives it, and whether it is at the end of it.
+/// Joint torque \[Nm\] as the sensor with range ±`range` gives what it `feels`, and whether it is
+/// at the end of it.
 pub(super) fn joint_torque(
-    truth: f64,
+    feels: f64,
     parameters: &SensorParameters,
     range: f64,
     noise: &mut Noise,
 ) -> (f64, bool) {
     let reading = quantise(
-        truth + noise.normal(parameters.torque_noise),
+        feels + noise.normal(parameters.torque_noise),
         parameters.torque_step,
     );
     (reading.clamp(-range, range), reading.abs() >= range)
@@ -98,6 +104,7 @@ mod tests {
         torque_step: 0.01,
         current_noise: 0.0,
         current_step: 0.005,
+        torque_errors: None,
     };
 
     #[test]
