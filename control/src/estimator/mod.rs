@@ -9,7 +9,8 @@
 //! F = J⁻ᵀ (Jᵀ F),  F = F_N ∇Φ − F_T ṙ/|ṙ|.
 //!
 //! Which surface is touched follows from geometry; that it is touched, from
-//! the normal force, with hysteresis.
+//! the normal force, with hysteresis. While the tip is surely free, the torque
+//! sensors' zeros are found and taken off ([`zeroing_time`](EstimatorParameters::zeroing_time)).
 
 mod coefficient;
 mod estimate;
@@ -20,6 +21,8 @@ mod observer;
 mod parameters;
 mod sensors;
 mod split;
+mod systematic;
+mod zeroing;
 
 pub use coefficient::{Coefficient, CoefficientEstimator};
 pub use estimate::{ContactEstimate, JointMeasurement};
@@ -27,6 +30,7 @@ pub use filter::DerivativeFilter;
 pub use form::Form;
 pub use motor_current::{MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor};
 pub use parameters::EstimatorParameters;
+pub use systematic::Uncertainty;
 
 use ferntast_model::arm::Arm;
 use ferntast_model::joint::JointParameters;
@@ -35,6 +39,8 @@ use ferntast_model::{ArmModel, JointCount, Joints, ParameterError, Vector2};
 use form::TorqueOfContact;
 use sensors::SensorWatch;
 use split::{Motion, Split};
+use systematic::sensor_errors;
+use zeroing::Zeroing;
 
 /// Beyond these a measurement is broken, whatever the arm.
 const LARGEST_POSITION: f64 = 1e3;
@@ -50,6 +56,7 @@ pub struct ContactEstimator {
     parameters: EstimatorParameters,
     contact: TorqueOfContact,
     sensors: SensorWatch,
+    zeroing: Zeroing,
     split: Split,
     last: ContactEstimate,
     /// Time since the filters were last moved on \[s\].
@@ -71,6 +78,8 @@ impl ContactEstimator {
             .validate()
             .map_err(|error| error.within("estimator"))?;
         let count = JointCount::new(model.joint.len())?;
+        let joints = model.arm.joints_of_links(&model.joint)?;
+        let ranges = Vector2::from(joints.each_ref().map(|joint| joint.torque_sensor_range));
         Ok(Self {
             arm: Arm::new(&model.arm),
             count,
@@ -78,6 +87,7 @@ impl ContactEstimator {
             parameters: *parameters,
             contact: TorqueOfContact::new(parameters.form, parameters.cut_off, count),
             sensors: SensorWatch::new(count),
+            zeroing: Zeroing::new(ranges),
             split: Split::new(model.contour.features()),
             last: ContactEstimate::unknown(count),
             gap: 0.0,
@@ -124,7 +134,8 @@ impl ContactEstimator {
 
         let kinematics = *self.arm.kinematics();
         let singularity = self.parameters.singularity;
-        let force = kinematics.tip_force(&q, &motion.contact_torque, singularity);
+        let torque = motion.contact_torque - self.zeroing.zero();
+        let force = kinematics.tip_force(&q, &torque, singularity);
         let singular = force.is_none();
         let force = force.unwrap_or_else(Vector2::zeros);
         let tip = kinematics.forward(&link);
@@ -144,8 +155,26 @@ impl ContactEstimator {
             valid: !singular && !sensors.saturated && self.settling <= 0.0,
             ..ContactEstimate::unknown(self.count)
         };
+        if estimate.valid {
+            let features = self.split.features();
+            self.zeroing.learn(
+                &self.parameters,
+                features,
+                step,
+                &tip,
+                &motion.contact_torque,
+                &force,
+            );
+        }
+        let uncertainty = &self.parameters.uncertainty;
+        // Behind a low-pass of bandwidth f samples within 1/(2 f) are alike.
+        let alike = 0.5 * self.settling_time();
+        let zeros = self.zeroing.standard_error(alike, uncertainty.torque_zero);
+        let gain = uncertainty.torque_gain;
+        let errors = sensor_errors(&kinematics, &q, &torque, &zeros, gain, singularity);
         let motion = Motion {
             tip,
+            errors,
             velocity: tip_velocity,
             present_velocity: jacobian * motion.present_velocity,
             delay: self.contact.delay(),

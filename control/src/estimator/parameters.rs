@@ -1,6 +1,6 @@
 //! Parameters of the contact-force estimator.
 
-use super::Form;
+use super::{Form, Uncertainty};
 use ferntast_model::parameters;
 
 parameters! {
@@ -29,5 +29,12 @@ parameters! {
         pub friction_memory: f64 [0.01..=1e5, "s"],
         /// Longest time between measurements; after a longer one it starts over \[s\].
         pub longest_gap: f64 [1e-3..=10.0, "s"],
+        /// Memory of the torque sensors' zeros, which are found while the tip is free
+        /// \[s of that\]; 0 takes the sensors as they are.
+        #[serde(default)]
+        pub zeroing_time: f64 [0.0..=1e4, "s"],
+        /// What the standard error of the coefficient has to take into account.
+        #[serde(default)]
+        pub uncertainty: Uncertainty [section],
     }
 }

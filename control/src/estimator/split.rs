@@ -1,5 +1,6 @@
 //! Which surface is touched, and what the force is along and across it.
 
+use super::systematic::{SensorErrors, split_errors};
 use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters};
 use ferntast_model::Vector2;
 use ferntast_model::contour::{Feature, Surface, nearest};
@@ -20,6 +21,8 @@ pub(super) struct Motion {
     pub(super) present_velocity: Vector2<f64>,
     /// How late forces and filtered velocity are \[s\].
     pub(super) delay: f64,
+    /// What the torque sensors may have wrong of the force \[N\].
+    pub(super) errors: SensorErrors,
 }
 
 /// Splits forces, and remembers how the tip slid.
@@ -45,6 +48,11 @@ impl Split {
             sliding_for: 0.0,
             direction: 1.0,
         }
+    }
+
+    /// What can be touched.
+    pub(super) fn features(&self) -> &[Feature] {
+        &self.features
     }
 
     /// Finds the surface touched, and splits the force along it.
@@ -103,7 +111,7 @@ impl Split {
         let turned_lately =
             self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
         estimate.near_rest = stopping || turned_lately || estimate.corner;
-        self.identify(parameters, dt, feature.surface, estimate);
+        self.identify(parameters, dt, &feature, &motion.errors, estimate);
     }
 
     /// Equation (6), where the tip slides.
@@ -111,10 +119,11 @@ impl Split {
         &mut self,
         parameters: &EstimatorParameters,
         dt: f64,
-        surface: Surface,
+        feature: &Feature,
+        sensors: &SensorErrors,
         estimate: &mut ContactEstimate,
     ) {
-        let slot = match surface {
+        let slot = match feature.surface {
             Surface::Lubricated => 0,
             Surface::Unlubricated => 1,
             // The head of a spring gives way: equation (6) is not about it.
@@ -122,9 +131,18 @@ impl Split {
         };
         let coefficient = &mut self.coefficients[slot];
         if estimate.valid && !estimate.near_rest {
+            let errors = split_errors(
+                sensors,
+                &feature.normal,
+                &feature.tangent(),
+                estimate.contact_force,
+                self.direction,
+                parameters.uncertainty.contour_turn,
+            );
             coefficient.step(
                 estimate.normal_force,
                 estimate.tangential_force,
+                &errors,
                 dt,
                 parameters.friction_memory,
                 parameters.cut_off,

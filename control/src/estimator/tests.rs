@@ -112,6 +112,31 @@ fn in_the_corner_the_split_is_not_trusted() {
     assert!((Vector2::from(estimate.force) - Vector2::new(-20.0, 16.0)).norm() < 1e-9);
 }
 
+#[test]
+fn a_force_that_is_there_from_the_start_is_learned_within_the_largest_zero() {
+    let (model, parameters) = shipped([0.0, 0.0]);
+    assert!(parameters.zeroing_time > 0.0);
+    let q = Vector2::new(-0.785, 1.571);
+    let jacobian = model.arm.kinematics().jacobian(&q);
+    for parameters in forms(&parameters) {
+        for newtons in [2.0, 4.0, 30.0] {
+            let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
+            let force = Vector2::new(newtons, 0.0);
+            let measurement = at_rest(&model, q, force);
+            let estimate = (0..5000)
+                .map(|_| estimator.step(1e-3, &measurement))
+                .last()
+                .unwrap();
+            let learned = jacobian.transpose() * (force - Vector2::from(estimate.force));
+            let most = zeroing::LARGEST_SHARE * model.joint[1].torque_sensor_range;
+            let bears = (jacobian.transpose() * force).abs().max();
+            // All of what is within it, nothing of what is not.
+            let expected = if bears <= most { bears } else { 0.0 };
+            assert!((learned.abs().max() - expected).abs() < 1e-6, "{learned}");
+        }
+    }
+}
+
 /// Both forms of equation (5), else as `parameters`.
 fn forms(parameters: &EstimatorParameters) -> [EstimatorParameters; 2] {
     [Form::Direct, Form::MomentumObserver].map(|form| EstimatorParameters {
@@ -202,7 +227,8 @@ proptest! {
         q1 in -1.5..1.0f64, q2 in 0.3..2.4f64, x in -30.0..30.0f64, y in -30.0..30.0f64, ground: bool, observer: bool,
     ) {
         let (model, parameters) = shipped([0.0, if ground { -9.80665 } else { 0.0 }]);
-        let parameters = forms(&parameters)[usize::from(observer)];
+        // A force that is there from the start, in the middle of nowhere, is a zero's like.
+        let parameters = EstimatorParameters { zeroing_time: 0.0, ..forms(&parameters)[usize::from(observer)] };
         let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
         let (q, force) = (Vector2::new(q1, q2), Vector2::new(x, y));
         let measurement = at_rest(&model, q, force);
