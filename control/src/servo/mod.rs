@@ -72,6 +72,11 @@ pub struct Measurement {
 }
 
 impl Measurement {
+    /// How old it is at `now_ns` \[ns\].
+    fn age_ns(&self, now_ns: i64) -> i64 {
+        now_ns.saturating_sub(self.stamp_ns)
+    }
+
     /// Whether it is a measurement of so many joints.
     fn is_of(&self, count: JointCount) -> bool {
         [&self.position, &self.velocity, &self.torque]
@@ -313,7 +318,7 @@ impl Servo {
                 .map_or(f64::NAN, |last| seconds(now_ns - last)),
             measurement_age: input
                 .measurement
-                .map_or(f64::NAN, |own| seconds(now_ns.saturating_sub(own.stamp_ns))),
+                .map_or(f64::NAN, |own| seconds(own.age_ns(now_ns))),
         };
         match measurement {
             Ok(measured) => self.drive(&measured, input.weight, &mut output),
@@ -328,7 +333,7 @@ impl Servo {
         let Some(measured) = newest else {
             return Err(Event::MeasurementSilent);
         };
-        let silent = now_ns.saturating_sub(measured.stamp_ns) > self.measurement_watchdog_ns
+        let silent = measured.age_ns(now_ns) > self.measurement_watchdog_ns
             && !self.planted.lacks(Rule::MeasurementWatchdog);
         if measured.stamp_ns <= 0 || silent {
             return Err(Event::MeasurementSilent);
@@ -341,15 +346,14 @@ impl Servo {
 
     /// Whether it was measured after the servo was held up.
     fn is_fresh(&self, measured: &Measurement, now_ns: i64) -> bool {
-        let age_ns = now_ns.saturating_sub(measured.stamp_ns);
-        age_ns <= nanoseconds(MEASURED_AFTER * self.period)
+        measured.age_ns(now_ns) <= nanoseconds(MEASURED_AFTER * self.period)
     }
 
     /// Whether it was measured so long ago that the arm is not where it was any more: who
     /// measures it drives it, too, and lets go of the drives meanwhile.
     fn is_stale(&self, measured: &Measurement, now_ns: i64) -> bool {
-        let age_ns = now_ns.saturating_sub(measured.stamp_ns);
-        age_ns > nanoseconds(BEGINS_ANEW) && !self.planted.lacks(Rule::BeginAfterStall)
+        measured.age_ns(now_ns) > nanoseconds(BEGINS_ANEW)
+            && !self.planted.lacks(Rule::BeginAfterStall)
     }
 
     /// Starts from where the arm is.

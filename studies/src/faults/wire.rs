@@ -74,6 +74,16 @@ pub struct Arrivals {
     pub refusable_at: i64,
 }
 
+impl Arrivals {
+    /// A genuine frame came at `tick`.
+    fn came(&mut self, frame: &Frame, tick: i64) {
+        self.genuine = Some(tick);
+        if frame.valid {
+            self.valid = Some(tick);
+        }
+    }
+}
+
 /// Something that is done to frames for a while.
 struct Active {
     fault: Fault,
@@ -330,19 +340,11 @@ impl WireWay {
                 let own = heard.find(|own| own.sent <= frame.sent);
                 let known = own.map(|own| std::mem::replace(&mut own.arrived, true));
                 if !known.unwrap_or(frame.origin == Origin::Repeated) {
-                    self.arrivals.genuine = Some(tick);
-                    if frame.valid {
-                        self.arrivals.valid = Some(tick);
-                    }
+                    self.arrivals.came(&frame, tick);
                 }
             }
             // A genuine frame comes through, by whatever hand.
-            Origin::Late => {
-                self.arrivals.genuine = Some(tick);
-                if frame.valid {
-                    self.arrivals.valid = Some(tick);
-                }
-            }
+            Origin::Late => self.arrivals.came(&frame, tick),
             Origin::Damaged | Origin::Foreign if frame.length <= ASKS => {}
             Origin::Damaged | Origin::Foreign => {
                 self.arrivals.refusable += 1;
