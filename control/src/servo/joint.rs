@@ -147,7 +147,7 @@ impl JointServo {
     /// be brought back: only further out is a fault then.
     pub(super) fn start(&mut self, position: f64) {
         self.generator.start(position);
-        self.release = Release::begin(&self.release_config);
+        self.release = Release::begin();
         (self.before, self.led) = (self.torque, 0.0);
         let ([lower, upper], margin) = (self.limits, self.limit_margin);
         self.fault_range = [position.min(lower) - margin, position.max(upper) + margin];
@@ -175,7 +175,7 @@ impl JointServo {
 
     /// Where to be while paused \[rad\].
     pub(super) fn hold_at(&mut self, position: f64) {
-        self.release = Release::begin(&self.release_config);
+        self.release = Release::begin();
         if !self.planted.lacks(Rule::HoldWhereMeasured) {
             self.hold = position;
         }
@@ -211,8 +211,9 @@ impl JointServo {
 
     /// Where to go from `hold`, if it lets go of what it presses against.
     fn give_way(&mut self, hold: f64, dt: f64, seen: &Seen) -> Option<Setpoint> {
+        let joint = [seen.position, self.law.reach()];
         self.release
-            .step(&self.release_config, dt, hold, seen.external)
+            .step(&self.release_config, dt, hold, joint, seen.external)
     }
 
     fn law(&mut self, state: OperatingState, dt: f64, seen: &Seen) -> Driven {

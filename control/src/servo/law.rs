@@ -80,6 +80,11 @@ impl PositionLaw {
         &mut self.friction
     }
 
+    /// How far a joint is behind its setpoint when it presses as hard as it may \[rad\].
+    pub(super) fn reach(&self) -> f64 {
+        self.pressing_limit / self.stiffness
+    }
+
     /// Motor torque that follows `setpoint`, from motor position \[rad\],
     /// velocity \[rad/s\] and joint torque \[Nm\] (0 when not known).
     pub fn follow(

@@ -116,8 +116,9 @@ event = [
 /// no sensor measures; an arm was enabled by what was measured before it stood still, and
 /// began with the torque of before a fault. And the judge's own: speed of a joint whose
 /// sensor is stuck, a clock that jumps together with an encoder, a copy that overtakes its
-/// frame.
-const FOUND: [&str; 9] = [
+/// frame. And after it: a release that drove a joint that nobody measured, and one whose way
+/// was used up by ringing.
+const FOUND: [&str; 11] = [
     r#"
 scenario = "rokviss"
 seed = 6231179
@@ -217,6 +218,48 @@ event = [
     { at_ms = 1266, fault = "jitter", way = "back", most_ms = 6, ms = 210 },
     { at_ms = 1297, fault = "word", device = "follower", word = "resume" },
     { at_ms = 1380, fault = "duplicate", way = "back", share = 0.5674703200606066, ms = 23 },
+]
+"#,
+    r#"
+scenario = "rokviss"
+seed = 8025800
+law = "position_position"
+length_ms = 827
+event = [
+    { at_ms = 598, fault = "crash", node = "estimator" },
+    { at_ms = 634, fault = "sensor", sensor = "stuck", ms = 158 },
+    { at_ms = 747, fault = "word", device = "both", word = "resume" },
+]
+"#,
+    r#"
+scenario = "rokviss"
+seed = 8003474
+law = "four_channel"
+length_ms = 2056
+event = [
+    { at_ms = 1614, fault = "blackout", way = "back", ms = 420 },
+    { at_ms = 1701, fault = "word", device = "both", word = "resume" },
+]
+"#,
+    r#"
+scenario = "rokviss"
+seed = 8025800
+law = "position_position"
+length_ms = 827
+event = [
+    { at_ms = 598, fault = "crash", node = "estimator" },
+    { at_ms = 634, fault = "sensor", sensor = "stuck", ms = 158 },
+    { at_ms = 747, fault = "word", device = "both", word = "resume" },
+]
+"#,
+    r#"
+scenario = "rokviss"
+seed = 8003474
+law = "four_channel"
+length_ms = 2056
+event = [
+    { at_ms = 1614, fault = "blackout", way = "back", ms = 420 },
+    { at_ms = 1701, fault = "word", device = "both", word = "resume" },
 ]
 "#,
 ];
