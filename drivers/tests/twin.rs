@@ -1,113 +1,18 @@
 //! A twin in lockstep: what it found is taken over by the servo, and it
 //! follows what changes at the simulated arm.
 
-use std::{fs, path::Path};
+mod common;
 
+use common::{JOINT, change_arm, scenario, session, with_twin, worn};
 use ferntast_bus::{Depth, Subscriber};
-use ferntast_drivers::simulated::{self, arm_file, load_arm};
-use ferntast_emulation::hand::Motion;
 use ferntast_msgs::{
     sample::{Fault, FrictionCommand, JointSample},
     topics,
 };
-use ferntast_nodes::{
-    config::{self, Loaded},
-    lockstep::LockstepSession,
-    process::SessionContext,
-    servo::FrictionSummary,
-    session_graph,
-};
-use ferntast_sim::arm::ArmConfig;
+use ferntast_nodes::{config::Loaded, lockstep::LockstepSession, servo::FrictionSummary};
 
-/// The joint of the tests, from 0.
-const JOINT: usize = 1;
 /// Length of the script that the hand repeats, where it is free \[s\].
 const PERIOD: f64 = 0.6 * 19.0;
-
-const EXPERIMENT: &str = r#"
-recording = "first"
-
-[signals]
-position = "/follower/measured_js.position[1]"
-joint_torque = "/follower/measured_js.effort[1]"
-motor_torque = "/follower/motor_js.effort[1]"
-temperature = "/follower/joint_2/temperature.temperature"
-
-[model]
-inertia = 0.5
-gear_ratio = 160
-effects = ["coulomb", "load_coulomb", "viscous", "quadratic_viscous", "cubic_viscous"]
-"#;
-
-/// The scenario at 10 °C; where `free` the hand stays clear of everything and
-/// is quicker: so friction shows over speed.
-fn scenario(seed: u64, free: bool) -> Loaded {
-    let mut loaded = config::load_scenario("rokviss", load_arm).expect("a session in lockstep");
-    loaded.scenario.seed = seed;
-    change_arm(&mut loaded, |arm| {
-        arm.truth.environment.temperature = Some([10.0; 2]);
-    });
-    if free {
-        let hand = loaded
-            .scenario
-            .hand
-            .scripted
-            .as_mut()
-            .expect("a session in lockstep");
-        for phase in &mut hand.script.phase {
-            phase.duration *= 0.6;
-            if let Motion::Reach { to } = &mut phase.motion {
-                *to = to.map(|x| 0.8 * x);
-            }
-        }
-    }
-    loaded.complete().expect("a session in lockstep");
-    loaded
-}
-
-/// All of joint 2's true friction times `factor`.
-fn worn(loaded: &mut Loaded, factor: f64) {
-    change_arm(loaded, |arm| {
-        let friction = &mut arm.truth.joint[JOINT].friction;
-        for value in [
-            &mut friction.b_0,
-            &mut friction.b_0t,
-            &mut friction.b_1,
-            &mut friction.b_2,
-            &mut friction.b_3,
-        ] {
-            *value *= factor;
-        }
-    });
-}
-
-/// Changes the simulated arm.
-fn change_arm(loaded: &mut Loaded, change: impl FnOnce(&mut ArmConfig)) {
-    let mut arm = loaded.arm.whole().expect("a simulated arm");
-    change(&mut arm);
-    loaded.arm = arm_file(&arm).expect("a simulated arm");
-}
-
-/// A session of `loaded`; recorded to `bag`, followed by a twin of the experiment `twin`.
-fn session(loaded: &Loaded, bag: Option<&Path>, twin: Option<&Path>) -> LockstepSession {
-    let mut context = SessionContext::in_virtual_time(loaded.clone());
-    context.bag = bag.map(Path::to_owned);
-    context.twin = twin.map(Path::to_owned);
-    LockstepSession::new(&session_graph(simulated::row()), &context).expect("a session in lockstep")
-}
-
-/// A session of `loaded` with a twin, fitted to 40 s of `fitted_to` with another seed.
-fn with_twin(loaded: &Loaded, fitted_to: &Loaded) -> LockstepSession {
-    let folder = tempfile::tempdir().expect("a session in lockstep");
-    let mut other = fitted_to.clone();
-    other.scenario.seed += 1000;
-    let mut first = session(&other, Some(&folder.path().join("first")), None);
-    first.run(40.0);
-    first.finish().expect("a session in lockstep");
-    let file = folder.path().join("joint.toml");
-    fs::write(&file, EXPERIMENT).expect("a session in lockstep");
-    session(loaded, None, Some(&file))
-}
 
 /// A session of `loaded`, watched, with a twin fitted to the arm as it is configured.
 fn watched(loaded: &Loaded) -> Watched {

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use common::{TICK, rokviss};
 use driver::Driver;
-use ferntast_control::estimator::{ContactEstimator, MotorMeasurement, TorqueByMotorCurrent};
+use ferntast_control::estimator::{ContactEstimator, Form, MotorMeasurement, TorqueByMotorCurrent};
 use ferntast_control::servo::{FoundParameter, TakeOverConfig};
 use ferntast_identification::{
     Dataset, Inertia, ModelSpec, RecordedSession, Term,
@@ -20,8 +20,6 @@ use ferntast_sim::arm::{ArmConfig, Measurement};
 
 /// True friction over the believed one \[-\].
 const MORE: f64 = 1.35;
-/// A joint slower than this counts as at rest \[rad/s\].
-const REST_SPEED: f64 = 0.005;
 /// Samples of a recording: every 12 ms, as the paper's.
 const EVERY: usize = 12;
 /// Effects of equation (4).
@@ -50,8 +48,7 @@ fn arm() -> ArmConfig {
             *value *= MORE;
         }
     }
-    // Two cut-offs one behind the other: see the form's module.
-    config.estimator.cut_off *= 2.0;
+    config.estimator.form = Form::MotorCurrent;
     config
 }
 
@@ -129,10 +126,9 @@ fn score(
         std_error_share: 0.1,
         ..TakeOverConfig::default()
     };
-    let cut_off = config.estimator.cut_off;
     let model = config.model();
     let mut torques =
-        TorqueByMotorCurrent::new(&model.joint, cut_off, REST_SPEED, take_over).expect("valid");
+        TorqueByMotorCurrent::new(&model.joint, &config.estimator, take_over).expect("valid");
     for (joint, found) in lab.into_iter().flatten().enumerate() {
         let found: Vec<_> = found
             .iter()
@@ -159,7 +155,7 @@ fn score(
                 torque: measured.motor_torque_from_current.into(),
             },
         );
-        let estimate = estimator.step(TICK, &own.measurement);
+        let estimate = estimator.step_by_motors(TICK, &own);
         let truth = driver.arm.truth();
         if tick < 1500 || truth.normal_force <= 0.0 || truth.sliding_velocity.abs() < 0.001 {
             continue;
@@ -202,11 +198,10 @@ fn the_labs_friction_makes_forces_from_currents_true() {
 #[test]
 fn at_rest_the_torque_is_told_to_be_undetermined() {
     let config = arm();
-    let cut_off = config.estimator.cut_off;
     let take_over = TakeOverConfig::default();
     let joints = &config.model().joint;
     let mut torques =
-        TorqueByMotorCurrent::new(joints, cut_off, REST_SPEED, take_over).expect("valid");
+        TorqueByMotorCurrent::new(joints, &config.estimator, take_over).expect("valid");
     let mut driver = Driver::new(&config, 5);
     let (mut told, mut off) = (0, 0.0_f64);
     for tick in 0..4000 {

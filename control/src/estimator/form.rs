@@ -1,5 +1,5 @@
-//! The two forms of equation (5): how motion and joint torques tell the torque
-//! of the contact, Jᵀ F.
+//! The forms of equation (5): how motion and joint torques tell the torque of the
+//! contact, Jᵀ F.
 
 use super::{DerivativeFilter, observer::MomentumObserver};
 use ferntast_model::arm::Arm;
@@ -18,6 +18,9 @@ pub enum Form {
     /// The momentum p = M(q) q̇ is observed: what changes it and is neither
     /// joint torque nor ∂L/∂q is the contact. Needs no acceleration.
     MomentumObserver,
+    /// As direct, with joint torques by the motors' currents in place of torque sensors:
+    /// see [`TorqueByMotorCurrent`](super::TorqueByMotorCurrent).
+    MotorCurrent,
 }
 
 /// Filtered motion of the links, all as late as the torque of the contact.
@@ -59,22 +62,29 @@ impl Channels {
     }
 }
 
+/// Either of the two filters one behind the other that are as late together as one of
+/// `cut_off` \[Hz\].
+pub(super) fn motor_filter(cut_off: f64) -> DerivativeFilter {
+    DerivativeFilter::new(2.0 * cut_off)
+}
+
 /// Filters all channels alike and computes the torque of the contact.
 #[derive(Clone, Debug)]
 pub(super) struct TorqueOfContact {
     channels: Channels,
     observer: Option<MomentumObserver>,
-    /// How late the filters are, and how late everything is [s].
-    filter_delay: f64,
+    /// How late the motion is, and how late everything is [s].
+    motion_delay: f64,
     delay: f64,
 }
 
 impl TorqueOfContact {
-    /// Either form with the same delay, which `cut_off` \[Hz\] decides on.
+    /// Each form with the same delay, which `cut_off` \[Hz\] decides on.
     ///
     /// The observer is itself a low-pass of first order. It gets the cut-off
     /// asked for, and the filters before it twice that: their delays, 1/ω and
-    /// 2/(2ω), add up to the 2/ω that the direct form's filters have.
+    /// 2/(2ω), add up to the 2/ω that the direct form's filters have. Torques by motor
+    /// currents come through filters of their own: those and these have twice the cut-off.
     pub(super) fn new(form: Form, cut_off: f64, joints: JointCount) -> Self {
         let (filter, observer) = match form {
             Form::Direct => (DerivativeFilter::new(cut_off), None),
@@ -82,12 +92,17 @@ impl TorqueOfContact {
                 DerivativeFilter::new(2.0 * cut_off),
                 Some(MomentumObserver::new(cut_off)),
             ),
+            Form::MotorCurrent => (motor_filter(cut_off), None),
         };
+        let delay = DerivativeFilter::new(cut_off).delay();
         Self {
             channels: Channels::new(joints, filter),
+            motion_delay: match observer {
+                None => delay,
+                Some(_) => filter.delay(),
+            },
             observer,
-            filter_delay: filter.delay(),
-            delay: DerivativeFilter::new(cut_off).delay(),
+            delay,
         }
     }
 
@@ -126,7 +141,7 @@ impl TorqueOfContact {
         let velocity = channel(DerivativeFilter::first, &channels.positions)?;
         let acceleration = channel(DerivativeFilter::second, &channels.positions)?;
         let torque = channel(DerivativeFilter::value, &channels.torques)?;
-        let present_velocity = velocity + acceleration * self.filter_delay;
+        let present_velocity = velocity + acceleration * self.motion_delay;
         Some(match &mut self.observer {
             None => FilteredMotion {
                 position,

@@ -4,7 +4,7 @@
 //! into the estimate. The link-side position is q = θ − τ/K, since the motor
 //! already turns while the tip still rests (Fig. 16); all channels go through
 //! the same causal filter; then equation (5) gives the contact's torque in
-//! one of two forms (see [`Form`]), and
+//! one of the forms of [`Form`], and
 //!
 //! F = J⁻ᵀ (Jᵀ F),  F = F_N ∇Φ − F_T ṙ/|ṙ|.
 //!
@@ -28,7 +28,9 @@ pub use coefficient::{Coefficient, CoefficientEstimator};
 pub use estimate::{ContactEstimate, JointMeasurement};
 pub use filter::DerivativeFilter;
 pub use form::Form;
-pub use motor_current::{MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor};
+pub use motor_current::{
+    MotorCurrentParameters, MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor,
+};
 pub use parameters::EstimatorParameters;
 pub use systematic::Uncertainty;
 
@@ -80,11 +82,15 @@ impl ContactEstimator {
         let count = JointCount::new(model.joint.len())?;
         let joints = model.arm.joints_of_links(&model.joint)?;
         let ranges = Vector2::from(joints.each_ref().map(|joint| joint.torque_sensor_range));
+        let mut parameters = *parameters;
+        if parameters.form == Form::MotorCurrent {
+            parameters.zeroing_time = 0.0;
+        }
         Ok(Self {
             arm: Arm::new(&model.arm),
             count,
             joints: model.joint.clone(),
-            parameters: *parameters,
+            parameters,
             contact: TorqueOfContact::new(parameters.form, parameters.cut_off, count),
             sensors: SensorWatch::new(count),
             zeroing: Zeroing::new(ranges),
@@ -112,6 +118,22 @@ impl ContactEstimator {
     /// it gave before, marked as invalid, and after `longest_gap` of that no
     /// forces and no contact any more.
     pub fn step(&mut self, dt: f64, measurement: &JointMeasurement) -> ContactEstimate {
+        self.step_with(dt, measurement, false)
+    }
+
+    /// The same with joint torques by motor currents. While a joint rests or turns its
+    /// torque is not determined, and what is told counts as near rest.
+    pub fn step_by_motors(&mut self, dt: f64, torque: &TorqueFromMotor) -> ContactEstimate {
+        let undetermined = torque.undetermined.contains(&true);
+        self.step_with(dt, &torque.measurement, undetermined)
+    }
+
+    fn step_with(
+        &mut self,
+        dt: f64,
+        measurement: &JointMeasurement,
+        undetermined: bool,
+    ) -> ContactEstimate {
         let passes = dt > 0.0 && dt.is_finite();
         if !(passes && is_usable(self.count, measurement)) {
             self.gap += if passes { dt } else { 0.0 };
@@ -178,6 +200,7 @@ impl ContactEstimator {
             velocity: tip_velocity,
             present_velocity: jacobian * motion.present_velocity,
             delay: self.contact.delay(),
+            undetermined,
         };
         let last = self.last;
         self.split.step(

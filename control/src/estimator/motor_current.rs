@@ -7,17 +7,26 @@
 //! elsewhere, as the servo's does.
 //!
 //! Motor positions and torques go through the same filter; the positions come out
-//! with the torques, equally late. A [`ContactEstimator`](super::ContactEstimator)
-//! behind it that filters with the same cut-off adds the same delay again: each with
-//! twice the cut-off, both are as late as the estimator alone.
+//! with the torques, equally late. The [`ContactEstimator`](super::ContactEstimator)
+//! behind it, of the form [`MotorCurrent`](super::Form::MotorCurrent), adds the same delay
+//! again: both together are as late as the other forms.
 //!
 //! Friction at rest is whatever holds the joint, between −τ_F and +τ_F: nothing tells the
 //! torque then, nor until the filters have forgotten the rest.
 
-use super::{DerivativeFilter, JointMeasurement};
+use super::{DerivativeFilter, EstimatorParameters, JointMeasurement, form::motor_filter};
 use crate::servo::{FeedForward, TakeOverConfig};
 use ferntast_model::joint::JointParameters;
-use ferntast_model::{JointCount, Joints, ParameterError, check};
+use ferntast_model::{JointCount, Joints, ParameterError, parameters};
+
+parameters! {
+    /// How joint torques are found from motor currents: section `[estimator.motor_current]`.
+    #[derive(Copy)]
+    pub struct MotorCurrentParameters {
+        /// A joint slower than this counts as at rest \[rad/s\].
+        pub rest_speed: f64 [1e-6..=1.0, "rad/s"] = 0.005,
+    }
+}
 
 /// How many times the filter's delay a rest of the joint is seen in its torque.
 const REST_DELAYS: f64 = 5.0;
@@ -69,22 +78,21 @@ pub struct TorqueByMotorCurrent {
 }
 
 impl TorqueByMotorCurrent {
-    /// For `joints` as believed, filtered with `cut_off` \[Hz\]; slower than `rest_speed`
-    /// \[rad/s\] a joint counts as at rest.
+    /// For `joints` as believed, before an estimator with these `parameters`.
     ///
     /// # Errors
     ///
     /// A number out of bounds, friction that the model does not know.
     pub fn new(
         joints: &[JointParameters],
-        cut_off: f64,
-        rest_speed: f64,
+        parameters: &EstimatorParameters,
         take_over: TakeOverConfig,
     ) -> Result<Self, ParameterError> {
-        check("cut_off", cut_off, 0.5, 800.0, "Hz")?;
-        check("rest_speed", rest_speed, 1e-6, 1.0, "rad/s")?;
+        parameters
+            .validate()
+            .map_err(|error| error.within("estimator"))?;
         let count = JointCount::new(joints.len())?;
-        let filter = DerivativeFilter::new(cut_off);
+        let filter = motor_filter(parameters.cut_off);
         let own = |joint: &JointParameters| {
             Ok(Own {
                 position: filter,
@@ -102,7 +110,7 @@ impl TorqueByMotorCurrent {
                 .map(own)
                 .collect::<Result<_, ParameterError>>()?,
             count,
-            rest_speed,
+            rest_speed: parameters.motor_current.rest_speed,
             started: false,
         })
     }

@@ -1,6 +1,6 @@
 //! Parameters of the contact-force estimator.
 
-use super::{Form, Uncertainty};
+use super::{Form, MotorCurrentParameters, Uncertainty};
 use ferntast_model::parameters;
 
 parameters! {
@@ -30,11 +30,15 @@ parameters! {
         /// Longest time between measurements; after a longer one it starts over \[s\].
         pub longest_gap: f64 [1e-3..=10.0, "s"],
         /// Memory of the torque sensors' zeros, which are found while the tip is free
-        /// \[s of that\]; 0 takes the sensors as they are.
+        /// \[s of that\]; 0 takes the sensors as they are. By motor currents there is none:
+        /// friction that is not known is no zero.
         #[serde(default)]
         pub zeroing_time: f64 [0.0..=1e4, "s"],
         /// What the standard error of the coefficient has to take into account.
         #[serde(default)]
         pub uncertainty: Uncertainty [section],
+        /// How joint torques are found from motor currents, where the form asks for it.
+        #[serde(default)]
+        pub motor_current: MotorCurrentParameters [section],
     }
 }

@@ -23,6 +23,8 @@ pub(super) struct Motion {
     pub(super) delay: f64,
     /// What the torque sensors may have wrong of the force \[N\].
     pub(super) errors: SensorErrors,
+    /// A joint's friction, and so the force, is not determined.
+    pub(super) undetermined: bool,
 }
 
 /// Splits forces, and remembers how the tip slid.
@@ -110,7 +112,7 @@ impl Split {
         // At a turn first arm and surface wind up the other way, then the filters follow.
         let turned_lately =
             self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
-        estimate.near_rest = stopping || turned_lately || estimate.corner;
+        estimate.near_rest = stopping || turned_lately || estimate.corner || motion.undetermined;
         self.identify(parameters, dt, &feature, &motion.errors, estimate);
     }
 

@@ -271,9 +271,18 @@ impl FeedForward {
         self.share < 1.0
     }
 
-    /// The parameters, effect by effect: coefficients, then shape.
+    /// The parameters, effect by effect: coefficients, then shape; and at last T₀, where
+    /// one was taken over.
     pub fn parameters(&self) -> impl Iterator<Item = FedForward> + '_ {
-        self.terms.iter().flatten().flat_map(Fed::parameters)
+        let [coldest, warmest] = self.temperature_range;
+        let reference = (self.taken_over && coldest < warmest).then_some(FedForward {
+            name: REFERENCE_TEMPERATURE,
+            configured: 0.0,
+            value: self.reference_temperature,
+            target: self.reference_temperature,
+        });
+        let effects = self.terms.iter().flatten().flat_map(Fed::parameters);
+        effects.chain(reference)
     }
 
     /// A copy that heads for what is configured, with T₀ as found.

@@ -67,6 +67,15 @@ pub fn effect_with(name: &str) -> Option<(&'static StaticEffect, usize)> {
     })
 }
 
+/// Name in results of the parameter, coefficient or shape, that an arm's file calls `key`.
+pub fn name_of_key(key: &str) -> Option<&'static str> {
+    of_joint().find_map(|effect| {
+        let row = &effect.row;
+        let mut all = row.coefficients.iter().chain(row.shape);
+        all.find(|own| own.key == key).map(|own| own.name)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

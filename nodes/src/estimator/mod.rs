@@ -1,21 +1,25 @@
 //! The contact-force estimator as a node.
 
+mod by_motors;
+
+use by_motors::ByMotors;
 use ferntast_control::estimator::{
-    ContactEstimate, ContactEstimator, EstimatorParameters, JointMeasurement,
+    ContactEstimate, ContactEstimator, EstimatorParameters, Form, JointMeasurement,
 };
+use ferntast_control::servo::TakeOverConfig;
 use ferntast_model::{ArmModel, Joints, ParameterError, contour::Surface, kinematics::LINKS};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Edge, Fault, Frame, JointFields, JointNames, JointSample, Level,
-        PoseSample, TransformsSample, WrenchSample,
+        ContactStateSample, Edge, Fault, Frame, FrictionStatusSample, JointFields, JointNames,
+        JointSample, Level, PoseSample, TemperatureSample, TransformsSample, WrenchSample,
     },
 };
 
 use crate::{
     config::joint_names,
     graph::Build,
-    node::{Node, NodeHealth, Ticking, ports},
+    node::{Newest, Node, NodeHealth, Ticking, ports},
     process::NodeError,
 };
 
@@ -28,7 +32,12 @@ ports! {
     /// The estimator's topics.
     EstimatorPorts for EstimatorNode;
     /// What the estimator takes.
-    input EstimatorInput { measured_js: Newest<JointSample> = FOLLOWER_MEASURED_JS, }
+    input EstimatorInput {
+        measured_js: Newest<JointSample> = FOLLOWER_MEASURED_JS,
+        motor_js: Newest<JointSample> = FOLLOWER_MOTOR_JS,
+        friction: PerJoint<Newest<FrictionStatusSample>> = FOLLOWER_JOINT_FRICTION,
+        temperature: PerJoint<Newest<TemperatureSample>> = FOLLOWER_JOINT_TEMPERATURE,
+    }
     /// What the estimator gives.
     output EstimatorOutput {
         measured_cp: PoseSample = FOLLOWER_MEASURED_CP,
@@ -45,8 +54,9 @@ ports! {
 ///
 /// A parameter out of its bounds, a topic that cannot be opened.
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
-    let arm = &build.session.loaded.arm;
-    let node = EstimatorNode::new(&arm.model, &arm.estimator)?;
+    let loaded = &build.session.loaded;
+    let (arm, servo) = (&loaded.arm, &loaded.scenario.servo);
+    let node = EstimatorNode::new(&arm.model, &arm.estimator, servo.take_over)?;
     let ports = EstimatorPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
 }
@@ -55,13 +65,16 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 pub struct EstimatorNode {
     joints: JointNames,
     estimator: ContactEstimator,
+    /// Joint torques, where no sensor tells them.
+    by_motors: Option<ByMotors>,
     last: Option<Time>,
     link_lengths: [f64; LINKS],
     transforms_due: Time,
 }
 
 impl EstimatorNode {
-    /// An estimator that believes in `model`.
+    /// An estimator that believes in `model`; by motor currents it takes over what the servo
+    /// takes over of friction, within the bounds `take_over`.
     ///
     /// # Errors
     ///
@@ -69,9 +82,13 @@ impl EstimatorNode {
     pub fn new(
         model: &ArmModel,
         parameters: &EstimatorParameters,
+        take_over: TakeOverConfig,
     ) -> Result<EstimatorNode, ParameterError> {
+        let by_motors = (parameters.form == Form::MotorCurrent)
+            .then(|| ByMotors::new(model, parameters, take_over));
         Ok(EstimatorNode {
             joints: joint_names(model),
+            by_motors: by_motors.transpose()?,
             estimator: ContactEstimator::new(model, parameters)?,
             last: None,
             link_lengths: model.arm.link.map(|link| link.length),
@@ -105,22 +122,32 @@ impl Node for EstimatorNode {
         let Some(dt) = passed.filter(|&dt| dt > 0.0) else {
             return;
         };
-        let needed = JointFields::POSITION.with(JointFields::EFFORT);
+        let measured = measured.in_order_of(&self.joints);
         let joints = self.estimator.joints();
-        let estimate = self.estimator.step(
-            dt,
-            &match measured.in_order_of(&self.joints) {
-                Some(measured) if measured.fields.has(needed) => JointMeasurement {
-                    motor_position: Joints::from_places(joints, measured.position),
-                    joint_torque: Joints::from_places(joints, measured.effort),
-                },
-                // The estimator takes it for what it is: no measurement.
-                _ => JointMeasurement {
-                    motor_position: Joints::filled(joints, f64::NAN),
-                    joint_torque: Joints::filled(joints, f64::NAN),
-                },
-            },
-        );
+        // What is missing the estimator takes for what it is: no measurement.
+        let unknown = Joints::filled(joints, f64::NAN);
+        let estimate = match &mut self.by_motors {
+            None => {
+                let needed = JointFields::POSITION.with(JointFields::EFFORT);
+                let measured = measured.filter(|own| own.fields.has(needed));
+                self.estimator.step(
+                    dt,
+                    &JointMeasurement {
+                        motor_position: measured
+                            .map_or(unknown, |own| Joints::from_places(joints, own.position)),
+                        joint_torque: measured
+                            .map_or(unknown, |own| Joints::from_places(joints, own.effort)),
+                    },
+                )
+            }
+            Some(by_motors) => {
+                by_motors.hear(input);
+                let motor = input.motor_js.message.as_ref();
+                let motor = motor.and_then(|own| own.in_order_of(&self.joints));
+                let torque = by_motors.step(dt, joints, measured.as_ref(), motor.as_ref());
+                self.estimator.step_by_motors(dt, &torque)
+            }
+        };
         self.judge(&estimate, &mut output.health);
         publish(stamp, &estimate, output);
         // By the stamps too, that played back it is the same; a jump back starts over.

@@ -241,27 +241,6 @@ event = [
     { at_ms = 1701, fault = "word", device = "both", word = "resume" },
 ]
 "#,
-    r#"
-scenario = "rokviss"
-seed = 8025800
-law = "position_position"
-length_ms = 827
-event = [
-    { at_ms = 598, fault = "crash", node = "estimator" },
-    { at_ms = 634, fault = "sensor", sensor = "stuck", ms = 158 },
-    { at_ms = 747, fault = "word", device = "both", word = "resume" },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 8003474
-law = "four_channel"
-length_ms = 2056
-event = [
-    { at_ms = 1614, fault = "blackout", way = "back", ms = 420 },
-    { at_ms = 1701, fault = "word", device = "both", word = "resume" },
-]
-"#,
 ];
 
 #[test]
