@@ -11,11 +11,15 @@
 //! F = K p n − μ K p v_t/max(|v_t|, v_0) − b v, p = max(s − s₀, 0), s = −n·x_h.
 //!
 //! An update is blended in: the model rendered follows the one received by a first
-//! order lag, `blend_time`; a surface that appears around the hand begins soft.
+//! order lag, `blend_time`; a surface that appears around the hand begins soft. Its place
+//! comes towards the hand no faster than 50 mm/s.
 //!
-//! Forward go the hand's position and the force that it gives into the rendered
-//! surface; the follower goes to that position, but presses no harder than that
-//! force, and than `search_force` where nothing is rendered yet.
+//! Forward go the hand's position and the force f that it gives into the rendered
+//! surface. The tip goes to that position, but no deeper behind the surface as the follower
+//! estimates it than s₀ + f/K, with f at least `search_force`: no loop of force is closed
+//! around the servo and its lag, only one of the place s₀, which is slow
+//! (`place_frequency`; its gain is K_true/K − 1, so a K that is too small would make
+//! it unstable). A tip that lost the surface goes on after it, a millimetre ahead of itself.
 //!
 //! **What it guarantees.** Nothing about energy: what leaves at the tip is not bound to
 //! what entered at the hand, and an update that moves the surface towards the hand
@@ -29,13 +33,13 @@ mod estimate;
 
 pub use estimate::SurfaceModel;
 
-use super::contact::{CommandForce, TouchingTip};
+use super::contact::TouchingTip;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     vector,
 };
-use estimate::{SOFTEST, SurfaceEstimator};
+use estimate::{Even, SAME, SOFTEST, SurfaceEstimator};
 use nalgebra::Vector3;
 
 law_parameters! {
@@ -58,12 +62,10 @@ law_parameters! {
         pub position_time: f64 [0.002..=1.0, "s"] = 0.01,
         /// Largest speed of the tip's command, at the hand's scale \[m/s\].
         pub largest_speed: f64 [0.01..=10.0, "m/s"] = 0.5,
-        /// Damping with which the tip gives way to what is too hard, at the hand's scale
-        /// \[N·s/m\].
-        pub yield_damping: f64 [1.0..=10000.0, "N·s/m"] = 50.0,
-        /// Stiffness of the arm's servo at the tip; a session takes the arm's own
-        /// where that is larger \[N/m\].
-        pub servo_stiffness: f64 [1.0..=1000000.0, "N/m"] = 7000.0,
+        /// How late the contact's force is beside the tip, by the filters of its estimate \[s\].
+        pub force_lag: f64 [0.0..=0.1, "s"] = 0.008,
+        /// Natural frequency with which the place of the surface is followed \[rad/s\].
+        pub place_frequency: f64 [1.0..=100.0, "rad/s"] = 12.0,
     }
 }
 law_ends!(
@@ -74,15 +76,24 @@ law_ends!(
     ModelMediatedFollower
 );
 
+/// A surface comes towards the hand no faster [m/s].
+const PLACE_SPEED: f64 = 0.05;
 /// v_0: below this speed friction is viscous [m/s].
 const FRICTION_SPEED: f64 = 0.01;
+
+/// Stiffer than what is rendered, and within what a packet holds [N/m].
+const STIFFEST_SENT: f64 = 9000.0;
 
 /// The model as in a packet: place and friction in the position, the normal
 /// times the stiffness in the vector.
 fn packed(model: Option<SurfaceModel>, energy: Energy) -> Packet {
     let model = model.unwrap_or_default();
     let sideways = [model.place, model.friction, 0.0];
-    Packet::new(sideways, (model.stiffness * model.normal).into(), energy)
+    Packet::new(
+        sideways,
+        (model.stiffness.min(STIFFEST_SENT) * model.normal).into(),
+        energy,
+    )
 }
 
 /// Back from a packet.
@@ -125,19 +136,25 @@ impl ModelMediatedLeader {
         self.surface
     }
 
-    /// Blends the received model in.
+    /// Blends the received model in. A surface that comes towards the hand winds its spring up,
+    /// so it comes slowly; one that gives way does so at once.
     fn blend(&mut self, dt: f64) {
         let Some(target) = self.received else {
             return;
         };
         let share = dt / (dt + self.parameters.blend_time);
-        let surface = self.surface.get_or_insert(SurfaceModel {
+        let anew = SurfaceModel {
             stiffness: 0.0,
             ..target
-        });
+        };
+        let surface = self.surface.get_or_insert(anew);
+        if surface.normal.dot(&target.normal) < SAME {
+            // Another surface, whose place is along another normal.
+            *surface = anew;
+        }
         let normal = surface.normal + share * (target.normal - surface.normal);
         surface.normal = normal.try_normalize(1e-6).unwrap_or(target.normal);
-        surface.place += share * (target.place - surface.place);
+        surface.place += (target.place - surface.place).max(-PLACE_SPEED * dt);
         let stiffness = target.stiffness.min(self.parameters.largest_stiffness);
         surface.stiffness += share * (stiffness - surface.stiffness);
         surface.friction += share * (target.friction - surface.friction);
@@ -187,6 +204,72 @@ impl Leader for ModelMediatedLeader {
     }
 }
 
+/// A tip that lost the surface goes on after it by so much ahead of itself [m].
+const SEARCH: f64 = 1e-3;
+
+/// Where the surface is, followed without lag while it moves evenly.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Along which it is counted.
+    normal: Vector3<f64>,
+    /// [m, m/s]
+    even: Even,
+    touches: bool,
+    /// How far the tip may go beyond it to find it again [m].
+    search: f64,
+}
+
+impl Place {
+    fn of(model: &SurfaceModel) -> Place {
+        Place {
+            normal: model.normal,
+            even: Even::at(model.place),
+            touches: false,
+            search: 0.0,
+        }
+    }
+
+    /// After `dt` \[s\] with the tip at `tip` \[m\], where the surface as it is estimated now is
+    /// `model`; followed with natural frequency `frequency` \[rad/s\].
+    fn step(
+        self,
+        dt: f64,
+        frequency: f64,
+        model: &SurfaceModel,
+        tip: &Vector3<f64>,
+        touches: bool,
+    ) -> Place {
+        let depth = -model.normal.dot(tip);
+        // A normal that turns, turns about the tip.
+        let place = self.even.value + depth + self.normal.dot(tip);
+        let mut own = Place {
+            normal: model.normal,
+            even: Even {
+                value: place,
+                ..self.even
+            },
+            touches,
+            search: 0.0,
+        };
+        if !touches {
+            // What the tip has gone through is not there.
+            own.even = Even::at(place.max(depth));
+            own.search = if depth >= place { SEARCH } else { 0.0 };
+        } else if !self.touches {
+            own.even.value = model.place;
+        } else {
+            own.even.step(dt, frequency, model.place);
+        }
+        own
+    }
+
+    /// How deep the tip may go for a force of `allowed` \[N\] on a surface of `stiffness`
+    /// \[N/m\] \[m\].
+    fn deepest(&self, allowed: f64, stiffness: f64) -> f64 {
+        self.even.value + (allowed / stiffness).max(self.search)
+    }
+}
+
 /// The follower's end: sends the surface (place \[m\] and friction \[-\] in the
 /// position, normal times stiffness \[N/m\] in the vector), in hand units.
 #[derive(Clone, Debug)]
@@ -194,8 +277,10 @@ pub struct ModelMediatedFollower {
     parameters: ModelMediated,
     mapping: Mapping,
     estimator: SurfaceEstimator,
-    force: CommandForce,
+    /// The tip as late as the force.
+    late: [Option<Vector3<f64>>; 2],
     model: Option<SurfaceModel>,
+    place: Option<Place>,
     /// Hand units [m].
     command: Option<Vector3<f64>>,
 }
@@ -206,12 +291,29 @@ impl ModelMediatedFollower {
         ModelMediatedFollower {
             parameters: law.clone(),
             mapping,
-            estimator: SurfaceEstimator::new(law.contact_threshold, law.largest_stiffness),
-            force: CommandForce::new(mapping.stiffness_at_hand(law.servo_stiffness)),
+            estimator: SurfaceEstimator::new(law.contact_threshold),
+            late: [None; 2],
             model: None,
+            place: None,
             command: None,
         }
     }
+}
+
+/// What comes through two poles that are late by `lag` \[s\], as the force came through those
+/// of its estimate.
+fn late(
+    poles: &mut [Option<Vector3<f64>>; 2],
+    dt: f64,
+    lag: f64,
+    tip: Vector3<f64>,
+) -> Vector3<f64> {
+    let share = dt / (dt + 0.5 * lag);
+    poles.iter_mut().fold(tip, |input, pole| {
+        let own = pole.get_or_insert(input);
+        *own += share * (input - *own);
+        *own
+    })
 }
 
 impl Follower for ModelMediatedFollower {
@@ -219,34 +321,40 @@ impl Follower for ModelMediatedFollower {
         let own = &self.parameters;
         let live = self.mapping.live(input.connected, input.received);
         let TouchingTip {
-            contact,
-            tip,
-            here,
-            lead,
+            contact, tip, here, ..
         } = TouchingTip::new(&self.mapping, input, self.command);
         if let (Some(tip), Some(_)) = (tip, input.contact_force) {
+            let tip = late(&mut self.late, dt, own.force_lag, tip);
             self.model = self.estimator.step(dt, tip, contact);
+            let touches = contact.norm() >= own.contact_threshold;
+            self.place = self.model.map(|model| {
+                let place = self.place.unwrap_or(Place::of(&model));
+                place.step(dt, own.place_frequency, &model, &tip, touches)
+            });
         }
-        let pushed = self.force.step(dt, contact, lead);
-        let give = own.yield_damping + self.force.stiffness() * dt;
         let command = live.zip(here).map(|(received, here)| {
-            let away = vector(received.packet.position) - here;
-            let mut velocity = shortened(away / own.position_time, own.largest_speed);
-            let allowed = vector(received.packet.vector).norm().max(own.search_force);
-            let size = pushed.norm();
-            if size > 1e-9 {
-                // No faster than reaches the force that is allowed.
-                let along = pushed / size;
-                let most = (allowed - size) / give;
-                velocity += (most - velocity.dot(&along)).min(0.0) * along;
+            let mut target = vector(received.packet.position);
+            if let Some((model, place)) = self.model.zip(self.place) {
+                let allowed = vector(received.packet.vector).norm().max(own.search_force);
+                let most = place.deepest(allowed, model.stiffness);
+                let over = (-model.normal.dot(&target) - most).max(0.0);
+                target += over * model.normal;
             }
+            let velocity = shortened((target - here) / own.position_time, own.largest_speed);
             (here + velocity * dt, velocity)
         });
         self.command = command.map(|(position, _)| position);
         FollowerOutput {
             command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
             packet: match (input.tip, input.contact_force) {
-                (Some(_), Some(_)) => packed(self.model, energy),
+                (Some(_), Some(_)) => {
+                    let seen = self.model.zip(self.place);
+                    let seen = seen.map(|(model, own)| SurfaceModel {
+                        place: own.even.value,
+                        ..model
+                    });
+                    packed(seen, energy)
+                }
                 _ => Packet::empty(energy),
             },
         }
@@ -292,5 +400,61 @@ mod tests {
         );
         let free = rendered(&surface, &Vector3::new(0.009, 0.0, 0.0), &Vector3::zeros());
         assert_eq!(free, Vector3::zeros());
+    }
+
+    const WALL: SurfaceModel = SurfaceModel {
+        normal: Vector3::new(-1.0, 0.0, 0.0),
+        place: 0.0,
+        stiffness: 2000.0,
+        friction: 0.0,
+    };
+
+    #[test]
+    fn a_surface_that_moves_evenly_is_followed_without_lag() {
+        let (speed, frequency) = (0.02, 12.0);
+        let mut place = Place::of(&WALL);
+        let mut model = WALL;
+        for k in 0..1000 {
+            model.place = speed * 1e-3 * f64::from(k);
+            let tip = Vector3::new(model.place + 1e-3, 0.0, 0.0);
+            place = place.step(1e-3, frequency, &model, &tip, true);
+        }
+        // Ahead by a step; a lag of first order would leave speed / frequency, 1.7 mm.
+        let left = place.even.value - (model.place + speed * 1e-3);
+        assert!(left.abs() < 1e-3 * speed / frequency, "{left}");
+        assert!((place.even.rate / speed - 1.0).abs() < 0.01, "{place:?}");
+    }
+
+    #[test]
+    fn a_tip_that_lost_the_surface_goes_on_after_it() {
+        let place = Place::of(&WALL);
+        let tip = Vector3::new(0.004, 0.0, 0.0);
+        let lost = place.step(1e-3, 12.0, &WALL, &tip, false);
+        assert!((lost.deepest(0.0, WALL.stiffness) - (tip.x + SEARCH)).abs() < 1e-12);
+        // Before the surface it does not search.
+        let before = Vector3::new(-0.004, 0.0, 0.0);
+        let own = place.step(1e-3, 12.0, &WALL, &before, false);
+        assert!((own.deepest(2.0, WALL.stiffness) - 2.0 / WALL.stiffness).abs() < 1e-12);
+        // Found again, it begins where the surface is.
+        let found = SurfaceModel {
+            place: 0.0045,
+            ..WALL
+        };
+        let own = lost.step(1e-3, 12.0, &found, &Vector3::new(0.005, 0.0, 0.0), true);
+        assert!((own.even.value - 0.0045).abs() < 1e-12, "{own:?}");
+    }
+
+    #[test]
+    fn a_normal_that_turns_turns_about_the_tip() {
+        let tip = Vector3::new(0.01, 0.03, 0.0);
+        let place = Place::of(&WALL).step(1e-3, 12.0, &WALL, &tip, true);
+        let turned = SurfaceModel {
+            normal: Vector3::new(-0.8, -0.6, 0.0),
+            // As deep behind it as before.
+            place: 0.8 * tip.x + 0.6 * tip.y - 0.01,
+            ..WALL
+        };
+        let own = place.step(1e-3, 12.0, &turned, &tip, true);
+        assert!((own.even.value - turned.place).abs() < 1e-12, "{own:?}");
     }
 }

@@ -2,31 +2,41 @@
 //! with stiffness and friction, in hand units.
 //!
 //! With the depth s = −n·x along the surface's normal n the contact's force is
-//! F_N = K (s − s₀): a line, fitted over a window that forgets (least squares,
-//! as Hunt and Crossley's exponent 1; recursive identification of contact:
-//! Haddadi and Hashtrudi-Zaad 2012, "Real-time identification of Hunt–Crossley
-//! dynamic models of contact environments", IEEE T-RO 28). A tip that rests
-//! tells nothing of K, but with K known where the surface is.
+//! F_N = K (s − s₀). Its compliance 1/K is the slope of depth over force, by least squares
+//! (recursive identification of contact: Haddadi and Hashtrudi-Zaad 2012, "Real-time
+//! identification of Hunt–Crossley dynamic models of contact environments", IEEE T-RO 28).
+//! Noise of the force makes that slope too small, so a surface seems too stiff and never
+//! too soft: the place of one that seems too soft, s − F_N/K, runs ahead of the tip that
+//! goes after it. A tip that rests tells nothing of K, but with K known where the surface is.
 
 use nalgebra::Vector3;
 
-/// Softest and stiffest surface that is distinguished [N/m]: a packet holds no
-/// larger number.
+/// Softest and stiffest surface that is distinguished [N/m].
 pub(super) const SOFTEST: f64 = 10.0;
-const STIFFEST: f64 = 10_000.0;
+const STIFFEST: f64 = 40_000.0;
+/// What changes evenly is what is slower than this [rad/s].
+const EVEN: f64 = 25.0;
 /// Time constant of the window [s].
 const MEMORY: f64 = 0.3;
-/// Depths that spread by less than this tell nothing of stiffness [m].
-const SPREAD: f64 = 5e-5;
-/// Share of the force's variance that the depth has to explain: of a surface
-/// that moves by itself it does not.
-const LINE: f64 = 0.9;
+/// Forces that change by less than this tell nothing of compliance: twice their noise [N].
+const SPREAD: f64 = 0.1;
+/// What of a depth is not the line's, at least [m], and the time over which the filters of
+/// the force correlate it [s].
+const NOISE: f64 = 5e-6;
+const CORRELATION: f64 = 0.016;
+/// A line is not all that a surface is: its stiffness is known no better [-],
+const LEAST_ERROR: f64 = 0.01;
+/// and at a new contact no better than this [-].
+const ANEW: f64 = 0.2;
 /// A contact tells its normal in its first moments, before friction bends the
 /// force aside [s].
 const ONSET: f64 = 0.05;
+/// A surface that is known keeps its normal until it was pushed so much from another
+/// direction [N s]: what an arm that shakes feigns is shorter.
+const OTHER: f64 = 0.1;
 /// Cosine of the angle within which a force belongs to the surface that is
 /// known: 40°, friction bends it aside by up to that.
-const SAME: f64 = 0.77;
+pub(super) const SAME: f64 = 0.77;
 /// Slower than this the tip does not slide [m/s].
 const SLIDING: f64 = 5e-3;
 /// A tip that is free this far behind the surface shows that it has gone [m].
@@ -45,36 +55,93 @@ pub struct SurfaceModel {
     pub friction: f64,
 }
 
-/// Sums over the window.
+/// A value, smoothed without lag while it changes evenly (as the tracker of the servo).
 #[derive(Clone, Copy, Debug, Default)]
-struct Window {
-    weight: f64,
-    depth: f64,
-    force: f64,
-    depth_depth: f64,
-    depth_force: f64,
-    force_force: f64,
+pub(super) struct Even {
+    /// The value.
+    pub value: f64,
+    /// Its rate [1/s].
+    pub rate: f64,
 }
 
-impl Window {
-    fn add(&mut self, share: f64, depth: f64, force: f64) {
-        let keep = 1.0 - share;
-        // Means and central moments, both forgetting.
-        self.weight = keep * self.weight + share;
-        let rate = share / self.weight;
-        let (away, apart) = (depth - self.depth, force - self.force);
-        self.depth += rate * away;
-        self.force += rate * apart;
-        self.depth_depth = (1.0 - rate) * (self.depth_depth + rate * away * away);
-        self.depth_force = (1.0 - rate) * (self.depth_force + rate * away * apart);
-        self.force_force = (1.0 - rate) * (self.force_force + rate * apart * apart);
+impl Even {
+    /// At rest.
+    pub fn at(value: f64) -> Even {
+        Even { value, rate: 0.0 }
     }
 
-    /// The line's slope, where there is a line.
-    fn slope(&self) -> Option<f64> {
-        let product = self.depth_depth * self.force_force;
-        let line = self.depth_force > 0.0 && self.depth_force.powi(2) > LINE * product;
-        (line && self.depth_depth > SPREAD * SPREAD).then(|| self.depth_force / self.depth_depth)
+    /// After `dt` \[s\], with natural frequency `frequency` \[rad/s\]. Gives what of `value`
+    /// is not even.
+    pub fn step(&mut self, dt: f64, frequency: f64, value: f64) -> f64 {
+        let error = value - self.value;
+        self.rate += frequency * frequency * error * dt;
+        self.value += (self.rate + 2.0 * frequency * error) * dt;
+        error
+    }
+}
+
+/// Compliance as the slope of depth over force, both less what of them changes evenly: a
+/// surface that moves by itself changes them evenly over some hundredths of a second, a
+/// tip that meets it or is pushed does not. Recursive least squares whose weights are what
+/// these values tell, so that it forgets only for something that is known better.
+#[derive(Clone, Copy, Debug)]
+struct Slope {
+    force: Option<Even>,
+    depth: Even,
+    /// [m/N]
+    compliance: f64,
+    /// One by the variance of the compliance [N²/m²].
+    information: f64,
+    /// Variance of the depth about the line [m²].
+    scatter: f64,
+}
+
+impl Slope {
+    const UNKNOWN: Slope = Slope {
+        force: None,
+        depth: Even {
+            value: 0.0,
+            rate: 0.0,
+        },
+        compliance: 1.0 / STIFFEST,
+        information: 0.0,
+        scatter: 0.0,
+    };
+
+    /// [N/m]
+    fn stiffness(&self) -> f64 {
+        1.0 / self.compliance
+    }
+
+    /// A new contact, maybe with something else.
+    fn begin(&mut self) {
+        let known = (ANEW * self.compliance).powi(-2);
+        *self = Slope {
+            compliance: self.compliance,
+            information: self.information.min(known),
+            ..Slope::UNKNOWN
+        };
+    }
+
+    /// After `dt` \[s\], at `depth` \[m\] under `force` \[N\].
+    fn add(&mut self, dt: f64, depth: f64, force: f64) {
+        let Some(even) = &mut self.force else {
+            (self.force, self.depth) = (Some(Even::at(force)), Even::at(depth));
+            return;
+        };
+        let apart = even.step(dt, EVEN, force);
+        let away = self.depth.step(dt, EVEN, depth);
+        let left = away - self.compliance * apart;
+        self.scatter += EVEN * dt * (left * left - self.scatter);
+        if apart.abs() < SPREAD {
+            return;
+        }
+        let told = apart * apart / self.scatter.max(NOISE * NOISE) * dt / CORRELATION;
+        self.information += told;
+        let compliance = self.compliance + told / self.information * left / apart;
+        self.compliance = compliance.clamp(1.0 / STIFFEST, 1.0 / SOFTEST);
+        let best = (LEAST_ERROR * self.compliance).powi(-2);
+        self.information = self.information.min(best);
     }
 }
 
@@ -82,28 +149,32 @@ impl Window {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurfaceEstimator {
     model: Option<SurfaceModel>,
-    window: Window,
+    slope: Slope,
     /// For how long [s].
     touching: f64,
+    /// Impulse of the force in the first moments of the contact [N s].
+    pushed: Vector3<f64>,
     /// The normal is being found.
     settling: bool,
+    /// Where the contact began [m].
+    began: Vector3<f64>,
     last: Option<Vector3<f64>>,
     threshold: f64,
-    first: f64,
 }
 
 impl SurfaceEstimator {
     /// Knows no surface. Forces below `threshold` \[N\] are no contact; a
-    /// new surface counts as one of stiffness `first` \[N/m\].
-    pub fn new(threshold: f64, first: f64) -> Self {
+    /// new surface counts as a stiff one.
+    pub fn new(threshold: f64) -> Self {
         SurfaceEstimator {
             model: None,
-            window: Window::default(),
+            slope: Slope::UNKNOWN,
             touching: 0.0,
+            pushed: Vector3::zeros(),
             settling: false,
+            began: Vector3::zeros(),
             last: None,
             threshold,
-            first,
         }
     }
 
@@ -119,7 +190,6 @@ impl SurfaceEstimator {
         self.last = Some(tip);
         if size < self.threshold || dt <= 0.0 {
             self.touching = 0.0;
-            self.window = Window::default();
             if let Some(model) = &mut self.model {
                 let depth = -model.normal.dot(&tip);
                 model.place = model.place.max(depth - GONE);
@@ -127,26 +197,34 @@ impl SurfaceEstimator {
             return self.model;
         }
         let mut model = self.model.unwrap_or(SurfaceModel {
-            stiffness: self.first,
+            stiffness: STIFFEST,
             ..SurfaceModel::default()
         });
         if self.touching == 0.0 {
-            // A surface that is known keeps its normal: the tip may slide now.
-            self.settling = model.normal.dot(&force) < SAME * size;
+            self.slope.begin();
+            self.pushed = Vector3::zeros();
+            self.settling = self.model.is_none();
+            self.began = tip;
         }
-        if self.settling && self.touching < ONSET {
-            let share = dt / (self.touching + dt);
-            let normal = model.normal * f64::from(self.touching > 0.0);
-            let mean = normal + share * (force / size - normal);
-            model.normal = mean.try_normalize(1e-6).unwrap_or(force / size);
+        if self.touching < ONSET {
+            self.pushed += force * dt;
+            let impulse = self.pushed.norm();
+            let other = model.normal.dot(&self.pushed) < SAME * impulse;
+            if other && impulse > OTHER && !self.settling {
+                self.settling = true;
+                self.slope = Slope::UNKNOWN;
+            }
+            if self.settling {
+                model.normal = self.pushed.try_normalize(1e-9).unwrap_or(force / size);
+            }
         }
         self.touching += dt;
         let depth = -model.normal.dot(&tip);
         let normal_force = force.dot(&model.normal).max(0.0);
-        self.window.add(dt / (dt + MEMORY), depth, normal_force);
-        if let Some(slope) = self.window.slope() {
-            model.stiffness = slope.clamp(SOFTEST, STIFFEST);
-        }
+        // Depth from where the contact began: it changes little as the normal is found.
+        let gone = model.normal.dot(&(self.began - tip));
+        self.slope.add(dt, gone, normal_force);
+        model.stiffness = self.slope.stiffness();
         model.place = depth - normal_force / model.stiffness;
         let slid = moved - model.normal * model.normal.dot(&moved);
         let way = slid.norm();
@@ -169,7 +247,7 @@ mod tests {
         // A plane through (0, 0.01, 0), its normal at 30°, 1500 N/m, μ = 0.2.
         let normal = Vector3::new(0.5, 0.75_f64.sqrt(), 0.0);
         let along = Vector3::new(normal.y, -normal.x, 0.0);
-        let mut estimator = SurfaceEstimator::new(0.1, 1000.0);
+        let mut estimator = SurfaceEstimator::new(0.1);
         let place = -normal.y * 0.01;
         let mut model = None;
         for k in 0..3000 {
@@ -192,7 +270,7 @@ mod tests {
 
     #[test]
     fn a_surface_that_gives_way_is_followed() {
-        let mut estimator = SurfaceEstimator::new(0.1, 1000.0);
+        let mut estimator = SurfaceEstimator::new(0.1);
         let at = |depth: f64| Vector3::new(depth, 0.0, 0.0);
         let force = |size: f64| Vector3::new(-size, 0.0, 0.0);
         for k in 0..500 {
@@ -204,5 +282,88 @@ mod tests {
         // Now the tip is free 2 cm behind.
         let model = estimator.step(1e-3, at(0.02), Vector3::zeros()).unwrap();
         assert!((model.place - 0.019).abs() < 1e-9, "{model:?}");
+    }
+
+    #[test]
+    fn what_changes_evenly_is_followed_without_lag_and_what_does_not_is_left() {
+        let mut even = Even::at(0.0);
+        let rate = 0.02;
+        let mut left = 1.0;
+        for k in 1..=1000 {
+            left = even.step(1e-3, EVEN, rate * 1e-3 * f64::from(k));
+        }
+        assert!(f64::abs(left) < 1e-3 * rate / EVEN, "{left}");
+        assert!((even.rate / rate - 1.0).abs() < 1e-3, "{even:?}");
+        let left = even.step(1e-3, EVEN, even.value + 0.01);
+        assert!((left - 0.01).abs() < 1e-9, "{left}");
+    }
+
+    /// Onset of a contact: 0 to 10 N within some 50 ms.
+    fn onset(slope: &mut Slope, stiffness: f64) {
+        slope.begin();
+        for k in 0..400 {
+            let time = 1e-3 * f64::from(k);
+            let force = 10.0 * (1.0 - (-time / 0.03).exp());
+            slope.add(1e-3, force / stiffness, force);
+        }
+    }
+
+    #[test]
+    fn a_stiffness_is_known_after_an_onset() {
+        for stiffness in [100.0, 2000.0, 20_000.0] {
+            let mut slope = Slope::UNKNOWN;
+            onset(&mut slope, stiffness);
+            let known = slope.stiffness() / stiffness;
+            assert!((0.95..1.05).contains(&known), "{stiffness} N/m: {known}");
+        }
+    }
+
+    #[test]
+    fn noise_of_the_force_makes_a_surface_stiffer_and_never_softer() {
+        let stiffness = 2000.0;
+        let mut slope = Slope::UNKNOWN;
+        for k in 0..3000 {
+            let time = 1e-3 * f64::from(k);
+            let force = 5.0 + 0.5 * (40.0 * time).sin();
+            // As large as a fifth of what it changes by, and not in the depth.
+            let noise = 0.1 * (97.0 * time).sin();
+            slope.add(1e-3, force / stiffness, force + noise);
+        }
+        let known = slope.stiffness() / stiffness;
+        assert!((1.0..1.2).contains(&known), "{known}");
+    }
+
+    #[test]
+    fn a_surface_that_moves_does_not_move_the_stiffness() {
+        let stiffness = 2000.0;
+        let mut slope = Slope::UNKNOWN;
+        onset(&mut slope, stiffness);
+        // The surface goes to and fro by 5 mm at 0.5 Hz; the tip, which is pressed as if by
+        // a spring as stiff, goes half of the way, so that depth falls as the force rises.
+        for k in 0..4000 {
+            let turn = std::f64::consts::PI * 1e-3 * f64::from(k);
+            let place = 0.0025 * (1.0 - turn.cos());
+            let depth = 10.0 / stiffness - 0.5 * place;
+            let force = 10.0 + 0.5 * stiffness * place;
+            slope.add(1e-3, depth, force);
+        }
+        let known = slope.stiffness() / stiffness;
+        assert!((0.95..1.05).contains(&known), "{known}");
+    }
+
+    #[test]
+    fn a_known_surface_keeps_its_normal_until_it_is_pushed_from_elsewhere_for_long() {
+        let mut estimator = SurfaceEstimator::new(0.1);
+        let tip = Vector3::zeros();
+        let mut touch = |force: [f64; 3], steps: usize| {
+            estimator.step(1e-3, tip, Vector3::zeros());
+            let models = (0..steps).map(|_| estimator.step(1e-3, tip, force.into()));
+            models.last().flatten().unwrap().normal
+        };
+        assert!((touch([-5.0, 0.0, 0.0], 100) + Vector3::x()).norm() < 1e-9);
+        // 0.08 N s, as of an arm that shakes.
+        assert!((touch([0.0, 8.0, 0.0], 10) + Vector3::x()).norm() < 1e-9);
+        // 0.16 N s.
+        assert!((touch([0.0, 8.0, 0.0], 20) - Vector3::y()).norm() < 1e-9);
     }
 }
