@@ -43,7 +43,10 @@ pub struct ContactEstimate {
     pub feature: Option<usize>,
     /// b_0T of equation (6) of the surface touched, or touched last.
     pub friction: Coefficient,
-    /// The tip touches a surface.
+    /// The tip touches something: a surface of the contour, or, by a force of three times as
+    /// much for 50 ms, something that is not in it.
+    pub touches: bool,
+    /// The tip touches a surface of the contour.
     pub in_contact: bool,
     /// The forces can be used.
     pub valid: bool,
@@ -76,6 +79,7 @@ impl ContactEstimate {
             surface: None,
             feature: None,
             friction: Coefficient::UNKNOWN,
+            touches: false,
             in_contact: false,
             valid: false,
             near_rest: false,

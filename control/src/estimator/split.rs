@@ -8,6 +8,12 @@ use ferntast_model::contour::{Feature, Surface, nearest};
 /// How far behind the front of a feature the tip is still taken to push it \[m\].
 const REACH: f64 = 0.1;
 
+/// Where no surface is known, a force of so many times that of a contact is one [-],
+const UNKNOWN_SURFACE: f64 = 3.0;
+/// when it lasts so long [s]: of an arm that is jerked the estimate is off for as long as its
+/// filters take.
+const UNKNOWN_TIME: f64 = 0.05;
+
 /// How many times the filter's delay a turn of the tip is seen in the forces.
 const TURN_DELAYS: f64 = 5.0;
 
@@ -39,6 +45,8 @@ pub(super) struct Split {
     sliding_for: f64,
     /// Direction of the last motion along the tangent: ±1.
     direction: f64,
+    /// For how long something that is not in the contour has pushed \[s\].
+    unknown_for: f64,
 }
 
 impl Split {
@@ -49,6 +57,7 @@ impl Split {
             travel: 0.0,
             sliding_for: 0.0,
             direction: 1.0,
+            unknown_for: 0.0,
         }
     }
 
@@ -79,6 +88,13 @@ impl Split {
             let feature = self.features.get(near.index)?;
             (force.dot(&feature.normal) > threshold).then_some((near.index, *feature))
         });
+        let unknown = near.is_none() && force.norm() > UNKNOWN_SURFACE * parameters.contact_on;
+        self.unknown_for = if unknown { self.unknown_for + dt } else { 0.0 };
+        estimate.touches = match near {
+            Some(_) => touched.is_some(),
+            None if last.touches => force.norm() > parameters.contact_on,
+            None => self.unknown_for >= UNKNOWN_TIME,
+        };
         let Some((index, feature)) = touched else {
             self.travel = 0.0;
             self.sliding_for = 0.0;

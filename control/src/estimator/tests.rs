@@ -91,7 +91,34 @@ fn the_split_follows_the_surface() {
             estimate = estimator.step(1e-3, &measurement);
         }
         assert_eq!(estimate.in_contact, in_contact, "{force} N");
+        assert_eq!(estimate.touches, in_contact, "{force} N");
     }
+}
+
+#[test]
+fn what_is_not_in_the_contour_is_touched_by_a_larger_force_that_lasts() {
+    let (model, parameters) = shipped([0.0, 0.0]);
+    let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
+    // 30 mm from the contour.
+    let tip = Vector2::from(model.contour.nominal_tip);
+    let kinematics = model.arm.kinematics();
+    let elbow = model.contour.nominal_elbow;
+    let q = kinematics.inverse(&tip, elbow).unwrap();
+    let mut after = |force: f64, steps: usize| {
+        let measurement = at_rest(&model, q, Vector2::new(-force, 0.0));
+        let estimates = (0..steps).map(|_| estimator.step(1e-3, &measurement));
+        let estimate = estimates.last().unwrap();
+        assert!(!estimate.in_contact && estimate.surface.is_none());
+        estimate.touches
+    };
+    let on = parameters.contact_on;
+    assert!(!after(2.9 * on, 200), "as much as noise");
+    assert!(!after(10.0 * on, 40), "as short as a jerk");
+    assert!(!after(0.0, 100), "gone again");
+    // The filters take less than 50 ms.
+    assert!(after(3.1 * on, 150));
+    assert!(after(1.5 * on, 200), "it goes on");
+    assert!(!after(0.9 * on, 200), "and ends");
 }
 
 #[test]
