@@ -29,6 +29,15 @@ pub struct FollowerReadings {
     pub told_to_stop: bool,
 }
 
+impl FollowerReadings {
+    /// The contact's force as laws take it, of what the estimator tells, `force` in N: zero
+    /// while the tip touches nothing, as the estimate is noise then; `None` where it is not
+    /// valid.
+    pub fn force_of(valid: bool, touches: bool, force: [f64; 3]) -> Option<[f64; 3]> {
+        valid.then_some(if touches { force } else { [0.0; 3] })
+    }
+}
+
 /// What a step of the arm's end gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowerStep {

@@ -101,7 +101,7 @@ const OWN: &[(&str, &str)] = &[
     ),
     (
         "ferntast_msgs/msg/ContactState",
-        "RIHS01_186c33178c01ee02207e8f8b693d09d692b44f8d33475ed5890403622dc7810c",
+        "RIHS01_3e595b12b43871a6aa377d13d3cde1c5861450f4fe88bec0850e87c338c49a0d",
     ),
     (
         "ferntast_msgs/msg/FrictionStatus",

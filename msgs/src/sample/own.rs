@@ -72,7 +72,10 @@ codes! {
 pub struct ContactStateSample {
     /// time of the measurement that it was estimated from
     pub stamp: Time,
+    /// the tip touches a surface of the contour
     pub in_contact: Flag,
+    /// the tip touches something: a surface of the contour, or what is not in it, by a larger force that lasts
+    pub touches: Flag,
     /// the forces can be used: the configuration is not singular and no input is missing
     pub valid: Flag,
     /// the tangential force is undefined: the motor turns, the tip still rests

@@ -255,6 +255,7 @@ fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput
         },
         friction_coefficient_error: estimate.friction.error,
         in_contact: u8::from(estimate.in_contact),
+        touches: u8::from(estimate.touches),
         valid: u8::from(estimate.valid),
         near_rest: u8::from(estimate.near_rest),
         edge: match estimate.surface {

@@ -76,8 +76,7 @@ impl LinkNode for FollowerLinkNode {
     }
 }
 
-/// The force on the tip while in contact; zero while it is free: the estimate
-/// is noise then. `None` when it cannot be told.
+/// The force on the tip as the law takes it; `None` when it cannot be told.
 fn contact_force(now: Time, input: &FollowerLinkInput) -> Option<[f64; 3]> {
     let state = input.contact_state.message?;
     let wrench = input.measured_cf.message?;
@@ -86,14 +85,8 @@ fn contact_force(now: Time, input: &FollowerLinkInput) -> Option<[f64; 3]> {
         .silence(now)
         .max(input.contact_state.silence(now))
         > ESTIMATE_LIFE;
-    if old || state.valid == 0 {
-        return None;
-    }
-    Some(if state.in_contact == 1 {
-        wrench.force
-    } else {
-        [0.0; 3]
-    })
+    let valid = !old && state.valid == 1;
+    FollowerReadings::force_of(valid, state.touches == 1, wrench.force)
 }
 
 fn stops(command: StateCommand) -> bool {

@@ -8,7 +8,7 @@ use super::TICK;
 use super::environment::{BRISTLE, Environment};
 use super::follower::{Follower, TipCommand, TrueTip};
 use crate::arm::{ArmConfig, JOINTS, SimulatedArm, SimulatedArmError, TrueSurface};
-use ferntast_control::estimator::{ContactEstimate, ContactEstimator, JointMeasurement};
+use ferntast_control::estimator::{ContactEstimator, JointMeasurement};
 use ferntast_control::link::{FollowerReadings, StampedPosition};
 use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{Command, Measurement, Servo, ServoConfig, ServoInput, Target};
@@ -148,19 +148,15 @@ impl WholeArm {
                 position: [estimate.tip[0], estimate.tip[1], 0.0],
                 silence: TICK,
             }),
-            contact_force: contact_force(&estimate),
+            contact_force: FollowerReadings::force_of(
+                estimate.valid,
+                estimate.touches,
+                [estimate.force[0], estimate.force[1], 0.0],
+            ),
             state: self.state,
             told_to_stop: false,
         }
     }
-}
-
-/// As the link's end takes it: zero while the tip is free, as the estimate is noise then.
-fn contact_force(estimate: &ContactEstimate) -> Option<[f64; 3]> {
-    estimate.valid.then_some(match estimate.in_contact {
-        true => [estimate.force[0], estimate.force[1], 0.0],
-        false => [0.0; 3],
-    })
 }
 
 impl Follower for WholeArm {
