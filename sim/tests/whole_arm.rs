@@ -29,7 +29,7 @@ fn arm() -> ArmUnderTrial {
 fn law(name: &str, arm: &ArmUnderTrial) -> Law {
     let stiffest = servo::stiffest(&arm.arm.model(), &arm.servo).expect("a stiffness");
     let keys = match name {
-        "position_force" | "position_position" => String::new(),
+        "position_force" | "position_position" | "model_mediated" => String::new(),
         _ => format!("servo_stiffness = {stiffest}"),
     };
     toml::from_str(&format!("kind = \"{name}\"\nforce_scale = 1.0\n{keys}"))
@@ -104,6 +104,44 @@ fn four_channels_make_energy_on_a_hard_wall() {
     );
     let made = -outcome.energy_margin;
     assert!((0.3..3.0).contains(&made), "{outcome:?}");
+}
+
+/// The surface is rendered with 3 kN/m at most, the wall has 20.
+#[test]
+fn model_mediated_renders_a_hard_wall_at_any_delay() {
+    for environment in [Environment::HardWall, Environment::WallWithFriction] {
+        for round_trip in [0.02, 0.1, 0.3, 1.0] {
+            let outcome = run(
+                "model_mediated",
+                round_trip,
+                environment,
+                Task::PressAndSlide,
+            );
+            let told = format!("{} {round_trip} s: {outcome:?}", environment.name());
+            assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
+            let felt = outcome.felt_stiffness.expect("it presses");
+            assert!((2500.0..3500.0).contains(&felt), "{told}");
+            // The hand gives 300 N/m over 20 mm at rest, and what it meets the wall with.
+            assert!((5.0..40.0).contains(&outcome.peak_force), "{told}");
+            assert!((-0.3..-0.01).contains(&outcome.energy_margin), "{told}");
+        }
+    }
+}
+
+#[test]
+fn model_mediated_renders_a_wall_that_moves_as_it_is() {
+    for round_trip in [0.02, 0.1, 0.3, 1.0] {
+        let outcome = run(
+            "model_mediated",
+            round_trip,
+            Environment::MovingWall,
+            Task::PressAndSlide,
+        );
+        assert!(outcome.stable, "{round_trip} s: {outcome:?}");
+        let (stiffness, _) = Environment::MovingWall.surface();
+        let felt = outcome.felt_stiffness.expect("it presses") / stiffness;
+        assert!((0.9..1.1).contains(&felt), "{round_trip} s: {outcome:?}");
+    }
 }
 
 #[test]
