@@ -112,6 +112,8 @@ fn what_is_not_in_the_contour_is_touched_by_a_larger_force_that_lasts() {
         estimate.touches
     };
     let on = parameters.contact_on;
+    // The sensors' zeros are found first.
+    assert!(!after(0.0, 2500));
     assert!(!after(2.9 * on, 200), "as much as noise");
     assert!(!after(10.0 * on, 40), "as short as a jerk");
     assert!(!after(0.0, 100), "gone again");
