@@ -144,7 +144,7 @@ fn a_rendered_model_is_felt_as_it_is_at_any_delay() {
         for environment in [Environment::HardWall, Environment::WallWithFriction] {
             let hard = run("model_mediated", round_trip, environment);
             assert!(hard.stable, "{round_trip} s: {hard:?}");
-            // 3 kN/m is the stiffest that is rendered.
+            // 3.3 kN/m is the stiffest that is rendered.
             let transparency = hard.transparency.expect("it presses");
             assert!((0.1..0.5).contains(&transparency), "{hard:?}");
         }

@@ -106,11 +106,14 @@ fn four_channels_make_energy_on_a_hard_wall() {
     assert!((0.3..3.0).contains(&made), "{outcome:?}");
 }
 
-/// The surface is rendered with 3 kN/m at most, the wall has 20.
+/// Round trips from a room to beyond a relay satellite \[s\].
+const ROUND_TRIPS: [f64; 6] = [0.02, 0.05, 0.1, 0.3, 0.6, 1.0];
+
+/// The surface is rendered with 3.3 kN/m at most, the wall has 20.
 #[test]
 fn model_mediated_renders_a_hard_wall_at_any_delay() {
     for environment in [Environment::HardWall, Environment::WallWithFriction] {
-        for round_trip in [0.02, 0.1, 0.3, 1.0] {
+        for round_trip in ROUND_TRIPS {
             let outcome = run(
                 "model_mediated",
                 round_trip,
@@ -120,17 +123,42 @@ fn model_mediated_renders_a_hard_wall_at_any_delay() {
             let told = format!("{} {round_trip} s: {outcome:?}", environment.name());
             assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
             let felt = outcome.felt_stiffness.expect("it presses");
-            assert!((2500.0..3500.0).contains(&felt), "{told}");
+            assert!((3000.0..3600.0).contains(&felt), "{told}");
             // The hand gives 300 N/m over 20 mm at rest, and what it meets the wall with.
             assert!((5.0..40.0).contains(&outcome.peak_force), "{told}");
-            assert!((-0.3..-0.01).contains(&outcome.energy_margin), "{told}");
+            // The surface comes out from under the hand and takes it along.
+            assert!((-0.06..=0.0).contains(&outcome.energy_margin), "{told}");
         }
     }
 }
 
 #[test]
+fn model_mediated_renders_a_soft_spring_as_it_is_at_any_delay() {
+    let (stiffness, _) = Environment::SoftSpring.surface();
+    for round_trip in ROUND_TRIPS {
+        let environment = Environment::SoftSpring;
+        let outcome = run(
+            "model_mediated",
+            round_trip,
+            environment,
+            Task::PressAndSlide,
+        );
+        assert!(outcome.stable, "{round_trip} s: {outcome:?}");
+        let felt = outcome.felt_stiffness.expect("it presses") / stiffness;
+        assert!((0.95..1.05).contains(&felt), "{round_trip} s: {outcome:?}");
+        assert!(
+            outcome.energy_margin > -BOUND,
+            "{round_trip} s: {outcome:?}"
+        );
+        // The hand goes through b = 14 N·s/m.
+        let drag = outcome.felt_damping;
+        assert!((13.0..15.0).contains(&drag), "{round_trip} s: {outcome:?}");
+    }
+}
+
+#[test]
 fn model_mediated_renders_a_wall_that_moves_as_it_is() {
-    for round_trip in [0.02, 0.1, 0.3, 1.0] {
+    for round_trip in ROUND_TRIPS {
         let outcome = run(
             "model_mediated",
             round_trip,
@@ -140,7 +168,12 @@ fn model_mediated_renders_a_wall_that_moves_as_it_is() {
         assert!(outcome.stable, "{round_trip} s: {outcome:?}");
         let (stiffness, _) = Environment::MovingWall.surface();
         let felt = outcome.felt_stiffness.expect("it presses") / stiffness;
-        assert!((0.9..1.1).contains(&felt), "{round_trip} s: {outcome:?}");
+        assert!((0.95..1.1).contains(&felt), "{round_trip} s: {outcome:?}");
+        let energy = outcome.energy_margin;
+        assert!(
+            (-0.08..=0.0).contains(&energy),
+            "{round_trip} s: {outcome:?}"
+        );
     }
 }
 

@@ -11,21 +11,26 @@
 //! F = K p n − μ K p v_t/max(|v_t|, v_0) − b v, p = max(s − s₀, 0), s = −n·x_h.
 //!
 //! An update is blended in: the model rendered follows the one received by a first
-//! order lag, `blend_time`; a surface that appears around the hand begins soft. Its place
-//! comes towards the hand no faster than 50 mm/s.
+//! order lag, `blend_time`. Its place comes towards the hand no faster than 50 mm/s; a surface
+//! that appears around the hand begins at the hand, so that it winds nothing up at once.
 //!
 //! Forward go the hand's position and the force f that it gives into the rendered
 //! surface. The tip goes to that position, but no deeper behind the surface as the follower
 //! estimates it than s₀ + f/K, with f at least `search_force`: no loop of force is closed
 //! around the servo and its lag, only one of the place s₀, which is slow
 //! (`place_frequency`; its gain is K_true/K − 1, so a K that is too small would make
-//! it unstable). A tip that lost the surface goes on after it, a millimetre ahead of itself.
+//! it unstable).
+//!
+//! Under less than 0.8 f the tip goes on, evenly and with 30 mm/s at most, also where the surface
+//! is believed to be too stiff for that: so it goes after a surface that it lost, and shows
+//! what K a soft one has, which counts as a stiff one at first. This never takes the tip back, so
+//! it is no loop of force either.
 //!
 //! **What it guarantees.** Nothing about energy: what leaves at the tip is not bound to
 //! what entered at the hand, and an update that moves the surface towards the hand
-//! makes energy. Assumed for stability: a surface that holds still for longer than
-//! a round trip; then both ends are local loops and any delay is stable. What
-//! is felt of something that moves is old.
+//! makes energy; the damping b pays for most of it. Assumed for stability: a surface that
+//! holds still for longer than a round trip; then both ends are local loops and any delay is
+//! stable. What is felt of something that moves is old.
 //!
 //! **On loss.** No command; the leader goes on rendering the last surface, fading out.
 
@@ -39,25 +44,24 @@ use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     vector,
 };
-use estimate::{Even, SAME, SOFTEST, SurfaceEstimator};
+use estimate::{Even, SAME, SOFTEST, Scale, SurfaceEstimator};
 use nalgebra::Vector3;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
     pub struct ModelMediated {
         /// b: damping at the hand \[N·s/m\].
-        pub damping: f64 [0.0..=1000.0, "N·s/m"] = 2.0,
+        pub damping: f64 [0.0..=1000.0, "N·s/m"] = 14.0,
         /// Time constant with which an update is blended in \[s\].
         pub blend_time: f64 [0.001..=10.0, "s"] = 0.1,
         /// Largest stiffness that is rendered \[N/m\].
-        pub largest_stiffness: f64 [10.0..=10000.0, "N/m"] = 3000.0,
+        pub largest_stiffness: f64 [10.0..=10000.0, "N/m"] = 3300.0,
         /// Largest force of the rendered surface on the hand \[N\].
         pub largest_force: f64 [0.1..=1000.0, "N"] = 30.0,
-        /// Smallest contact force at the hand's scale that counts as contact \[N\].
+        /// Smallest contact force at the tip that counts as contact \[N\].
         pub contact_threshold: f64 [0.0001..=100.0, "N"] = 0.1,
-        /// How hard the tip presses, at the hand's scale, where the hand feels
-        /// nothing yet \[N\].
-        pub search_force: f64 [0.001..=100.0, "N"] = 2.0,
+        /// How hard the tip presses where the hand feels nothing yet \[N\].
+        pub search_force: f64 [0.001..=100.0, "N"] = 3.0,
         /// Time constant with which the tip goes to the hand's position \[s\].
         pub position_time: f64 [0.002..=1.0, "s"] = 0.01,
         /// Largest speed of the tip's command, at the hand's scale \[m/s\].
@@ -136,15 +140,18 @@ impl ModelMediatedLeader {
         self.surface
     }
 
-    /// Blends the received model in. A surface that comes towards the hand winds its spring up,
-    /// so it comes slowly; one that gives way does so at once.
-    fn blend(&mut self, dt: f64) {
+    /// Blends the received model in, with the hand at `hand` \[m\]. A surface that comes towards
+    /// the hand winds its spring up, so it comes slowly, and begins at the hand where it appears
+    /// behind it; one that gives way does so at once.
+    fn blend(&mut self, dt: f64, hand: &Vector3<f64>) {
         let Some(target) = self.received else {
             return;
         };
         let share = dt / (dt + self.parameters.blend_time);
+        let stiffness = target.stiffness.min(self.parameters.largest_stiffness);
         let anew = SurfaceModel {
-            stiffness: 0.0,
+            place: target.place.max(-target.normal.dot(hand)),
+            stiffness,
             ..target
         };
         let surface = self.surface.get_or_insert(anew);
@@ -155,7 +162,6 @@ impl ModelMediatedLeader {
         let normal = surface.normal + share * (target.normal - surface.normal);
         surface.normal = normal.try_normalize(1e-6).unwrap_or(target.normal);
         surface.place += (target.place - surface.place).max(-PLACE_SPEED * dt);
-        let stiffness = target.stiffness.min(self.parameters.largest_stiffness);
         surface.stiffness += share * (stiffness - surface.stiffness);
         surface.friction += share * (target.friction - surface.friction);
     }
@@ -183,7 +189,9 @@ impl Leader for ModelMediatedLeader {
         if let Some(received) = live {
             self.received = unpacked(&received.packet);
         }
-        self.blend(dt);
+        if let Some(hand) = input.hand {
+            self.blend(dt, &hand.position.into());
+        }
         let share = self.fade.step(dt, self.mapping.force_ramp, live.is_some());
         let Some(hand) = input.hand else {
             return LeaderOutput {
@@ -204,8 +212,17 @@ impl Leader for ModelMediatedLeader {
     }
 }
 
-/// A tip that lost the surface goes on after it by so much ahead of itself [m].
-const SEARCH: f64 = 1e-3;
+/// Under less than this share of the force that is allowed the tip goes on [-]:
+const SEARCHED: f64 = 0.8;
+/// with this speed [m/s], to which it brakes or speeds up so [m/s²], as an arm that is jerked
+/// feigns forces;
+const SEARCH_SPEED: f64 = 0.03;
+const SEARCH_BRAKE: f64 = 0.5;
+/// its command ahead of it by so much [m], and by the lag of a servo [s].
+const SEARCH_LEAD: f64 = 0.5e-3;
+const SEARCH_LAG: f64 = 0.025;
+/// From so far before the surface on the tip searches it [m].
+const SEARCH_BEFORE: f64 = 0.01;
 
 /// Where the surface is, followed without lag while it moves evenly.
 #[derive(Clone, Copy, Debug)]
@@ -214,9 +231,9 @@ struct Place {
     normal: Vector3<f64>,
     /// [m, m/s]
     even: Even,
+    /// Of the surface when it was there [N/m].
+    stiffness: f64,
     touches: bool,
-    /// How far the tip may go beyond it to find it again [m].
-    search: f64,
 }
 
 impl Place {
@@ -224,8 +241,8 @@ impl Place {
         Place {
             normal: model.normal,
             even: Even::at(model.place),
+            stiffness: model.stiffness,
             touches: false,
-            search: 0.0,
         }
     }
 
@@ -241,20 +258,23 @@ impl Place {
     ) -> Place {
         let depth = -model.normal.dot(tip);
         // A normal that turns, turns about the tip.
-        let place = self.even.value + depth + self.normal.dot(tip);
+        let mut place = self.even.value + depth + self.normal.dot(tip);
+        if touches {
+            // So does a stiffness that is learned: the force there is as it was.
+            place -= (depth - model.place) * (1.0 - model.stiffness / self.stiffness);
+        }
         let mut own = Place {
             normal: model.normal,
             even: Even {
                 value: place,
                 ..self.even
             },
+            stiffness: model.stiffness,
             touches,
-            search: 0.0,
         };
         if !touches {
             // What the tip has gone through is not there.
             own.even = Even::at(place.max(depth));
-            own.search = if depth >= place { SEARCH } else { 0.0 };
         } else if !self.touches {
             own.even.value = model.place;
         } else {
@@ -266,7 +286,7 @@ impl Place {
     /// How deep the tip may go for a force of `allowed` \[N\] on a surface of `stiffness`
     /// \[N/m\] \[m\].
     fn deepest(&self, allowed: f64, stiffness: f64) -> f64 {
-        self.even.value + (allowed / stiffness).max(self.search)
+        self.even.value + allowed / stiffness
     }
 }
 
@@ -283,6 +303,8 @@ pub struct ModelMediatedFollower {
     place: Option<Place>,
     /// Hand units [m].
     command: Option<Vector3<f64>>,
+    /// Of the command into the surface, since one is known [m/s].
+    speed: f64,
 }
 
 impl ModelMediatedFollower {
@@ -291,13 +313,35 @@ impl ModelMediatedFollower {
         ModelMediatedFollower {
             parameters: law.clone(),
             mapping,
-            estimator: SurfaceEstimator::new(law.contact_threshold),
+            estimator: SurfaceEstimator::new(Scale {
+                force: law.force_scale,
+                threshold: threshold(law),
+                searched: SEARCHED * law.force_scale * law.search_force,
+            }),
             late: [None; 2],
             model: None,
             place: None,
             command: None,
+            speed: 0.0,
         }
     }
+}
+
+/// How fast the command may go into the surface where the tip is to go on \[m/s\], `dt` \[s\] after
+/// it went with `before` \[m/s\], ahead of the tip by `lead` \[m\], to be made up for in `time`
+/// \[s\].
+fn search_speed(dt: f64, before: f64, lead: f64, time: f64) -> f64 {
+    let change = SEARCH_BRAKE * dt;
+    let before = before.max(0.0);
+    let speed = SEARCH_SPEED.clamp((before - change).max(0.0), before + change);
+    let ahead = SEARCH_LEAD + SEARCH_LAG * speed;
+    speed.min((ahead - lead) / time)
+}
+
+/// Smallest contact force at the hand's scale that counts as contact [N]; above zero, as what is
+/// not felt at all is no contact either.
+fn threshold(law: &ModelMediated) -> f64 {
+    (law.force_scale * law.contact_threshold).max(1e-9)
 }
 
 /// What comes through two poles that are late by `lag` \[s\], as the force came through those
@@ -326,21 +370,35 @@ impl Follower for ModelMediatedFollower {
         if let (Some(tip), Some(_)) = (tip, input.contact_force) {
             let tip = late(&mut self.late, dt, own.force_lag, tip);
             self.model = self.estimator.step(dt, tip, contact);
-            let touches = contact.norm() >= own.contact_threshold;
+            let touches = contact.norm() >= threshold(own);
             self.place = self.model.map(|model| {
                 let place = self.place.unwrap_or(Place::of(&model));
                 place.step(dt, own.place_frequency, &model, &tip, touches)
             });
         }
         let command = live.zip(here).map(|(received, here)| {
-            let mut target = vector(received.packet.position);
-            if let Some((model, place)) = self.model.zip(self.place) {
-                let allowed = vector(received.packet.vector).norm().max(own.search_force);
+            let target = vector(received.packet.position);
+            let allowed = vector(received.packet.vector).norm();
+            let allowed = allowed.max(self.mapping.force_scale * own.search_force);
+            let towards = |target: Vector3<f64>| {
+                shortened((target - here) / own.position_time, own.largest_speed)
+            };
+            let free = towards(target);
+            let velocity = self.model.zip(self.place).map_or(free, |(model, place)| {
+                let into = |own: &Vector3<f64>| -model.normal.dot(own);
                 let most = place.deepest(allowed, model.stiffness);
-                let over = (-model.normal.dot(&target) - most).max(0.0);
-                target += over * model.normal;
-            }
-            let velocity = shortened((target - here) / own.position_time, own.largest_speed);
+                let over = (into(&target) - most).max(0.0);
+                let bound = towards(target + over * model.normal);
+                let mut speed = into(&bound);
+                let near = into(&here) + SEARCH_BEFORE > place.even.value;
+                if near && contact.norm() < SEARCHED * allowed {
+                    let lead = tip.map_or(0.0, |tip| into(&(here - tip)));
+                    let most = search_speed(dt, self.speed, lead, own.position_time);
+                    speed = speed.max(into(&free).min(most));
+                }
+                self.speed = speed;
+                bound - (speed - into(&bound)) * model.normal
+            });
             (here + velocity * dt, velocity)
         });
         self.command = command.map(|(position, _)| position);
@@ -426,12 +484,11 @@ mod tests {
     }
 
     #[test]
-    fn a_tip_that_lost_the_surface_goes_on_after_it() {
+    fn a_surface_that_was_lost_is_not_where_the_tip_went() {
         let place = Place::of(&WALL);
         let tip = Vector3::new(0.004, 0.0, 0.0);
         let lost = place.step(1e-3, 12.0, &WALL, &tip, false);
-        assert!((lost.deepest(0.0, WALL.stiffness) - (tip.x + SEARCH)).abs() < 1e-12);
-        // Before the surface it does not search.
+        assert!((lost.deepest(0.0, WALL.stiffness) - tip.x).abs() < 1e-12);
         let before = Vector3::new(-0.004, 0.0, 0.0);
         let own = place.step(1e-3, 12.0, &WALL, &before, false);
         assert!((own.deepest(2.0, WALL.stiffness) - 2.0 / WALL.stiffness).abs() < 1e-12);
@@ -442,6 +499,80 @@ mod tests {
         };
         let own = lost.step(1e-3, 12.0, &found, &Vector3::new(0.005, 0.0, 0.0), true);
         assert!((own.even.value - 0.0045).abs() < 1e-12, "{own:?}");
+    }
+
+    #[test]
+    fn a_tip_that_searches_goes_evenly_and_no_further_than_its_lead() {
+        let time = 0.01;
+        // From the hand's speed to its own, and from rest.
+        let (mut down, mut up) = (0.1, 0.0);
+        for _ in 0..200 {
+            let (faster, slower) = (down, up);
+            down = search_speed(1e-3, down, 0.0, time);
+            up = search_speed(1e-3, up, 0.0, time);
+            assert!((0.0..=SEARCH_BRAKE * 1e-3 + 1e-12).contains(&(faster - down)));
+            assert!((0.0..=SEARCH_BRAKE * 1e-3 + 1e-12).contains(&(up - slower)));
+        }
+        assert!((down - SEARCH_SPEED).abs() < 1e-12, "{down}");
+        assert!((up - SEARCH_SPEED).abs() < 1e-12, "{up}");
+        let held = SEARCH_LEAD + SEARCH_LAG * SEARCH_SPEED;
+        assert!(search_speed(1e-3, SEARCH_SPEED, held, time).abs() < 1e-12);
+    }
+
+    /// The leader with the hand at rest at `x` \[m\], after each step; `surface` comes from the arm.
+    fn rendering(x: f64, surface: SurfaceModel) -> impl Iterator<Item = SurfaceModel> {
+        let mut leader = ModelMediatedLeader::new(&ModelMediated::default());
+        std::iter::repeat_with(move || {
+            let packet = packed(Some(surface), Energy::default());
+            let input = LeaderInput {
+                hand: Some(crate::delay::Motion {
+                    position: [x, 0.0, 0.0],
+                    velocity: [0.0; 3],
+                }),
+                received: Some(crate::delay::Received {
+                    packet,
+                    fresh: true,
+                    silence: 0.0,
+                    age: 0.1,
+                }),
+                connected: true,
+            };
+            leader.step(1e-3, &input, Energy::default());
+            leader.surface().unwrap()
+        })
+    }
+
+    #[test]
+    fn a_surface_that_appears_around_the_hand_comes_out_from_under_it() {
+        let mut seen = rendering(0.02, WALL);
+        let first = seen.next().unwrap();
+        assert!((first.place - (0.02 - PLACE_SPEED * 1e-3)).abs() < 1e-9);
+        let later = seen.nth(199).unwrap();
+        assert!((later.place - (0.02 - PLACE_SPEED * 0.201)).abs() < 1e-9);
+        assert!(seen.nth(299).unwrap().place.abs() < 1e-6);
+        // One before the hand is where it is at once, and as stiff as may be rendered.
+        let stiff = SurfaceModel {
+            stiffness: 9000.0,
+            ..WALL
+        };
+        let first = rendering(-0.02, stiff).next().unwrap();
+        assert!(first.place.abs() < 1e-6, "{first:?}");
+        let largest = ModelMediated::default().largest_stiffness;
+        assert!((first.stiffness - largest).abs() < 1e-6, "{first:?}");
+    }
+
+    #[test]
+    fn a_stiffness_that_is_learned_leaves_the_force_at_the_tip() {
+        let tip = Vector3::new(0.01, 0.0, 0.0);
+        let at = |stiffness: f64| SurfaceModel {
+            // 2 N.
+            place: tip.x - 2.0 / stiffness,
+            stiffness,
+            ..WALL
+        };
+        let place = Place::of(&at(40_000.0)).step(1e-3, 12.0, &at(40_000.0), &tip, true);
+        let own = place.step(1e-3, 12.0, &at(200.0), &tip, true);
+        assert!(own.even.value.abs() < 1e-9, "{own:?}");
     }
 
     #[test]
