@@ -295,7 +295,6 @@ impl Place {
 #[derive(Clone, Debug)]
 pub struct ModelMediatedFollower {
     parameters: ModelMediated,
-    mapping: Mapping,
     estimator: SurfaceEstimator,
     /// The tip as late as the force.
     late: [Option<Vector3<f64>>; 2],
@@ -309,10 +308,8 @@ pub struct ModelMediatedFollower {
 
 impl ModelMediatedFollower {
     fn new(law: &ModelMediated) -> Self {
-        let mapping = law.mapping();
         ModelMediatedFollower {
             parameters: law.clone(),
-            mapping,
             estimator: SurfaceEstimator::new(Scale {
                 force: law.force_scale,
                 threshold: threshold(law),
@@ -363,10 +360,11 @@ fn late(
 impl Follower for ModelMediatedFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
-        let live = self.mapping.live(input.connected, input.received);
+        let mapping = own.mapping();
+        let live = mapping.live(input.connected, input.received);
         let TouchingTip {
             contact, tip, here, ..
-        } = TouchingTip::new(&self.mapping, input, self.command);
+        } = TouchingTip::new(&mapping, input, self.command);
         if let (Some(tip), Some(_)) = (tip, input.contact_force) {
             let tip = late(&mut self.late, dt, own.force_lag, tip);
             self.model = self.estimator.step(dt, tip, contact);
@@ -379,7 +377,7 @@ impl Follower for ModelMediatedFollower {
         let command = live.zip(here).map(|(received, here)| {
             let target = vector(received.packet.position);
             let allowed = vector(received.packet.vector).norm();
-            let allowed = allowed.max(self.mapping.force_scale * own.search_force);
+            let allowed = allowed.max(own.force_scale * own.search_force);
             let towards = |target: Vector3<f64>| {
                 shortened((target - here) / own.position_time, own.largest_speed)
             };
@@ -403,7 +401,7 @@ impl Follower for ModelMediatedFollower {
         });
         self.command = command.map(|(position, _)| position);
         FollowerOutput {
-            command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
+            command: command.map(|(position, velocity)| mapping.command(position, velocity)),
             packet: match (input.tip, input.contact_force) {
                 (Some(_), Some(_)) => {
                     let seen = self.model.zip(self.place);
