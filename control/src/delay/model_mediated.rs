@@ -221,6 +221,8 @@ const SEARCH_BRAKE: f64 = 0.5;
 /// its command ahead of it by so much [m], and by the lag of a servo [s].
 const SEARCH_LEAD: f64 = 0.5e-3;
 const SEARCH_LAG: f64 = 0.025;
+/// In contact it goes no faster, also into a surface that turns out to be soft [m/s].
+const DEEPER: f64 = 0.15;
 /// From so far before the surface on the tip searches it [m].
 const SEARCH_BEFORE: f64 = 0.01;
 
@@ -388,6 +390,9 @@ impl Follower for ModelMediatedFollower {
                 let over = (into(&target) - most).max(0.0);
                 let bound = towards(target + over * model.normal);
                 let mut speed = into(&bound);
+                if place.touches {
+                    speed = speed.min(DEEPER);
+                }
                 let near = into(&here) + SEARCH_BEFORE > place.even.value;
                 if near && contact.norm() < SEARCHED * allowed {
                     let lead = tip.map_or(0.0, |tip| into(&(here - tip)));
