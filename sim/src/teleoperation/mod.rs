@@ -103,8 +103,8 @@ impl Trial {
             master.validate()?;
         }
         let (forth, back) = (
-            self.link.up.nominal_delay(WIRE_LENGTH),
-            self.link.down.nominal_delay(WIRE_LENGTH),
+            self.link.up.nominal_delay(WIRE_LENGTH) + self.buffer,
+            self.link.down.nominal_delay(WIRE_LENGTH) + self.buffer,
         );
         let schedule = Schedule::new(self.task, forth + back);
         let ticks = |delay: f64| (delay / TICK).round() as usize;

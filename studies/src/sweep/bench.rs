@@ -53,6 +53,7 @@ impl Bench {
             follower: self.follower.clone(),
             master: self.master.clone(),
             task: condition.task,
+            buffer: 1e-3 * condition.buffer_ms,
             ..Trial::new(law, condition.link(), condition.environment, condition.seed)
         };
         trial.run()

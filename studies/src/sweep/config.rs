@@ -23,6 +23,10 @@ parameters! {
         pub rtt_ms: Vec<f64> [0.0..=5000.0, "ms"],
         /// Standard deviations of the delay, each way \[ms\].
         pub jitter_ms: Vec<f64> [0.0..=1000.0, "ms"],
+        /// Jitter buffer of both ends, in standard deviations of the delay, and 200 ms at most:
+        /// frames that come later than that count as lost \[-\].
+        #[serde(default = "three")]
+        pub buffer_per_jitter: f64 [0.0..=10.0, "-"],
         /// Shares of frames lost, each way \[-\].
         pub loss: Vec<f64> [0.0..=1.0, "-"],
         /// What the tip meets.
@@ -55,6 +59,11 @@ parameters! {
 /// What the operator does where a file does not say.
 fn one_task() -> Vec<Task> {
     vec![Task::PressAndSlide]
+}
+
+/// In a thousand frames of normally distributed delay one or two come later.
+fn three() -> f64 {
+    3.0
 }
 
 /// Where sweeps are.

@@ -1,6 +1,6 @@
 //! The conditions of a sweep, one a trial.
 
-use ferntast_control::delay::Law;
+use ferntast_control::{delay::Law, playout::LONGEST_BUFFER};
 use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig, Loss};
 use ferntast_sim::teleoperation::{Environment, Task};
 
@@ -15,6 +15,8 @@ pub struct Condition {
     pub rtt_ms: f64,
     /// Standard deviation of the delay, each way \[ms\].
     pub jitter_ms: f64,
+    /// Jitter buffer of both ends \[ms\].
+    pub buffer_ms: f64,
     /// Share of frames lost, each way \[-\].
     pub loss: f64,
     /// What the tip meets.
@@ -41,6 +43,8 @@ impl SweepConfig {
                                 law: law.clone(),
                                 rtt_ms,
                                 jitter_ms,
+                                buffer_ms:
+                                    (self.buffer_per_jitter * jitter_ms).min(1e3 * LONGEST_BUFFER),
                                 loss,
                                 environment,
                                 task,

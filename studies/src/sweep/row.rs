@@ -17,6 +17,8 @@ pub struct Row {
     pub rtt_ms: f64,
     /// Standard deviation of the delay each way \[ms\].
     pub jitter_ms: f64,
+    /// Jitter buffer of both ends, which the round trip has twice beside \[ms\].
+    pub buffer_ms: f64,
     /// Share of frames lost each way \[-\].
     pub loss: f64,
     /// What the tip meets.
@@ -77,6 +79,7 @@ impl Row {
             claims_passivity: condition.law.claims_passivity(),
             rtt_ms: condition.rtt_ms,
             jitter_ms: condition.jitter_ms,
+            buffer_ms: condition.buffer_ms,
             loss: condition.loss,
             environment: condition.environment.name(),
             task: condition.task.name(),

@@ -115,6 +115,7 @@ fn json_has_the_keys_and_the_page_is_whole_in_itself() {
         "peak_force_N",
         "true_energy_J",
         "jitter_ms",
+        "buffer_ms",
         "loss",
         "seed",
         "transparency",
