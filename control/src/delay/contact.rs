@@ -64,9 +64,18 @@ impl CommandForce {
         }
     }
 
-    /// k [N/m].
+    /// k \[N/m\].
     pub fn stiffness(&self) -> f64 {
         self.stiffness
+    }
+
+    /// By how much the force grows where the command leads on \[N/m\]: k in contact; none
+    /// out of it, where the tip follows.
+    pub fn acting(&self) -> f64 {
+        match self.force == Vector3::zeros() {
+            true => 0.0,
+            false => self.stiffness,
+        }
     }
 
     /// The force with which the command pushes [N], from the contact's force on
@@ -133,11 +142,13 @@ mod tests {
             force.step(1e-3, Vector3::zeros(), lead(1e-3)),
             Vector3::zeros()
         );
+        assert_eq!(force.acting(), 0.0);
         let mut own = Vector3::zeros();
         for _ in 0..1000 {
             own = force.step(1e-3, contact, lead(1e-3));
         }
         assert!((own.x - 2.0).abs() < 1e-6, "{own}");
+        assert_eq!(force.acting(), 1000.0);
         let jumped = force.step(1e-3, contact, lead(2e-3));
         assert!((jumped.x - own.x - 1.0).abs() < 0.03, "{jumped}");
     }

@@ -286,8 +286,8 @@ impl Follower for WaveFollower {
         self.tank.port(self.meter.energy(), 0.0);
         self.tank.limit(own.reserve);
         let wave = paid(&mut self.tank, dt, -force / root);
-        // Implicit in the servo's spring.
-        let give = 2.0 * b + self.force.stiffness() * dt;
+        // Implicit in the servo's spring, which is none where the tip is free.
+        let give = 2.0 * b + self.force.acting() * dt;
         let command = live.zip(here).map(|(received, here)| {
             let drift = vector(received.packet.position) - here;
             let pull = shortened(own.drift_stiffness * drift, 2.0 * b * own.drift_speed);
