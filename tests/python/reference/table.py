@@ -18,11 +18,13 @@ MORE = {
 
 
 def cell(row: dict, key: str, digits: int) -> str:
-    """A number; a dash where there is none, or it is that of a law that did not do its task."""
+    """A number; a dash for the stiffness of nothing, or where the task was not done."""
     value = row.get(key)
-    if value is None or (key.startswith("felt") and not row["done"]):
+    pressed = row["done"] and row["true_stiffness_N_per_m"] > 0.0
+    if value is None or (key.startswith("felt") and not pressed):
         return "–"
-    return f"{value:.{digits}f}".replace("-0." + "0" * digits, "0." + "0" * digits).removesuffix(".")
+    # No minus before zero.
+    return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def went(row: dict) -> str:
