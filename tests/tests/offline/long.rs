@@ -2,3 +2,4 @@
 
 mod blind;
 mod paper;
+mod reference_laws;
