@@ -144,7 +144,11 @@ impl End {
             received: Received {
                 packet: frame.packet,
                 fresh: self.fresh,
-                silence: self.meter.silence(now_ns),
+                // Frames that wait bridge a gap in what arrives.
+                silence: match self.buffered {
+                    true => self.silence(now_ns),
+                    false => self.meter.silence(now_ns),
+                },
                 age: seconds(now_ns.saturating_sub(frame.sent_ns)),
             },
         })
