@@ -144,11 +144,7 @@ impl End {
             received: Received {
                 packet: frame.packet,
                 fresh: self.fresh,
-                // Frames that wait bridge a gap in what arrives.
-                silence: match self.buffered {
-                    true => self.silence(now_ns),
-                    false => self.meter.silence(now_ns),
-                },
+                silence: self.meter.silence(now_ns),
                 age: seconds(now_ns.saturating_sub(frame.sent_ns)),
             },
         })

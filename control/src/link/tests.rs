@@ -1,11 +1,11 @@
 //! What comes in over the link is judged before anything is done with it.
 
 use super::*;
-use crate::delay::{Law, Packet, Wave};
+use crate::delay::{Law, Packet};
 use crate::frame::{self, FRAME_LENGTH, LinkFrame};
 use crate::meter::RefusedCounts;
 use crate::operating::OperatingState;
-use crate::switching::{Laws, code};
+use crate::switching::Laws;
 use proptest::prelude::*;
 
 const START_NS: i64 = 1_700_000_000_000_000_000;
@@ -188,54 +188,6 @@ fn a_buffer_lets_overtaken_frames_fall_into_place() {
     }
     // All but those whose time fell between two steps with another's.
     assert!((20..=40).contains(&commanded), "{commanded}");
-}
-
-/// Nothing arrives for 70 ms, which is what a buffer of 100 ms is for; when what waited is
-/// played out, the arm is commanded for as long as without one.
-#[test]
-fn frames_that_wait_bridge_a_gap_in_what_arrives() {
-    let mut rig = Rig::with_buffer(0.1);
-    rig.link = FollowerLink::new(Laws::new(Law::Wave(Wave::default())), 0.1);
-    let tip = |now_ns| StampedPosition {
-        stamp_ns: now_ns,
-        position: [0.35, 0.0, 0.0],
-        silence: 0.0,
-    };
-    let mut last = None;
-    for tick in 0..400_i64 {
-        // A gap, and then the end.
-        if tick % 2 == 0 && (tick < 100 || (170..250).contains(&tick)) {
-            let frame = LinkFrame {
-                law: code("wave").unwrap(),
-                ..rig.good()
-            };
-            rig.link.arrived(&bytes(&frame), rig.now_ns);
-        } else if tick % 2 == 0 {
-            // Lost on the way.
-            rig.good();
-        }
-        let readings = FollowerReadings {
-            tip: Some(tip(rig.now_ns)),
-            contact_force: Some([0.0; 3]),
-            state: OperatingState::Enabled,
-            told_to_stop: false,
-        };
-        let commanded = rig.link.step(rig.now_ns, &readings).command.is_some();
-        rig.now_ns += TICK_NS;
-        // From the first frame that is due on, without a break of the play-out of 100 ms that
-        // the deadline of 25 ms would not bridge.
-        if (101..220).contains(&tick) {
-            assert!(commanded, "at {tick} ms");
-        }
-        if commanded {
-            last = Some(tick);
-        }
-    }
-    // The last frame came at 248 ms and was due 100 ms later.
-    assert!(
-        last.is_some_and(|tick| (340..=374).contains(&tick)),
-        "{last:?}"
-    );
 }
 
 #[test]
