@@ -3,8 +3,8 @@
 
 mod common;
 
-use common::{change_arm, scenario, with_twin, worn};
-use ferntast_bus::{Depth, Subscriber};
+use common::{change_arm, heard, scenario, with_twin, worn};
+use ferntast_bus::Subscriber;
 use ferntast_control::estimator::{ContactEstimate, ContactEstimator, Form, JointMeasurement};
 use ferntast_model::Joints;
 use ferntast_msgs::{
@@ -30,18 +30,10 @@ impl Judged {
         let arm: ArmConfig = loaded.arm.whole().expect("a simulated arm");
         let mut parameters = arm.estimator;
         parameters.form = Form::Direct;
-        let bus = session.bus();
-        let queue = Depth::Queue(256);
         Judged {
-            measured: bus
-                .subscriber(topics::FOLLOWER_MEASURED_JS, queue)
-                .expect("a topic"),
-            told: bus
-                .subscriber(topics::FOLLOWER_MEASURED_CF, queue)
-                .expect("a topic"),
-            state: bus
-                .subscriber(topics::FOLLOWER_CONTACT_STATE, queue)
-                .expect("a topic"),
+            measured: heard(&session, topics::FOLLOWER_MEASURED_JS),
+            told: heard(&session, topics::FOLLOWER_MEASURED_CF),
+            state: heard(&session, topics::FOLLOWER_CONTACT_STATE),
             by_sensors: ContactEstimator::new(&arm.model(), &parameters).expect("valid"),
             session,
         }

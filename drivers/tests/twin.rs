@@ -3,8 +3,8 @@
 
 mod common;
 
-use common::{JOINT, change_arm, scenario, session, with_twin, worn};
-use ferntast_bus::{Depth, Subscriber};
+use common::{JOINT, change_arm, heard, scenario, session, with_twin, worn};
+use ferntast_bus::Subscriber;
 use ferntast_msgs::{
     sample::{Fault, FrictionCommand, JointSample},
     topics,
@@ -29,15 +29,10 @@ struct Watched {
 
 impl Watched {
     fn new(session: LockstepSession) -> Self {
-        let bus = session.bus();
-        let open = |topic| {
-            bus.subscriber(topic, Depth::Queue(256))
-                .expect("a session in lockstep")
-        };
         Self {
-            setpoint: open(topics::FOLLOWER_SETPOINT_JS),
-            measured: open(topics::FOLLOWER_MEASURED_JS),
-            torque: open(topics::FOLLOWER_SERVO_JF),
+            setpoint: heard(&session, topics::FOLLOWER_SETPOINT_JS),
+            measured: heard(&session, topics::FOLLOWER_MEASURED_JS),
+            torque: heard(&session, topics::FOLLOWER_SERVO_JF),
             session,
         }
     }

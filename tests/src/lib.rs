@@ -20,6 +20,7 @@ mod memory;
 mod pair;
 mod places;
 mod process;
+mod python;
 mod session;
 mod stranger;
 
@@ -40,5 +41,6 @@ pub use memory::{MemoryLog, own_memory};
 pub use pair::{Member, Pair, PairOptions, Word};
 pub use places::{data, ferntast, peer, python, root};
 pub use process::{Ended, Process, limit_files};
+pub use python::ask_python;
 pub use session::{Session, free_tcp_port};
 pub use stranger::{Stranger, certificate_of};

@@ -62,9 +62,8 @@ impl Channels {
     }
 }
 
-/// Either of the two filters one behind the other that are as late together as one of
-/// `cut_off` \[Hz\].
-pub(super) fn motor_filter(cut_off: f64) -> DerivativeFilter {
+/// With half the delay of one of `cut_off` \[Hz\], where something as late comes behind it.
+pub(super) fn half_as_late(cut_off: f64) -> DerivativeFilter {
     DerivativeFilter::new(2.0 * cut_off)
 }
 
@@ -88,11 +87,8 @@ impl TorqueOfContact {
     pub(super) fn new(form: Form, cut_off: f64, joints: JointCount) -> Self {
         let (filter, observer) = match form {
             Form::Direct => (DerivativeFilter::new(cut_off), None),
-            Form::MomentumObserver => (
-                DerivativeFilter::new(2.0 * cut_off),
-                Some(MomentumObserver::new(cut_off)),
-            ),
-            Form::MotorCurrent => (motor_filter(cut_off), None),
+            Form::MomentumObserver => (half_as_late(cut_off), Some(MomentumObserver::new(cut_off))),
+            Form::MotorCurrent => (half_as_late(cut_off), None),
         };
         let delay = DerivativeFilter::new(cut_off).delay();
         Self {

@@ -14,7 +14,7 @@
 //! Friction at rest is whatever holds the joint, between −τ_F and +τ_F: nothing tells the
 //! torque then, nor until the filters have forgotten the rest.
 
-use super::{DerivativeFilter, EstimatorParameters, JointMeasurement, form::motor_filter};
+use super::{DerivativeFilter, EstimatorParameters, JointMeasurement, form::half_as_late};
 use crate::servo::{FeedForward, TakeOverConfig};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, ParameterError, parameters};
@@ -92,7 +92,7 @@ impl TorqueByMotorCurrent {
             .validate()
             .map_err(|error| error.within("estimator"))?;
         let count = JointCount::new(joints.len())?;
-        let filter = motor_filter(parameters.cut_off);
+        let filter = half_as_late(parameters.cut_off);
         let own = |joint: &JointParameters| {
             Ok(Own {
                 position: filter,

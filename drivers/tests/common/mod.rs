@@ -2,8 +2,10 @@
 
 use std::{fs, path::Path};
 
+use ferntast_bus::{Depth, Subscriber};
 use ferntast_drivers::simulated::{self, arm_file, load_arm};
 use ferntast_emulation::hand::Motion;
+use ferntast_msgs::{Message, topics::Topic};
 use ferntast_nodes::{
     config::{self, Loaded},
     lockstep::LockstepSession,
@@ -98,4 +100,10 @@ pub fn with_twin(loaded: &Loaded, fitted_to: &Loaded) -> LockstepSession {
     let file = folder.path().join("joint.toml");
     fs::write(&file, EXPERIMENT).expect("a session in lockstep");
     session(loaded, None, Some(&file))
+}
+
+/// Every message on `topic` of `session`, for as long as it is read each 0.2 s.
+pub fn heard<M: Message>(session: &LockstepSession, topic: Topic<M>) -> Subscriber<M> {
+    let subscriber = session.bus().subscriber(topic, Depth::Queue(256));
+    subscriber.expect("a session in lockstep")
 }

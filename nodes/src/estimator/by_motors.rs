@@ -5,12 +5,12 @@ use ferntast_control::estimator::{
 };
 use ferntast_control::servo::{FoundParameter, TakeOverConfig};
 use ferntast_model::friction::name_of_key;
-use ferntast_model::{ArmModel, JointCount, Joints, ParameterError};
+use ferntast_model::{ArmModel, JointCount, ParameterError};
 use ferntast_msgs::sample::{
-    FrictionSource, FrictionStatusSample, JointFields, JointSample, MAX_TWIN_PARAMETERS,
+    FrictionSource, FrictionStatusSample, JointSample, MAX_TWIN_PARAMETERS,
 };
 
-use super::EstimatorInput;
+use super::{EstimatorInput, efforts, positions};
 
 /// Joint torques without torque sensors.
 pub(super) struct ByMotors {
@@ -64,15 +64,9 @@ impl ByMotors {
         measured: Option<&JointSample>,
         motor: Option<&JointSample>,
     ) -> TorqueFromMotor {
-        let read = |sample: Option<&JointSample>, field, values: fn(&JointSample) -> _| {
-            let sample = sample.filter(|own| own.fields.has(field));
-            sample.map_or(Joints::filled(joints, f64::NAN), |own| {
-                Joints::from_places(joints, values(own))
-            })
-        };
         let measurement = MotorMeasurement {
-            position: read(measured, JointFields::POSITION, |own| own.position),
-            torque: read(motor, JointFields::EFFORT, |own| own.effort),
+            position: positions(joints, measured),
+            torque: efforts(joints, motor),
         };
         self.torques.step(dt, &measurement)
     }

@@ -7,7 +7,9 @@ use ferntast_control::estimator::{
     ContactEstimate, ContactEstimator, EstimatorParameters, Form, JointMeasurement,
 };
 use ferntast_control::servo::TakeOverConfig;
-use ferntast_model::{ArmModel, Joints, ParameterError, contour::Surface, kinematics::LINKS};
+use ferntast_model::{
+    ArmModel, JointCount, Joints, ParameterError, contour::Surface, kinematics::LINKS,
+};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -124,21 +126,14 @@ impl Node for EstimatorNode {
         };
         let measured = measured.in_order_of(&self.joints);
         let joints = self.estimator.joints();
-        // What is missing the estimator takes for what it is: no measurement.
-        let unknown = Joints::filled(joints, f64::NAN);
         let estimate = match &mut self.by_motors {
             None => {
-                let needed = JointFields::POSITION.with(JointFields::EFFORT);
-                let measured = measured.filter(|own| own.fields.has(needed));
-                self.estimator.step(
-                    dt,
-                    &JointMeasurement {
-                        motor_position: measured
-                            .map_or(unknown, |own| Joints::from_places(joints, own.position)),
-                        joint_torque: measured
-                            .map_or(unknown, |own| Joints::from_places(joints, own.effort)),
-                    },
-                )
+                let measured = measured.as_ref();
+                let measurement = JointMeasurement {
+                    motor_position: positions(joints, measured),
+                    joint_torque: efforts(joints, measured),
+                };
+                self.estimator.step(dt, &measurement)
             }
             Some(by_motors) => {
                 by_motors.hear(input);
@@ -157,6 +152,23 @@ impl Node for EstimatorNode {
             output.transforms = Some(transforms(stamp, &estimate.position, self.link_lengths));
         }
     }
+}
+
+/// Positions of so many joints \[rad\]; no numbers where `sample` lacks them: the estimator
+/// takes that for what it is, no measurement.
+fn positions(joints: JointCount, sample: Option<&JointSample>) -> Joints<f64> {
+    let sample = sample.filter(|own| own.fields.has(JointFields::POSITION));
+    sample.map_or(Joints::filled(joints, f64::NAN), |own| {
+        Joints::from_places(joints, own.position)
+    })
+}
+
+/// Torques of so many joints \[Nm\]; no numbers where `sample` lacks them.
+fn efforts(joints: JointCount, sample: Option<&JointSample>) -> Joints<f64> {
+    let sample = sample.filter(|own| own.fields.has(JointFields::EFFORT));
+    sample.map_or(Joints::filled(joints, f64::NAN), |own| {
+        Joints::from_places(joints, own.effort)
+    })
 }
 
 /// A turn about z by `angle` \[rad\] as quaternion x, y, z, w.

@@ -1,10 +1,5 @@
 //! The arm's dynamics against an independent library: MuJoCo.
 
-use std::{
-    io::Write,
-    process::{Command, Stdio},
-};
-
 use ferntast_model::{Vector2, arm::Arm};
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 use serde_json::{Value, json};
@@ -44,23 +39,7 @@ fn free(gravity: [f64; 2]) -> ArmConfig {
 }
 
 fn mujoco(input: &Value) -> Value {
-    let script = ferntast_tests::peer("mujoco_arm.py");
-    let mut child = Command::new(ferntast_tests::python())
-        .arg(script)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("python starts");
-    let text = input.to_string();
-    child
-        .stdin
-        .take()
-        .expect("a pipe")
-        .write_all(text.as_bytes())
-        .expect("python reads");
-    let output = child.wait_with_output().expect("python ends");
-    assert!(output.status.success());
-    serde_json::from_slice(&output.stdout).expect("JSON")
+    ferntast_tests::ask_python(&ferntast_tests::peer("mujoco_arm.py"), input)
 }
 
 fn pair(value: &Value) -> Vector2<f64> {

@@ -1,13 +1,9 @@
 //! The laws of a sweep beside the plain equations of their papers, which
 //! `tests/python/reference_laws.py` has on the same cases (`docs/reference_laws.md`).
 
-use std::{
-    fs,
-    io::Write,
-    process::{Command, Stdio},
-};
+use std::fs;
 
-use ferntast_tests::{Session, number, run};
+use ferntast_tests::{Session, ask_python, number, run};
 use serde_json::{Value, json};
 
 /// Without the line `arm`: the tip that the reference has too. What is older than half of
@@ -37,12 +33,6 @@ const HARD: f64 = 20_000.0;
 
 fn reference() -> Value {
     let script = ferntast_tests::root().join("tests/python/reference_laws.py");
-    let mut child = Command::new(ferntast_tests::python())
-        .arg(script)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("python starts");
     let input = json!({
         "rtt_ms": ROUND_TRIPS,
         "environments": ["soft_spring", "hard_wall"],
@@ -58,13 +48,7 @@ fn reference() -> Value {
             {"kind": "model_mediated"},
         ],
     });
-    let mut pipe = child.stdin.take().expect("a pipe");
-    pipe.write_all(input.to_string().as_bytes())
-        .expect("python reads");
-    drop(pipe);
-    let output = child.wait_with_output().expect("python ends");
-    assert!(output.status.success());
-    serde_json::from_slice(&output.stdout).expect("JSON")
+    ask_python(&script, &input)
 }
 
 fn ours() -> Value {
