@@ -5,7 +5,8 @@
 //! lag and chatter on a stiff wall. The force of the servo's spring, k (x_c − x),
 //! does not lag, but its size is not well known. So both: the estimate at low
 //! frequencies, the spring at high ones (a complementary filter), F = z + k (x_c − x)
-//! with ż = (F_est − k (x_c − x) − z)/τ. Out of contact it is zero.
+//! with ż = (F_est − k (x_c − x) − z)/τ. Out of contact it is zero. While the estimate is
+//! late, z fades: the spring alone tells, so that a command in contact is not let loose.
 
 use super::FollowerInput;
 use super::mapping::Mapping;
@@ -17,14 +18,17 @@ const TIME: f64 = 0.05;
 /// What a follower whose tip gives way sees, in hand units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TouchingTip {
-    /// Force of the contact on the tip, zero where it is not known [N].
-    pub contact: Vector3<f64>,
+    /// Force of the contact on the tip, where it is known [N].
+    pub contact: Option<Vector3<f64>>,
     /// The tip [m].
     pub tip: Option<Vector3<f64>>,
     /// The command, before the first one the tip [m].
     pub here: Option<Vector3<f64>>,
-    /// Lead of the command over the tip [m].
-    pub lead: Vector3<f64>,
+    /// Lead of the command over the tip, where that is measured [m].
+    pub lead: Option<Vector3<f64>>,
+    /// There was a command. The first one after a silence begins at the tip: what the
+    /// spring had before says nothing of it.
+    pub led: bool,
 }
 
 impl TouchingTip {
@@ -33,12 +37,13 @@ impl TouchingTip {
         let tip = input.tip.map(|tip| mapping.tip_at_hand(tip.position));
         let here = command.or(tip);
         TouchingTip {
-            contact: mapping.contact_at_hand(input.contact_force.unwrap_or([0.0; 3])),
+            contact: input
+                .contact_force
+                .map(|force| mapping.contact_at_hand(force)),
             tip,
             here,
-            lead: here
-                .zip(tip)
-                .map_or(Vector3::zeros(), |(here, tip)| here - tip),
+            lead: here.zip(tip).map(|(here, tip)| here - tip),
+            led: command.is_some(),
         }
     }
 }
@@ -78,23 +83,31 @@ impl CommandForce {
         }
     }
 
-    /// The force with which the command pushes [N], from the contact's force on
-    /// the tip [N] and the command's lead over the tip [m].
-    pub fn step(&mut self, dt: f64, contact: Vector3<f64>, lead: Vector3<f64>) -> Vector3<f64> {
-        let spring = self.stiffness * lead;
-        let began = self.force == Vector3::zeros();
-        self.force = if contact.norm_squared() < 1e-12 {
+    /// The force with which the command pushes [N].
+    pub fn step(&mut self, dt: f64, own: &TouchingTip) -> Vector3<f64> {
+        let free = self.force == Vector3::zeros();
+        let touches = own
+            .contact
+            .map_or(!free, |force| force.norm_squared() >= 1e-12);
+        if !touches {
             // What leads now becomes force when the tip is stopped.
             self.low = Vector3::zeros();
-            Vector3::zeros()
-        } else {
-            if began {
-                self.wound = 0.5 * self.stiffness * lead.norm_squared();
-            }
-            let share = dt / (dt + TIME);
-            self.low += share * (-contact - spring - self.low);
-            self.low + spring
+            self.force = Vector3::zeros();
+            return self.force;
+        }
+        let Some(lead) = own.lead else {
+            return self.force;
         };
+        let spring = self.stiffness * lead;
+        if free {
+            self.wound = 0.5 * self.stiffness * lead.norm_squared();
+        }
+        let share = if own.led { dt / (dt + TIME) } else { 1.0 };
+        let rest = own
+            .contact
+            .map_or(Vector3::zeros(), |force| -force - spring);
+        self.low += share * (rest - self.low);
+        self.force = self.low + spring;
         self.force
     }
 
@@ -133,23 +146,62 @@ impl CommandForce {
 mod tests {
     use super::*;
 
+    fn tip(contact: Option<f64>, lead: f64, led: bool) -> TouchingTip {
+        let along = |own| Vector3::new(own, 0.0, 0.0);
+        TouchingTip {
+            contact: contact.map(along),
+            tip: Some(Vector3::zeros()),
+            here: Some(along(lead)),
+            lead: Some(along(lead)),
+            led,
+        }
+    }
+
     #[test]
     fn at_rest_it_is_the_estimate_and_at_once_it_is_the_spring() {
         let mut force = CommandForce::new(1000.0);
-        let contact = Vector3::new(-2.0, 0.0, 0.0);
-        let lead = |x: f64| Vector3::new(x, 0.0, 0.0);
-        assert_eq!(
-            force.step(1e-3, Vector3::zeros(), lead(1e-3)),
-            Vector3::zeros()
-        );
+        let free = force.step(1e-3, &tip(Some(0.0), 1e-3, true));
+        assert_eq!(free, Vector3::zeros());
         assert_eq!(force.acting(), 0.0);
         let mut own = Vector3::zeros();
         for _ in 0..1000 {
-            own = force.step(1e-3, contact, lead(1e-3));
+            own = force.step(1e-3, &tip(Some(-2.0), 1e-3, true));
         }
         assert!((own.x - 2.0).abs() < 1e-6, "{own}");
         assert_eq!(force.acting(), 1000.0);
-        let jumped = force.step(1e-3, contact, lead(2e-3));
+        let jumped = force.step(1e-3, &tip(Some(-2.0), 2e-3, true));
         assert!((jumped.x - own.x - 1.0).abs() < 0.03, "{jumped}");
+    }
+
+    /// The estimator is late by some steps, as on a host that stalls.
+    #[test]
+    fn an_estimate_that_is_late_ends_no_contact_and_begins_none() {
+        let mut force = CommandForce::new(1000.0);
+        let unknown = tip(None, 1e-3, true);
+        assert_eq!(force.step(1e-3, &unknown), Vector3::zeros());
+        for _ in 0..1000 {
+            force.step(1e-3, &tip(Some(-2.0), 1e-3, true));
+        }
+        let late = force.step(5e-3, &unknown);
+        assert!((1.85..2.0).contains(&late.x), "{late}");
+        assert_eq!(force.acting(), 1000.0);
+        for _ in 0..1000 {
+            force.step(1e-3, &unknown);
+        }
+        let alone = force.step(1e-3, &unknown);
+        assert!((alone.x - 1.0).abs() < 1e-6, "the spring alone: {alone}");
+        let ended = force.step(1e-3, &tip(Some(0.0), 1e-3, true));
+        assert_eq!(ended, Vector3::zeros());
+    }
+
+    /// After a silence the command begins at the tip: a spring without a lead pulls nothing.
+    #[test]
+    fn a_command_that_begins_anew_in_contact_pushes_with_the_estimate() {
+        let mut force = CommandForce::new(1000.0);
+        for _ in 0..1000 {
+            force.step(1e-3, &tip(Some(-2.0), 4e-3, true));
+        }
+        let anew = force.step(1e-3, &tip(Some(-2.0), 0.0, false));
+        assert!((anew.x - 2.0).abs() < 1e-9, "{anew}");
     }
 }

@@ -176,13 +176,9 @@ impl Follower for FourChannelFollower {
         let live = self.mapping.live(input.connected, input.received);
         let newest = live.map(|received| (vector(received.packet.position), received.fresh));
         self.hand.step(dt, newest);
-        let TouchingTip {
-            contact,
-            here,
-            lead,
-            ..
-        } = TouchingTip::new(&self.mapping, input, self.command);
-        let pushed = self.force.step(dt, contact, lead);
+        let tip = TouchingTip::new(&self.mapping, input, self.command);
+        let here = tip.here;
+        let pushed = self.force.step(dt, &tip);
         // Implicit in both springs.
         let give = own.damping + (own.stiffness + self.force.stiffness()) * dt;
         let command = live.zip(here).map(|(received, here)| {

@@ -367,7 +367,7 @@ impl Follower for ModelMediatedFollower {
         let TouchingTip {
             contact, tip, here, ..
         } = TouchingTip::new(&mapping, input, self.command);
-        if let (Some(tip), Some(_)) = (tip, input.contact_force) {
+        if let (Some(tip), Some(contact)) = (tip, contact) {
             let tip = late(&mut self.late, dt, own.force_lag, tip);
             self.model = self.estimator.step(dt, tip, contact);
             let touches = contact.norm() >= threshold(own);
@@ -394,7 +394,8 @@ impl Follower for ModelMediatedFollower {
                     speed = speed.min(DEEPER);
                 }
                 let near = into(&here) + SEARCH_BEFORE > place.even.value;
-                if near && contact.norm() < SEARCHED * allowed {
+                let little = contact.is_some_and(|own| own.norm() < SEARCHED * allowed);
+                if near && little {
                     let lead = tip.map_or(0.0, |tip| into(&(here - tip)));
                     let most = search_speed(dt, self.speed, lead, own.position_time);
                     speed = speed.max(into(&free).min(most));

@@ -208,13 +208,9 @@ impl Follower for TdpaFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
         let live = self.mapping.live(input.connected, input.received);
-        let TouchingTip {
-            contact,
-            here,
-            lead,
-            ..
-        } = TouchingTip::new(&self.mapping, input, self.command);
-        let force = self.force.step(dt, contact, lead);
+        let tip = TouchingTip::new(&self.mapping, input, self.command);
+        let here = tip.here;
+        let force = self.force.step(dt, &tip);
         let mean = -0.5 * (force + self.last);
         self.last = force;
         self.meter.step(mean.into(), here.map(Into::into));
@@ -239,8 +235,8 @@ impl Follower for TdpaFollower {
         let energy = promise(&self.tank, energy);
         FollowerOutput {
             command: motion.map(|(position, velocity)| self.mapping.command(position, velocity)),
-            packet: match (input.tip, input.contact_force) {
-                (Some(tip), Some(_)) => Packet::new(tip.position, contact.into(), energy),
+            packet: match (input.tip, tip.contact) {
+                (Some(tip), Some(contact)) => Packet::new(tip.position, contact.into(), energy),
                 _ => Packet::empty(energy),
             },
         }

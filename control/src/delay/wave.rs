@@ -272,13 +272,9 @@ impl Follower for WaveFollower {
         let root = (2.0 * b).sqrt();
         let live = self.mapping.live(input.connected, input.received);
         let forth = self.arrived.step(dt, live, own.buffer);
-        let TouchingTip {
-            contact,
-            here,
-            lead,
-            ..
-        } = TouchingTip::new(&self.mapping, input, self.command);
-        let force = self.force.step(dt, contact, lead);
+        let tip = TouchingTip::new(&self.mapping, input, self.command);
+        let here = tip.here;
+        let force = self.force.step(dt, &tip);
         let mean = -0.5 * (force + self.last);
         self.last = force;
         self.meter.step(mean.into(), here.map(Into::into));
