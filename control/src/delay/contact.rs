@@ -15,6 +15,36 @@ use nalgebra::Vector3;
 /// Time constant τ of the filter [s]: longer than the servo's lag.
 const TIME: f64 = 0.05;
 
+/// The last command of an arm's end. It outlives a moment without one, when a packet is too
+/// old or the hand was not measured: a command that began anew at the tip would let go of
+/// what the servo's spring holds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LastCommand {
+    /// Hand units [m].
+    position: Option<Vector3<f64>>,
+    /// Time since it was given [s].
+    since: f64,
+}
+
+impl LastCommand {
+    /// Hand units \[m\]; `None` where the next one begins at the tip.
+    pub fn position(&self) -> Option<Vector3<f64>> {
+        self.position
+    }
+
+    /// A step of `dt` \[s\] that gave `command`, or none; forgotten after `life` \[s\], and at
+    /// once where nothing may be commanded.
+    pub fn step(&mut self, dt: f64, command: Option<Vector3<f64>>, connected: bool, life: f64) {
+        self.since += dt;
+        if command.is_some() {
+            self.position = command;
+            self.since = 0.0;
+        } else if self.since > life || !connected {
+            self.position = None;
+        }
+    }
+}
+
 /// What a follower whose tip gives way sees, in hand units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TouchingTip {
@@ -32,8 +62,9 @@ pub(super) struct TouchingTip {
 }
 
 impl TouchingTip {
-    /// Of `input`, with the last command \[m\], hand units.
-    pub fn new(mapping: &Mapping, input: &FollowerInput, command: Option<Vector3<f64>>) -> Self {
+    /// Of `input`, with the last command.
+    pub fn new(mapping: &Mapping, input: &FollowerInput, command: &LastCommand) -> Self {
+        let command = command.position();
         let tip = input.tip.map(|tip| mapping.tip_at_hand(tip.position));
         let here = command.or(tip);
         TouchingTip {

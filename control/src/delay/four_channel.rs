@@ -23,7 +23,7 @@
 //! **On loss.** No command, the force fades out. Afterwards the command begins at
 //! the tip and approaches by K and B.
 
-use super::contact::{CommandForce, TouchingTip};
+use super::contact::{CommandForce, LastCommand, TouchingTip};
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
@@ -153,8 +153,7 @@ pub struct FourChannelFollower {
     mapping: Mapping,
     force: CommandForce,
     hand: Other,
-    /// Hand units [m].
-    command: Option<Vector3<f64>>,
+    command: LastCommand,
 }
 
 impl FourChannelFollower {
@@ -165,7 +164,7 @@ impl FourChannelFollower {
             mapping,
             force: CommandForce::new(mapping.stiffness_at_hand(law.servo_stiffness)),
             hand: Other::default(),
-            command: None,
+            command: LastCommand::default(),
         }
     }
 }
@@ -176,7 +175,7 @@ impl Follower for FourChannelFollower {
         let live = self.mapping.live(input.connected, input.received);
         let newest = live.map(|received| (vector(received.packet.position), received.fresh));
         self.hand.step(dt, newest);
-        let tip = TouchingTip::new(&self.mapping, input, self.command);
+        let tip = TouchingTip::new(&self.mapping, input, &self.command);
         let here = tip.here;
         let pushed = self.force.step(dt, &tip);
         // Implicit in both springs.
@@ -189,7 +188,8 @@ impl Follower for FourChannelFollower {
             let velocity = shortened(pull / give, own.largest_speed);
             (here + velocity * dt, velocity)
         });
-        self.command = command.map(|(position, _)| position);
+        let given = command.map(|(position, _)| position);
+        self.command.step(dt, given, input.connected, own.deadline);
         FollowerOutput {
             command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
             packet: match (input.tip, input.contact_force) {

@@ -38,7 +38,7 @@ mod estimate;
 
 pub use estimate::SurfaceModel;
 
-use super::contact::TouchingTip;
+use super::contact::{LastCommand, TouchingTip};
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
@@ -302,8 +302,7 @@ pub struct ModelMediatedFollower {
     late: [Option<Vector3<f64>>; 2],
     model: Option<SurfaceModel>,
     place: Option<Place>,
-    /// Hand units [m].
-    command: Option<Vector3<f64>>,
+    command: LastCommand,
     /// Of the command into the surface, since one is known [m/s].
     speed: f64,
 }
@@ -320,7 +319,7 @@ impl ModelMediatedFollower {
             late: [None; 2],
             model: None,
             place: None,
-            command: None,
+            command: LastCommand::default(),
             speed: 0.0,
         }
     }
@@ -366,7 +365,7 @@ impl Follower for ModelMediatedFollower {
         let live = mapping.live(input.connected, input.received);
         let TouchingTip {
             contact, tip, here, ..
-        } = TouchingTip::new(&mapping, input, self.command);
+        } = TouchingTip::new(&mapping, input, &self.command);
         if let (Some(tip), Some(contact)) = (tip, contact) {
             let tip = late(&mut self.late, dt, own.force_lag, tip);
             self.model = self.estimator.step(dt, tip, contact);
@@ -405,7 +404,8 @@ impl Follower for ModelMediatedFollower {
             });
             (here + velocity * dt, velocity)
         });
-        self.command = command.map(|(position, _)| position);
+        let given = command.map(|(position, _)| position);
+        self.command.step(dt, given, input.connected, own.deadline);
         FollowerOutput {
             command: command.map(|(position, velocity)| mapping.command(position, velocity)),
             packet: match (input.tip, input.contact_force) {

@@ -16,6 +16,7 @@
 //!
 //! **On loss.** As the other laws: no command, the force fades out.
 
+use super::contact::LastCommand;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
@@ -113,10 +114,7 @@ impl Leader for PositionPositionLeader {
 pub struct PositionPositionFollower {
     parameters: PositionPosition,
     mapping: Mapping,
-    /// Hand units [m].
-    command: Option<Vector3<f64>>,
-    /// Time since that was given [s].
-    since: f64,
+    command: LastCommand,
     dissipated: f64,
 }
 
@@ -125,8 +123,7 @@ impl PositionPositionFollower {
         PositionPositionFollower {
             parameters: law.clone(),
             mapping: law.mapping(),
-            command: None,
-            since: 0.0,
+            command: LastCommand::default(),
             dissipated: 0.0,
         }
     }
@@ -142,6 +139,7 @@ impl Follower for PositionPositionFollower {
         let command = live.zip(input.tip).map(|(received, tip)| {
             let here = self
                 .command
+                .position()
                 .unwrap_or_else(|| self.mapping.tip_at_hand(tip.position));
             let pull = own.stiffness * (vector(received.packet.position) - here) + force;
             // Implicit in the spring: steady for every step.
@@ -149,15 +147,8 @@ impl Follower for PositionPositionFollower {
             self.dissipated += own.whole_damping() * velocity.norm_squared() * dt;
             (here + velocity * dt, velocity)
         });
-        self.since += dt;
-        if let Some((position, _)) = command {
-            self.command = Some(position);
-            self.since = 0.0;
-        } else if self.since > own.deadline || !input.connected {
-            // Not sooner: where now and then a packet is too old to be acted on, a tip that is
-            // measured beside where it was told to be would lead the command astray.
-            self.command = None;
-        }
+        let given = command.map(|(position, _)| position);
+        self.command.step(dt, given, input.connected, own.deadline);
         FollowerOutput {
             command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
             packet: input.tip.map_or(Packet::empty(energy), |tip| {

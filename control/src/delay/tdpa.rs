@@ -35,7 +35,7 @@
 //! **On loss.** No command, the force fades out. Afterwards the command begins at the
 //! tip and approaches at `drift_speed`.
 
-use super::contact::{CommandForce, TouchingTip};
+use super::contact::{CommandForce, LastCommand, TouchingTip};
 use super::energy_tank::EnergyTank;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
@@ -185,8 +185,7 @@ pub struct TdpaFollower {
     meter: EnergyMeter,
     force: CommandForce,
     last: Vector3<f64>,
-    /// Hand units [m].
-    command: Option<Vector3<f64>>,
+    command: LastCommand,
 }
 
 impl TdpaFollower {
@@ -199,7 +198,7 @@ impl TdpaFollower {
             meter: EnergyMeter::default(),
             force: CommandForce::new(mapping.stiffness_at_hand(law.servo_stiffness)),
             last: Vector3::zeros(),
-            command: None,
+            command: LastCommand::default(),
         }
     }
 }
@@ -208,7 +207,7 @@ impl Follower for TdpaFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
         let live = self.mapping.live(input.connected, input.received);
-        let tip = TouchingTip::new(&self.mapping, input, self.command);
+        let tip = TouchingTip::new(&self.mapping, input, &self.command);
         let here = tip.here;
         let force = self.force.step(dt, &tip);
         let mean = -0.5 * (force + self.last);
@@ -231,7 +230,8 @@ impl Follower for TdpaFollower {
                 .admitted(dt, wanted, self.tank.level(), own.yield_speed);
             (here + velocity * dt, velocity)
         });
-        self.command = motion.map(|(position, _)| position);
+        let given = motion.map(|(position, _)| position);
+        self.command.step(dt, given, input.connected, own.deadline);
         let energy = promise(&self.tank, energy);
         FollowerOutput {
             command: motion.map(|(position, velocity)| self.mapping.command(position, velocity)),

@@ -39,7 +39,7 @@
 //! equally fast (their offset changes the absorption only); the servo from command to
 //! tip is passive, up to the kinetic energy of the arm.
 
-use super::contact::{CommandForce, TouchingTip};
+use super::contact::{CommandForce, LastCommand, TouchingTip};
 use super::energy_tank::EnergyTank;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
@@ -103,20 +103,31 @@ struct Arrived {
     last: Option<(f64, Vector3<f64>)>,
     integral: Vector3<f64>,
     time: f64,
+    /// Time without anything to act on [s].
+    silence: f64,
 }
 
 impl Arrived {
     /// The wave of this step [√W].
-    fn step(&mut self, dt: f64, live: Option<Received>, buffer: f64) -> Vector3<f64> {
+    fn step(
+        &mut self,
+        dt: f64,
+        live: Option<Received>,
+        connected: bool,
+        law: &Wave,
+    ) -> Vector3<f64> {
+        let buffer = law.buffer;
         self.clock += dt;
-        let Some(received) = live else {
+        self.silence = live.map_or(self.silence + dt, |_| 0.0);
+        if self.silence > law.deadline || !connected {
             *self = Arrived {
                 clock: self.clock,
+                silence: self.silence,
                 ..Arrived::default()
             };
             return Vector3::zeros();
-        };
-        if received.fresh {
+        }
+        if let Some(received) = live.filter(|own| own.fresh) {
             let sent = self.clock - received.age;
             let total = vector(received.packet.vector);
             if let Some((before, sum)) = self.last {
@@ -197,7 +208,7 @@ impl Leader for WaveLeader {
         let root = (2.0 * own.impedance).sqrt();
         let live = self.mapping.live(input.connected, input.received);
         let share = self.fade.step(dt, own.force_ramp, live.is_some());
-        let back = self.arrived.step(dt, live, own.buffer);
+        let back = self.arrived.step(dt, live, input.connected, own);
         self.tank.add(0.5 * back.norm_squared() * dt);
         self.tank.port(energy, 0.0);
         self.tank.limit(own.reserve);
@@ -245,8 +256,7 @@ pub struct WaveFollower {
     meter: EnergyMeter,
     force: CommandForce,
     last: Vector3<f64>,
-    /// Hand units [m].
-    command: Option<Vector3<f64>>,
+    command: LastCommand,
 }
 
 impl WaveFollower {
@@ -260,7 +270,7 @@ impl WaveFollower {
             meter: EnergyMeter::default(),
             force: CommandForce::new(law.mapping().stiffness_at_hand(law.servo_stiffness)),
             last: Vector3::zeros(),
-            command: None,
+            command: LastCommand::default(),
         }
     }
 }
@@ -271,8 +281,8 @@ impl Follower for WaveFollower {
         let b = own.impedance;
         let root = (2.0 * b).sqrt();
         let live = self.mapping.live(input.connected, input.received);
-        let forth = self.arrived.step(dt, live, own.buffer);
-        let tip = TouchingTip::new(&self.mapping, input, self.command);
+        let forth = self.arrived.step(dt, live, input.connected, own);
+        let tip = TouchingTip::new(&self.mapping, input, &self.command);
         let here = tip.here;
         let force = self.force.step(dt, &tip);
         let mean = -0.5 * (force + self.last);
@@ -293,7 +303,8 @@ impl Follower for WaveFollower {
                 .admitted(dt, velocity, self.tank.level(), own.yield_speed);
             (here + velocity * dt, velocity)
         });
-        self.command = command.map(|(position, _)| position);
+        let given = command.map(|(position, _)| position);
+        self.command.step(dt, given, input.connected, own.deadline);
         let integral = self.sent.add(wave, dt);
         let packet = input.tip.map_or(Packet::empty(energy), |tip| Packet {
             valid: input.contact_force.is_some(),
