@@ -255,7 +255,8 @@ fn behave_as_in_lockstep() {
             "peak force in the hand",
             found.peak_hand_force,
             expected.peak_hand_force,
-            0.2,
+            // Of an impact: what both hosts are late by in its milliseconds shows.
+            0.3,
         );
         near(
             "energy from the hand",
