@@ -55,20 +55,23 @@ fn position_force_is_stable_on_soft_springs_alone() {
 }
 
 #[test]
-fn four_channels_are_transparent_without_delay_and_fail_with_it() {
+fn four_channels_feel_a_hard_wall_at_any_delay_and_get_heavier_with_it() {
     let near = run("four_channel", 0.02, Environment::SoftSpring);
     assert!(near.stable, "{near:?}");
     let transparency = near.transparency.expect("it presses");
     assert!((0.95..1.05).contains(&transparency), "{near:?}");
-    // A stiff coupling has no margin left.
-    let far = run_with(
-        "four_channel",
-        "stiffness = 1000.0",
-        0.1,
-        Environment::HardWall,
-    );
-    assert!(!far.stable && far.energy_margin < -0.5, "{far:?}");
-    // A soft one gets heavier with the delay.
+    for round_trip in [0.02, 0.1, 0.3, 1.0] {
+        // A stiff coupling as well; twice the servo's spring is in series with the wall.
+        for (coupling, keys) in [(200.0, ""), (1000.0, "stiffness = 1000.0")] {
+            let wall = run_with("four_channel", keys, round_trip, Environment::HardWall);
+            let told = format!("{coupling} N/m, {round_trip} s: {wall:?}");
+            assert!(wall.stable && wall.energy_margin > -0.001, "{told}");
+            let expected = (1.0 + coupling / 14e3) / (1.0 / 20e3 + 1.0 / 14e3);
+            let share = wall.felt_stiffness.expect("it presses") / expected;
+            assert!((0.95..1.05).contains(&share), "{share}: {told}");
+        }
+    }
+    // What it gives for that.
     let (here, away) = (
         run("four_channel", 0.02, Environment::Free),
         run("four_channel", 0.6, Environment::Free),

@@ -6,14 +6,23 @@
 //! systems and the effect of local force feedback for transparent
 //! teleoperation", IEEE T-RA 18), in hand units:
 //!
-//! F = F_s(t − T₂) + K (x_s(t − T₂) − x_h) + B (v_s − v_h) and, at the tip, which is
-//! told where to go rather than pushed,
+//! F = F_s(t − T₂) + K (x_s(t − T₂) − x_h) + B (v_s − v_h) − D v_h and, at the tip, which
+//! is told where to go rather than pushed,
 //! 0 = K (x_h(t − T₁) − x_s) + B (v_h − v_s) + F_h(t − T₁) − F̂_s.
 //!
 //! F_h is what the hand gives: the force on it, turned round. At rest both say
 //! x_s = x_h and F = F_s: without delay the hand feels what the tip touches, and
 //! the tip is where the hand is. v_s of the other end is the difference of its
 //! positions.
+//!
+//! **What the arm is late by.** With a tip that follows at once a force that the hand gives
+//! comes back as −F_h one round trip later: a loop whose gain is 1 at every frequency. A
+//! servo's lag then makes it swing, in free space already. So F_h goes out through a low
+//! pass as slow as the loop, τ = T₁ + T₂ + λ with λ the arm's own lag, and the hand has the
+//! damping that the lag of its spring asks for, D = K τ, no more than B (of the kind of Nuño,
+//! Basañez, Ortega, Spong 2009, "Position tracking for non-linear teleoperators with variable
+//! time delay", IJRR 28; found by trial on the simulated arm, no proof). At rest nothing
+//! changes.
 //!
 //! **What it guarantees.** Nothing about stability: it is transparent without delay,
 //! and gives up every margin for that. On the simulated arm with a hand of 300 N/m the
@@ -56,6 +65,10 @@ law_ends!(
 /// Time constant of the velocity of what was received [s].
 const VELOCITY_FILTER: f64 = 0.01;
 
+/// λ: what an arm is late by from command to what is measured of it: servo, estimate and
+/// rate of the other end's position [s].
+const ARM_LAG: f64 = 0.05;
+
 /// Position of the other end with its rate.
 #[derive(Clone, Copy, Debug, Default)]
 struct Other {
@@ -96,6 +109,8 @@ pub struct FourChannelLeader {
     contact: Vector3<f64>,
     /// At the last step, in place of the tip's after a loss [m].
     position: Vector3<f64>,
+    /// F_h behind its low pass [N].
+    given: Vector3<f64>,
 }
 
 impl FourChannelLeader {
@@ -107,6 +122,7 @@ impl FourChannelLeader {
             tip: Other::default(),
             contact: Vector3::zeros(),
             position: Vector3::zeros(),
+            given: Vector3::zeros(),
         }
     }
 }
@@ -137,10 +153,15 @@ impl Leader for FourChannelLeader {
         }
         let apart = self.position - here;
         let rate = self.tip.velocity - Vector3::from(hand.velocity);
-        let force = share * (self.contact + own.stiffness * apart + own.damping * rate);
+        let age = live.map_or(0.0, |received| received.age.max(0.0));
+        let late = ARM_LAG + 2.0 * age;
+        let damping = (own.stiffness * late).min(own.damping);
+        let force = share * (self.contact + own.stiffness * apart + own.damping * rate)
+            - damping * Vector3::from(hand.velocity);
+        self.given += dt / (dt + late) * (-force - self.given);
         LeaderOutput {
             force: force.into(),
-            packet: Packet::new(hand.position, (-force).into(), energy),
+            packet: Packet::new(hand.position, self.given.into(), energy),
         }
     }
 }
