@@ -11,10 +11,10 @@
 //! * With a buffer, so is a frame that comes after it is due; but when all frames
 //!   come late for [`REBASE`], the way has become longer, and base follows.
 //! * Of several that are due only the newest is acted on.
-//! * After an outage, nothing that was queued is acted on: what waits when
-//!   nothing has arrived for [`OUTAGE`] is dropped. What the arm does then is not
-//!   decided here: the servo's watchdog has paused it, and it waits to be re-armed
-//!   and approaches on a ramp.
+//! * After an outage, nothing that was queued is acted on: what waits when nothing has
+//!   arrived for [`OUTAGE`], or for the buffer where that is longer, is dropped. What the arm
+//!   does then is not decided here: the servo's watchdog has paused it, and it waits to be
+//!   re-armed and approaches on a ramp.
 //!
 //! Allocates when made, never afterwards.
 
@@ -24,7 +24,7 @@ use crate::nanoseconds;
 
 /// Longest buffer \[s\].
 pub const LONGEST_BUFFER: f64 = 0.2;
-/// Silence after which what waits is dropped \[s\].
+/// Silence after which what waits is dropped, where the buffer is not longer \[s\].
 pub const OUTAGE: f64 = 0.1;
 /// When all frames are late for this long, base follows \[s\].
 pub const REBASE: f64 = 0.5;
@@ -161,9 +161,9 @@ impl PlayOut {
     }
 
     fn after_outage(&mut self, now_ns: i64) {
-        let silent = self
-            .arrived_ns
-            .is_some_and(|own| now_ns.saturating_sub(own) > nanoseconds(OUTAGE));
+        let silent = self.arrived_ns.is_some_and(|own| {
+            now_ns.saturating_sub(own) > self.buffer_ns.max(nanoseconds(OUTAGE))
+        });
         if silent && self.waiting > 0 {
             self.clear();
         }
@@ -249,7 +249,11 @@ mod tests {
             offered(&mut playout, k, 2 * i64::from(k), 2 * i64::from(k) + 20);
         }
         assert_eq!(playout.waiting(), 20);
-        assert_eq!(taken(&mut playout, 160), None);
+        // Each 170 ms after it was sent, for as long as the buffer bridges; this end was held
+        // up from then on.
+        assert_eq!(taken(&mut playout, 169), None);
+        assert_eq!(taken(&mut playout, 190), Some(10));
+        assert_eq!(taken(&mut playout, 209), None);
         assert_eq!(playout.waiting(), 0);
         // What was held up on the way comes late, what is sent now counts.
         assert_eq!(offered(&mut playout, 20, 40, 400), Offered::Late);

@@ -8,7 +8,7 @@ use ferntast_control::{
     haptics::MasterConfig,
     servo::{self, ServoConfig},
 };
-use ferntast_emulation::channel::{ChannelConfig, LinkConfig};
+use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig};
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 use ferntast_sim::teleoperation::{
     ArmUnderTrial, Environment, FollowerModel, Outcome, Task, Trial,
@@ -146,6 +146,31 @@ fn four_channels_hold_at_the_scale_of_a_session() {
     trial.law = scaled("four_channel", SCALE, &arm());
     let heavy = trial.run().expect("a valid trial").felt_damping;
     assert!((5.0..15.0).contains(&heavy), "{heavy} N·s/m");
+}
+
+/// Frames in order whose delay has a standard deviation of 50 ms come in bursts, with gaps of
+/// 0.1 s; a buffer of three of it evens that out.
+#[test]
+fn behind_a_jitter_buffer_hardly_anybody_holds() {
+    for name in ["model_mediated", "tdpa", "four_channel"] {
+        let mut own = trial(name, 0.1, Environment::SoftSpring, Task::PressAndSlide);
+        own.law = scaled(name, 0.05, &arm());
+        let deviation = 0.05;
+        for way in [&mut own.link.up, &mut own.link.down] {
+            way.jitter = Some(Jitter::Normal { deviation });
+        }
+        let bare = own.run().expect("a valid trial");
+        assert!(
+            bare.held > 5.0 && bare.task_time.is_none(),
+            "{name}: {bare:?}"
+        );
+        own.buffer = 3.0 * deviation;
+        let buffered = own.run().expect("a valid trial");
+        let told = format!("{name}: {buffered:?}");
+        assert!(buffered.stable && buffered.task_time.is_some(), "{told}");
+        // One frame in some hundreds is later than that; the operator's word takes 0.5 s.
+        assert!(buffered.held < 1.1, "{told}");
+    }
 }
 
 /// Round trips from a room to beyond a relay satellite \[s\].

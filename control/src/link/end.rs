@@ -120,6 +120,15 @@ impl End {
         self.heard_arming
     }
 
+    /// Time since something was heard that counts \[s\]: with a buffer since a frame was played
+    /// out, as those that wait bridge a gap in what arrives, else since one arrived.
+    fn heard(&self, now_ns: i64) -> f64 {
+        match self.buffered {
+            true => self.silence(now_ns),
+            false => self.meter.silence(now_ns),
+        }
+    }
+
     /// Time since the frame that is acted on \[s\]; infinite before the first.
     pub fn silence(&self, now_ns: i64) -> f64 {
         self.newest
@@ -144,14 +153,14 @@ impl End {
             received: Received {
                 packet: frame.packet,
                 fresh: self.fresh,
-                silence: self.meter.silence(now_ns),
+                silence: self.heard(now_ns),
                 age: seconds(now_ns.saturating_sub(frame.sent_ns)),
             },
         })
     }
 
     pub fn connected(&self, now_ns: i64) -> bool {
-        self.meter.silence(now_ns) <= CONNECTED
+        self.heard(now_ns) <= CONNECTED
     }
 
     /// Time since the last step \[s\].
@@ -183,7 +192,7 @@ impl End {
         } else {
             now_ns.saturating_add(SEND_PERIOD_NS)
         };
-        let deaf = self.meter.silence(now_ns) > RETURN_SILENCE;
+        let deaf = self.heard(now_ns) > RETURN_SILENCE;
         let frame = LinkFrame {
             sequence: self.sequence,
             stamp_ns: now_ns,

@@ -14,7 +14,8 @@
 //! in, [`FRESH`] later at most: a law may go on for some milliseconds without frames,
 //! but the servo's watchdog counts from the link's silence and refuses what is too
 //! old. An end that hears nothing for
-//! [`RETURN_SILENCE`], or whose device is not ENABLED, asks the other to hold: the
+//! [`RETURN_SILENCE`] (with a jitter buffer: that had nothing to play out, so the buffer's
+//! length later), or whose device is not ENABLED, asks the other to hold: the
 //! arm's end then commands nothing either, and the hand's force fades out.
 //!
 //! Times are `i64` nanoseconds since the UNIX epoch. An end allocates when it is
@@ -42,8 +43,8 @@ use crate::operating::OperatingState;
 
 /// Time between two frames \[ns\]: 500 Hz.
 pub const SEND_PERIOD_NS: i64 = 2_000_000;
-/// The other end counts as connected while its newest frame is younger than
-/// this \[s\].
+/// The other end counts as connected while it was heard, or a frame of it played out, no
+/// longer ago than this \[s\].
 pub const CONNECTED: f64 = 0.100;
 
 /// A command counts as made this long after the newest frame at most \[s\]: half a period

@@ -1,11 +1,11 @@
 //! What comes in over the link is judged before anything is done with it.
 
 use super::*;
-use crate::delay::{Law, Packet};
+use crate::delay::{Law, Packet, Wave};
 use crate::frame::{self, FRAME_LENGTH, LinkFrame};
 use crate::meter::RefusedCounts;
 use crate::operating::OperatingState;
-use crate::switching::Laws;
+use crate::switching::{Laws, code};
 use proptest::prelude::*;
 
 const START_NS: i64 = 1_700_000_000_000_000_000;
@@ -188,6 +188,55 @@ fn a_buffer_lets_overtaken_frames_fall_into_place() {
     }
     // All but those whose time fell between two steps with another's.
     assert!((20..=40).contains(&commanded), "{commanded}");
+}
+
+/// Frames are held up on the way for 130 ms, which is what a buffer of 150 ms is for: the arm
+/// is commanded throughout, and nobody asks to hold; when what waited is played out, for as
+/// long as without a buffer.
+#[test]
+fn frames_that_wait_bridge_a_gap_in_what_arrives() {
+    let mut rig = Rig::with_buffer(0.15);
+    rig.link = FollowerLink::new(Laws::new(Law::Wave(Wave::default())), 0.15);
+    let mut last = None;
+    let mut held_up = Vec::new();
+    for tick in 0..500_i64 {
+        if tick % 2 == 0 && tick < 290 {
+            let law = code("wave").unwrap();
+            held_up.push(bytes(&LinkFrame { law, ..rig.good() }));
+        }
+        if !(100..230).contains(&tick) {
+            for frame in held_up.drain(..) {
+                rig.link.arrived(&frame, rig.now_ns);
+            }
+        }
+        let readings = FollowerReadings {
+            tip: Some(StampedPosition {
+                stamp_ns: rig.now_ns,
+                position: [0.35, 0.0, 0.0],
+                silence: 0.0,
+            }),
+            contact_force: Some([0.0; 3]),
+            state: OperatingState::Enabled,
+            told_to_stop: false,
+        };
+        let step = rig.link.step(rig.now_ns, &readings);
+        if (151..430).contains(&tick) {
+            assert!(step.command.is_some(), "at {tick} ms");
+            let frame = step
+                .frame
+                .map(|own| frame::decode(&own, rig.now_ns, 0).expect("a frame"));
+            assert!(frame.is_none_or(|own| !own.hold), "at {tick} ms");
+        }
+        if step.command.is_some() {
+            last = Some(tick);
+        }
+        rig.now_ns += TICK_NS;
+    }
+    // The last frame came at 288 ms and was due 150 ms later.
+    assert!(
+        last.is_some_and(|tick| (430..=464).contains(&tick)),
+        "{last:?}"
+    );
 }
 
 #[test]
