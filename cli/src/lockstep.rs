@@ -42,8 +42,9 @@ pub struct Arguments {
     switches: Vec<String>,
 
     /// Hold the model of this experiment of the lab against a joint while it moves; topics /twin/*.
+    /// Give it again for another joint.
     #[arg(long, value_name = "EXPERIMENT.toml")]
-    twin: Option<PathBuf>,
+    twin: Vec<PathBuf>,
 
     /// Have the servo take over the friction that the twin found, so many seconds after the start.
     #[arg(long, value_name = "SECONDS", requires = "twin")]
@@ -68,7 +69,7 @@ struct Result {
     link: LinkSummary,
     contact: ContactSummary,
     leader: LeaderSummary,
-    twin: Option<TwinSummary>,
+    twins: Vec<TwinSummary>,
     friction: Vec<FrictionSummary>,
     states: std::collections::BTreeMap<String, StateSummary>,
     recording: Option<String>,
@@ -93,7 +94,7 @@ pub fn run(
         )));
     }
     let mut context = SessionContext::in_virtual_time(loaded);
-    context.twin = arguments.twin;
+    context.twins = arguments.twin;
     context.bag = arguments.record;
     let mut session = LockstepSession::new(graph, &context).map_err(Failure::refused)?;
     for text in &arguments.switches {
@@ -152,7 +153,7 @@ pub fn run(
         link: monitor.link(),
         contact: monitor.contact(),
         leader: monitor.leader(),
-        twin: monitor.twin(),
+        twins: monitor.twins(),
         friction: monitor.friction(),
         states: monitor.states(),
         recording: context.bag.as_ref().map(|path| path.display().to_string()),
@@ -174,8 +175,8 @@ pub fn run(
             result.leader.peak_force,
             result.link.rtt_ms.unwrap_or(f64::NAN)
         );
-        if let Some(twin) = &result.twin {
-            println!("{twin}");
+        if !result.twins.is_empty() {
+            result.twins.iter().for_each(|own| println!("{own}"));
             result.friction.iter().for_each(|own| println!("{own}"));
         }
     }

@@ -34,9 +34,9 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     bag: Option<PathBuf>,
 
-    /// Experiment whose model the twin holds against a joint.
+    /// Experiment whose model the twin holds against a joint (may be given again for another joint).
     #[arg(long, value_name = "EXPERIMENT.toml")]
-    twin: Option<PathBuf>,
+    twin: Vec<PathBuf>,
 
     /// Everything at once, as the supervisor wrote it.
     #[arg(long, hide = true)]
@@ -59,7 +59,7 @@ pub fn run(graph: &Graph, arguments: Arguments) -> Result<ExitCode, Failure> {
                 SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
             context.link_access.peer = arguments.scenario.link_peer;
             context.bag = arguments.bag;
-            context.twin = arguments.twin;
+            context.twins = arguments.twin;
             context
         }
     };

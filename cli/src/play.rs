@@ -12,7 +12,7 @@ use super::{
     Failure,
     foxglove_option::FoxgloveOption,
     output::print_json,
-    scenario_options::{ScenarioOptions, check_twin},
+    scenario_options::{ScenarioOptions, check_twins},
 };
 
 /// Put a recording back on the topics of ROS 2, with its timing.
@@ -39,8 +39,9 @@ pub struct Arguments {
     estimate: bool,
 
     /// Hold the model of this experiment of the lab against a joint that is played; topics /twin/*.
+    /// Give it again for another joint.
     #[arg(long, value_name = "EXPERIMENT.toml")]
-    twin: Option<PathBuf>,
+    twin: Vec<PathBuf>,
 
     #[command(flatten)]
     foxglove: FoxgloveOption,
@@ -73,17 +74,15 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     };
     context.bag = Some(arguments.recording);
     context.foxglove = arguments.foxglove.address()?;
-    check_twin(arguments.twin.as_deref(), context.joints())?;
-    context.twin = arguments.twin;
+    check_twins(&arguments.twin, context.joints())?;
+    context.twins = arguments.twin;
     let stop = stop_on_signals().map_err(Failure::failed)?;
     let played = session::play(graph, context, &info, &stop).map_err(Failure::of_session)?;
     if json {
         print_json(&played)?;
     } else {
         println!("played {:.1} s", played.played_s);
-        if let Some(twin) = &played.twin {
-            println!("{twin}");
-        }
+        played.twins.iter().for_each(|own| println!("{own}"));
     }
     match played.fault() {
         None => Ok(ExitCode::SUCCESS),

@@ -17,9 +17,9 @@ pub struct Arguments {
     recording: PathBuf,
 
     /// Hold the model of this experiment of the lab against a joint; compared where the
-    /// recording has a twin.
+    /// recording has a twin. Give it again for another joint.
     #[arg(long, value_name = "EXPERIMENT.toml")]
-    twin: Option<PathBuf>,
+    twin: Vec<PathBuf>,
 }
 
 /// Runs it; exit code 1 when the outputs differ.
@@ -28,8 +28,8 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %") {
         bar.set_style(style);
     }
-    let twin = arguments.twin.as_deref();
-    let result = replay::run(graph, &arguments.recording, twin, &mut |share| {
+    let twins = &arguments.twin;
+    let result = replay::run(graph, &arguments.recording, twins, &mut |share| {
         bar.set_position((share * 100.0) as u64);
     })
     .map_err(|error| match error {
@@ -49,8 +49,8 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
             result.first_difference.as_deref().unwrap_or("-")
         );
     }
-    if let (false, Some(twin)) = (json, &result.twin) {
-        println!("{twin}");
+    if !json {
+        result.twins.iter().for_each(|own| println!("{own}"));
     }
     Ok(if result.equal {
         ExitCode::SUCCESS

@@ -1,6 +1,6 @@
 //! The options by which a scenario is chosen and changed.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use ferntast_drivers::simulated;
@@ -130,17 +130,16 @@ impl ScenarioOptions {
     }
 }
 
-/// Refuses an experiment that a twin of an arm of those joints cannot follow,
-/// before any node is started.
+/// Refuses experiments that twins of an arm of those joints cannot follow, before any node is
+/// started.
 ///
 /// # Errors
 ///
-/// What is wrong with it, where, and how to correct it.
-pub fn check_twin(experiment: Option<&Path>, joints: JointNames) -> Result<(), Failure> {
-    match experiment {
-        None => Ok(()),
-        Some(path) => twin::open(path, joints).map(drop).map_err(Failure::refused),
-    }
+/// What is wrong with them, where, and how to correct it.
+pub fn check_twins(experiments: &[PathBuf], joints: JointNames) -> Result<(), Failure> {
+    twin::open_all(experiments, joints)
+        .map(drop)
+        .map_err(Failure::refused)
 }
 
 fn domain_of_environment() -> Result<Option<u32>, Failure> {

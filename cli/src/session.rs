@@ -13,7 +13,7 @@ use super::{
     foxglove_option::FoxgloveOption,
     output::print_json,
     page_options::PageOptions,
-    scenario_options::{ScenarioOptions, check_twin},
+    scenario_options::{ScenarioOptions, check_twins},
 };
 
 /// Run a session.
@@ -41,8 +41,9 @@ pub struct Arguments {
     record: Option<PathBuf>,
 
     /// Hold the model of this experiment of the lab against a joint while it moves; topics /twin/*.
+    /// Give it again for another joint.
     #[arg(long, value_name = "EXPERIMENT.toml")]
-    twin: Option<PathBuf>,
+    twin: Vec<PathBuf>,
 
     /// Name of the session; two at once on one host need two names.
     #[arg(long, default_value = "default", value_name = "NAME")]
@@ -79,8 +80,8 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     let page = arguments.page.console()?;
     context.console = (!arguments.no_console).then_some(page);
     context.foxglove = arguments.foxglove.address()?;
-    check_twin(arguments.twin.as_deref(), context.joints())?;
-    context.twin = arguments.twin;
+    check_twins(&arguments.twin, context.joints())?;
+    context.twins = arguments.twin;
     let stop = stop_on_signals().map_err(Failure::failed)?;
     let options = SessionOptions {
         duration: arguments.duration,

@@ -133,7 +133,7 @@ fn what_is_beyond_the_bounds_is_refused_and_changes_nothing() {
 
 #[test]
 fn without_a_twin_there_is_nothing_to_take_over() {
-    let mut own = Watched::new(session(&scenario(6, true), None, None));
+    let mut own = Watched::new(session(&scenario(6, true), None, Vec::new()));
     own.command(FrictionCommand::TAKE_OVER);
     own.run(2.0);
     let reason = own.friction().refused.unwrap();
@@ -147,7 +147,7 @@ fn five_minutes_of_a_right_model_raise_no_alarm() {
     let loaded = scenario(7, false);
     let mut session = with_twin(&loaded, &loaded);
     session.run(300.0);
-    let twin = session.monitor().twin().unwrap();
+    let twin = session.monitor().twins().remove(0);
     println!("{twin}");
     assert_eq!(twin.verdict, "complete", "{twin:?}");
     assert!(!twin.out_of_band);
@@ -164,7 +164,7 @@ fn a_rising_temperature_is_a_drift() {
     });
     let mut session = with_twin(&loaded, &loaded);
     session.run(240.0);
-    let twin = session.monitor().twin().unwrap();
+    let twin = session.monitor().twins().remove(0);
     println!("{twin}");
     let change = twin.change.unwrap();
     assert_eq!(change.kind, "drift", "{change:?}");

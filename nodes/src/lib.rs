@@ -108,9 +108,9 @@ pub fn session_graph(arm: NodeRow) -> Graph {
             )
         },
         NodeRow {
-            in_session: |session| session.twin.is_some(),
-            in_playback: |session| session.twin.is_some(),
-            in_replay: |session| session.twin.is_some(),
+            in_session: |session| !session.twins.is_empty(),
+            in_playback: |session| !session.twins.is_empty(),
+            in_replay: |session| !session.twins.is_empty(),
             ..NodeRow::step::<twin::TwinPorts>(
                 twin::NAME,
                 "The model of a joint held against it while it moves",

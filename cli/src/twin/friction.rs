@@ -44,7 +44,8 @@ pub fn run(
         )));
     };
     if let (Some(_), Some(one)) = (command, told.iter().find(|one| !one.refused.is_empty())) {
-        return Err(Failure::refused(format!("refused: {}", one.refused)));
+        let (joint, why) = (&one.joint, &one.refused);
+        return Err(Failure::refused(format!("{joint}: refused: {why}")));
     }
     let summaries: Vec<FrictionSummary> = told.iter().map(FrictionSummary::of).collect();
     if json {

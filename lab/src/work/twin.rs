@@ -9,7 +9,7 @@ use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{Term, add};
 use ferntast_model::friction::REFERENCE_TEMPERATURE;
 use ferntast_msgs::{
-    sample::{JointSample, TwinParametersSample, TwinVerdict},
+    sample::{JointSample, MAX_JOINTS, TwinParametersSample, TwinVerdict},
     topics,
 };
 use serde::Serialize;
@@ -37,9 +37,10 @@ pub struct FromTwin {
     pub parameters: BTreeMap<String, FittedParameter>,
 }
 
-/// The twin's last word in a recording, where its joint stands in joint states,
-/// and the RMS of its residual \[Nm\].
-fn last_word(path: &Path) -> Result<(TwinParametersSample, usize, f64), WorkError> {
+/// The last word in a recording of the twin whose joint's position is `position`, or of
+/// another where that has none; where its joint stands in joint states, and the RMS of its
+/// residual \[Nm\].
+fn last_word(path: &Path, position: &str) -> Result<(TwinParametersSample, usize, f64), WorkError> {
     let twin = |reason: String| WorkError::Twin {
         path: path.to_owned(),
         reason,
@@ -55,25 +56,37 @@ fn last_word(path: &Path) -> Result<(TwinParametersSample, usize, f64), WorkErro
     let words = bag
         .messages::<TwinParametersSample>(&topics::TWIN_PARAMETERS.name)
         .map_err(|error| twin(error.to_string()))?;
-    let mut last = None;
+    let mut last: BTreeMap<String, TwinParametersSample> = BTreeMap::new();
     for word in words {
-        last = Some(word.map_err(|error| twin(error.to_string()))?.message);
+        let word = word.map_err(|error| twin(error.to_string()))?.message;
+        last.insert(word.joint.to_string(), word);
     }
-    let last: TwinParametersSample = last.ok_or_else(none)?;
     let residuals = bag
         .messages::<JointSample>(&topics::TWIN_RESIDUAL_JS.name)
         .map_err(|error| twin(error.to_string()))?;
-    let mut joint = None;
-    let (mut squares, mut count) = (0.0, 0_u64);
+    let mut joints = None;
+    let mut sums = [(0.0, 0_u64); MAX_JOINTS];
     for residual in residuals {
         let residual = residual.map_err(|error| twin(error.to_string()))?.message;
-        joint = residual.joints.index(last.joint.as_str());
-        let own = joint.and_then(|joint| residual.effort.get(joint).copied());
-        squares += own.unwrap_or(0.0).powi(2);
-        count += 1;
+        joints = Some(residual.joints);
+        for ((squares, count), own) in sums.iter_mut().zip(residual.effort) {
+            // Zero: a joint that does not slide now, or has no twin.
+            if own != 0.0 {
+                *squares += own * own;
+                *count += 1;
+            }
+        }
     }
-    let joint = joint.ok_or_else(none)?;
-    Ok((last, joint, (squares / count.max(1) as f64).sqrt()))
+    let joints = joints.ok_or_else(none)?;
+    let place = |word: &TwinParametersSample| joints.index(word.joint.as_str());
+    let meant = |word: &&TwinParametersSample| {
+        place(word).is_some_and(|joint| position.ends_with(&format!("[{joint}]")))
+    };
+    let word = last.values().find(meant).or_else(|| last.values().next());
+    let word = *word.ok_or_else(none)?;
+    let joint = place(&word).ok_or_else(none)?;
+    let (squares, count) = sums.get(joint).copied().unwrap_or_default();
+    Ok((word, joint, (squares / count.max(1) as f64).sqrt()))
 }
 
 /// Writes to `output` the experiment `model` on the `recording` in which its
@@ -90,12 +103,12 @@ pub fn from_twin(model: &Path, recording: &Path, output: &Path) -> Result<FromTw
         });
     }
     let parent = Experiment::read(model, &experiment::data_folder())?;
-    let (word, joint, held_out_before) = last_word(recording)?;
+    let position = &parent.signals.position;
+    let (word, joint, held_out_before) = last_word(recording, position)?;
     let other = |reason: String| WorkError::OtherModel {
         path: recording.to_owned(),
         reason,
     };
-    let position = &parent.signals.position;
     if !position.ends_with(&format!("[{joint}]")) {
         return Err(other(format!(
             "its twin followed {}, the experiment's position is {position}",

@@ -125,12 +125,12 @@ topics! {
     RECORDER_COMMAND: Topic<RecorderCommandSample> = "/recorder/command", Event, from(console), Commands;
     /// What the recorder does.
     RECORDER_STATUS: Topic<RecorderStatusSample> = "/recorder/status", State, from(recorder), Never;
-    /// The motor torque that the twin's model predicts, at the stamp of the samples that it is about;
-    /// of the joint that it follows, the other is zero \[Nm\].
+    /// The motor torque that the twins' models predict, at the stamp of the samples that it is about;
+    /// of the joints that have a twin, the others are zero \[Nm\].
     TWIN_MOTOR_JS: Topic<JointSample> = "/twin/motor_js", Stream, from(twin), Never;
-    /// Measured less predicted motor torque, where the joint slides \[Nm\].
+    /// Measured less predicted motor torque, zero where a joint does not slide \[Nm\].
     TWIN_RESIDUAL_JS: Topic<JointSample> = "/twin/residual_js", Stream, from(twin), Never;
-    /// The twin's parameters as they are now, and whether its model holds.
+    /// A twin's parameters as they are now, and whether its model holds; each joint's in turn.
     TWIN_PARAMETERS: Topic<TwinParametersSample> = "/twin/parameters", State, from(twin), Never;
     /// Where the arm's frames are, from the link-side joint positions.
     TF: Topic<TransformsSample> = "/tf", Stream, from(estimator), Never;

@@ -30,8 +30,8 @@ pub struct SessionContext {
     pub bag: Option<PathBuf>,
     /// How to play a recording.
     pub play: PlayOptions,
-    /// Experiment whose model is held against the arm.
-    pub twin: Option<PathBuf>,
+    /// Experiments whose models are held against the arm, one for a joint at most.
+    pub twins: Vec<PathBuf>,
     /// The page; `None` without one.
     pub console: Option<ConsoleOptions>,
     /// Where the topics are shown to Foxglove; `None` without that.
@@ -134,7 +134,7 @@ impl SessionContext {
             play: PlayOptions::default(),
             console: None,
             foxglove: None,
-            twin: None,
+            twins: Vec::new(),
             link_access: LinkAccess::default(),
             planted: Planted::NONE,
         }

@@ -4,10 +4,13 @@
 mod check;
 mod recorded;
 
-use std::path::Path;
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
-use ferntast_bus::{CreateError, Depth};
-use ferntast_msgs::topics;
+use ferntast_bus::{CreateError, Depth, Subscriber};
+use ferntast_msgs::{Time, sample::TwinParametersSample, topics};
 use serde::Serialize;
 
 use crate::{
@@ -49,12 +52,12 @@ pub struct Comparison {
     pub different: u64,
     /// The first difference.
     pub first_difference: Option<String>,
-    /// The twin's last word; `null` without one.
-    pub twin: Option<TwinSummary>,
+    /// The last word of each twin.
+    pub twins: Vec<TwinSummary>,
 }
 
 /// Feeds the recording at `path` again through the nodes of `graph` that can
-/// be replayed, and through a twin of the experiment `twin`, and compares what
+/// be replayed, and through twins of the experiments `twins`, and compares what
 /// they publish with what is recorded: of the twin only where one was recorded.
 ///
 /// # Errors
@@ -64,12 +67,12 @@ pub struct Comparison {
 pub fn run(
     graph: &Graph,
     path: &Path,
-    twin: Option<&Path>,
+    twins: &[PathBuf],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Comparison, ReplayError> {
     let recorded = Recorded::open(path)?;
     let mut session = SessionContext::in_virtual_time(recorded.loaded()?);
-    session.twin = twin.map(Path::to_owned);
+    session.twins = twins.to_vec();
     let rows: Vec<&NodeRow> = graph
         .rows()
         .filter(|row| (row.in_replay)(&session))
@@ -86,14 +89,15 @@ pub fn run(
     let mut checks = check::checks(compared, &joints, &recorded.bus, time.bus())?;
     let mut said = time
         .bus()
-        .subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?;
+        .subscriber(topics::TWIN_PARAMETERS, Depth::Queue(16))?;
 
+    let mut heard = BTreeMap::new();
     let mut result = Comparison {
         equal: true,
         compared: 0,
         different: 0,
         first_difference: None,
-        twin: None,
+        twins: Vec::new(),
     };
     let duration = recorded.end.seconds_since(recorded.start).max(1e-9);
     while time.now() <= recorded.end {
@@ -101,12 +105,24 @@ pub fn run(
         for check in &mut checks {
             check.check(now, &mut result);
         }
+        hear(&mut said, now, &mut heard);
         if now.nanos_since(recorded.start) % 1_000_000_000 == 0 {
             progress(now.seconds_since(recorded.start) / duration);
         }
     }
     // What was published at the end is visible after it.
-    let last = said.newest(time.now());
-    result.twin = last.map(|own| TwinSummary::of(&own.message));
+    hear(&mut said, time.now(), &mut heard);
+    result.twins = heard.values().map(TwinSummary::of).collect();
     Ok(result)
+}
+
+/// Takes in what the twins say, by joint.
+fn hear(
+    said: &mut Subscriber<TwinParametersSample>,
+    now: Time,
+    heard: &mut BTreeMap<String, TwinParametersSample>,
+) {
+    while let Some(own) = said.next(now) {
+        heard.insert(own.message.joint.to_string(), own.message);
+    }
 }

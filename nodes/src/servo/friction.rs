@@ -7,7 +7,7 @@ use ferntast_msgs::{
     Text, Time,
     sample::{
         FrictionCommand, FrictionCommandSample, FrictionSource, FrictionStatusSample, JointNames,
-        MAX_TWIN_PARAMETERS, TwinParametersSample,
+        MAX_JOINTS, MAX_TWIN_PARAMETERS, TwinParametersSample,
     },
 };
 
@@ -34,8 +34,12 @@ pub(super) enum Refusal {
 #[derive(Debug)]
 pub(super) struct FrictionCommands {
     joints: JointNames,
+    /// The newest word of each joint's twin.
+    twins: [Option<TwinParametersSample>; MAX_JOINTS],
+    /// A twin of a joint that the arm has not was heard.
+    stranger: bool,
     commands: u64,
-    refused: Option<Refusal>,
+    refused: [Option<Refusal>; MAX_JOINTS],
     due: Time,
 }
 
@@ -44,9 +48,20 @@ impl FrictionCommands {
     pub(super) fn new(joints: JointNames) -> FrictionCommands {
         FrictionCommands {
             joints,
+            twins: [None; MAX_JOINTS],
+            stranger: false,
             commands: 0,
-            refused: None,
+            refused: [None; MAX_JOINTS],
             due: Time::default(),
+        }
+    }
+
+    /// Takes what a twin says.
+    pub(super) fn hear(&mut self, twin: &TwinParametersSample) {
+        let joint = self.joints.index(twin.joint.as_str());
+        match joint.and_then(|joint| self.twins.get_mut(joint)) {
+            Some(place) => *place = Some(*twin),
+            None => self.stranger = true,
         }
     }
 
@@ -55,13 +70,13 @@ impl FrictionCommands {
         &mut self,
         now: Time,
         command: &FrictionCommandSample,
-        twin: Option<&TwinParametersSample>,
         servo: &mut Servo,
     ) -> Result<Text<96>, Refusal> {
         self.commands += 1;
         self.due = now;
-        let done = match command.command {
-            FrictionCommand::TAKE_OVER => take_over(now, twin, &self.joints, servo),
+        self.refused = [None; MAX_JOINTS];
+        match command.command {
+            FrictionCommand::TAKE_OVER => self.take_over(now, servo),
             _ => {
                 for joint in 0..self.joints.len() {
                     if let Some(own) = servo.feed_forward_mut(joint) {
@@ -70,9 +85,38 @@ impl FrictionCommands {
                 }
                 Ok(Text::new("friction is fed forward as configured"))
             }
-        };
-        self.refused = done.as_ref().err().copied();
-        done
+        }
+    }
+
+    /// Takes over what each joint's twin found; the first refusal, where there are some.
+    fn take_over(&mut self, now: Time, servo: &mut Servo) -> Result<Text<96>, Refusal> {
+        let mut done: Option<Text<96>> = None;
+        let twins = self.twins.iter().zip(&mut self.refused).enumerate();
+        for (joint, (twin, refused)) in twins {
+            let Some(twin) = twin else {
+                continue;
+            };
+            let own = servo.feed_forward_mut(joint).ok_or(Refusal::NoJoint);
+            match own.and_then(|own| take_over(now, twin, own)) {
+                Ok(words) => {
+                    done = Some(done.map_or(words, |before| {
+                        Text::display(format_args!("{before}; {words}"))
+                    }));
+                }
+                Err(refusal) => *refused = Some(refusal),
+            }
+        }
+        if let Some(refusal) = self.refused.iter().flatten().next() {
+            return Err(*refusal);
+        }
+        done.ok_or_else(|| {
+            let refusal = match self.stranger {
+                true => Refusal::NoJoint,
+                false => Refusal::NoTwin,
+            };
+            self.refused = [Some(refusal); MAX_JOINTS];
+            refusal
+        })
     }
 
     /// What is fed forward at each joint, when it is time to tell.
@@ -90,18 +134,30 @@ impl FrictionCommands {
             false => PERIOD_NANOS,
         });
         let own = &*self;
-        let each = own.joints.iter().zip(servo.feed_forward());
-        Some(each.map(move |(joint, friction)| own.status(now, joint, friction)))
+        let each = own
+            .joints
+            .iter()
+            .zip(servo.feed_forward())
+            .zip(&own.refused);
+        Some(each.map(move |((joint, friction), refused)| {
+            own.status(now, joint, friction, refused.as_ref())
+        }))
     }
 
-    fn status(&self, now: Time, joint: &str, own: &FeedForward) -> FrictionStatusSample {
+    fn status(
+        &self,
+        now: Time,
+        joint: &str,
+        own: &FeedForward,
+        refused: Option<&Refusal>,
+    ) -> FrictionStatusSample {
         let mut sample = FrictionStatusSample {
             source: match own.is_taken_over() {
                 true => FrictionSource::TWIN,
                 false => FrictionSource::CONFIGURED,
             },
             commands: self.commands,
-            refused: self.refused.map_or(Text::EMPTY, Text::display),
+            refused: refused.map_or(Text::EMPTY, Text::display),
             joint: Text::new(joint),
             ..FrictionStatusSample::initial(now)
         };
@@ -116,13 +172,12 @@ impl FrictionCommands {
     }
 }
 
+/// Takes over what one joint's twin found.
 fn take_over(
     now: Time,
-    twin: Option<&TwinParametersSample>,
-    joints: &JointNames,
-    servo: &mut Servo,
+    twin: &TwinParametersSample,
+    own: &mut FeedForward,
 ) -> Result<Text<96>, Refusal> {
-    let twin = twin.ok_or(Refusal::NoTwin)?;
     let age = now.seconds_since(twin.stamp);
     if !(0.0..=OLDEST).contains(&age) {
         return Err(Refusal::Old(age));
@@ -142,11 +197,8 @@ fn take_over(
             excitation: twin.excitation[i],
         };
     }
-    let name = twin.joint.as_str();
-    let joint = joints.index(name);
-    let own = joint.and_then(|joint| servo.feed_forward_mut(joint));
-    let own = own.ok_or(Refusal::NoJoint)?;
     let taken = own.take_over(found.get(..twin.len()).unwrap_or_default())?;
+    let name = twin.joint.as_str();
     Ok(Text::display(Description { name, taken, own }))
 }
 

@@ -47,7 +47,7 @@ ports! {
         servo_jp: Newest<JointSample> = FOLLOWER_SERVO_JP,
         state_command: Batch<StateCommandSample> = FOLLOWER_STATE_COMMAND,
         friction_command: Batch<FrictionCommandSample> = FOLLOWER_FRICTION_COMMAND,
-        twin: Newest<TwinParametersSample> = TWIN_PARAMETERS,
+        twin: Batch<TwinParametersSample> = TWIN_PARAMETERS,
         temperature: PerJoint<Newest<TemperatureSample>> = FOLLOWER_JOINT_TEMPERATURE,
     }
     /// What the servo gives.
@@ -268,9 +268,11 @@ impl ServoNode {
                 self.servo.set_temperature(joint, sample.temperature);
             }
         }
-        let twin = input.twin.message.as_ref();
+        for twin in input.twin.iter() {
+            self.friction.hear(twin);
+        }
         for command in input.friction_command.iter() {
-            match self.friction.follow(now, command, twin, &mut self.servo) {
+            match self.friction.follow(now, command, &mut self.servo) {
                 Ok(words) => self.message = words,
                 Err(refusal) => {
                     output.health.raise(Fault::TakeOverRefused, Level::WARN);

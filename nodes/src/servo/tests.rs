@@ -41,14 +41,10 @@ impl Bench {
         self.faults = Faults::default();
         for _ in 0..(seconds * 1e3) as i64 {
             self.now = self.now.plus_nanos(1_000_000);
-            let mut input = ServoInput {
-                twin: Newest {
-                    message: twin,
-                    received: self.now,
-                    fresh: true,
-                },
-                ..ServoInput::default()
-            };
+            let mut input = ServoInput::default();
+            if let Some(twin) = twin {
+                input.twin.push(twin);
+            }
             if let Some(command) = command.take() {
                 let sample = FrictionCommandSample::new(self.now, command);
                 input.friction_command.push(sample);
@@ -135,12 +131,12 @@ fn what_must_not_be_taken_over_is_refused_with_a_reason() {
     strange.values = [f64::NAN; 16];
     for (twin, reason) in [
         (None, "no twin"),
+        (Some(third), "joint"),
         (Some(old), "s old"),
         (Some(future), "s old"),
         (Some(far), "b_0 = "),
         (Some(poor), "no friction parameter"),
         (Some(unsure), "no friction parameter"),
-        (Some(third), "joint"),
         (Some(strange), "no friction parameter"),
     ] {
         // Stamps are of now, but where they are meant to be wrong.

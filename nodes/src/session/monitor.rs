@@ -103,7 +103,8 @@ pub struct Monitor {
     edges: Vec<String>,
     peak_hand_force: f64,
     refused_masters: u64,
-    twin: Option<TwinParametersSample>,
+    /// The newest word of each joint's twin.
+    twins: BTreeMap<String, TwinParametersSample>,
     servo_rates: (f64, u64),
 }
 
@@ -153,7 +154,7 @@ impl Monitor {
             authority: watch(bus, topics::LEADER_AUTHORITY)?,
             recorder: watch(bus, topics::RECORDER_STATUS)?,
             recordings: BTreeSet::new(),
-            twin_parameters: bus.subscriber(topics::TWIN_PARAMETERS, Depth::Newest)?,
+            twin_parameters: bus.subscriber(topics::TWIN_PARAMETERS, Depth::Queue(16))?,
             friction: friction.collect::<Result<_, CreateError>>()?,
             nodes: BTreeMap::new(),
             link_status: None,
@@ -167,7 +168,7 @@ impl Monitor {
             edges: Vec::new(),
             peak_hand_force: 0.0,
             refused_masters: 0,
-            twin: None,
+            twins: BTreeMap::new(),
             servo_rates: (0.0, 0),
         })
     }
@@ -224,8 +225,9 @@ impl Monitor {
                 self.recordings.insert(PathBuf::from(folder.as_str()));
             }
         }
-        if let Some(received) = self.twin_parameters.newest(now) {
-            self.twin = Some(received.message);
+        while let Some(received) = self.twin_parameters.next(now) {
+            let own = received.message;
+            self.twins.insert(own.joint.to_string(), own);
         }
         for (joint, told) in &mut self.friction {
             if let Some(received) = joint.newest(now) {
@@ -312,9 +314,9 @@ impl Monitor {
         }
     }
 
-    /// The twin, if there is one.
-    pub fn twin(&self) -> Option<TwinSummary> {
-        self.twin.as_ref().map(TwinSummary::of)
+    /// The twins, by joint.
+    pub fn twins(&self) -> Vec<TwinSummary> {
+        self.twins.values().map(TwinSummary::of).collect()
     }
 
     /// The friction that the servo feeds forward.

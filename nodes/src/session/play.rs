@@ -36,8 +36,8 @@ pub struct Played {
     pub lost: u64,
     /// Where the recording is damaged: what stood there was not played.
     pub breaks: Vec<Break>,
-    /// The live twin's last word; `null` without one.
-    pub twin: Option<TwinSummary>,
+    /// The last word of each live twin.
+    pub twins: Vec<TwinSummary>,
 }
 
 impl Played {
@@ -79,7 +79,7 @@ pub fn play(
     info: &BagInfo,
     stop: &AtomicBool,
 ) -> Result<Played, SessionError> {
-    let follows = context.twin.is_some();
+    let follows = !context.twins.is_empty();
     // First those that listen, then the player.
     let rows: Vec<&NodeRow> = graph
         .rows()
@@ -133,7 +133,10 @@ pub fn play(
     bar.finish_and_clear();
     let played = clock.now().seconds_since(begun);
     monitor.update(clock.now());
-    let twin = monitor.twin().filter(|_| follows);
+    let twins = match follows {
+        true => monitor.twins(),
+        false => Vec::new(),
+    };
     let lost = monitor.nodes.get(player::NAME).map_or(0, NodeView::lost);
     drop((monitor, bus));
     player.stop();
@@ -148,6 +151,6 @@ pub fn play(
         estimated: context.play.estimate,
         lost,
         breaks: info.breaks.clone(),
-        twin,
+        twins,
     })
 }

@@ -119,7 +119,7 @@ pub fn run(
         link: monitor.link(),
         contact: monitor.contact(),
         leader: monitor.leader(),
-        twin: monitor.twin(),
+        twins: monitor.twins(),
         recording: session
             .context
             .bag

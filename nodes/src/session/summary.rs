@@ -23,8 +23,8 @@ pub struct Summary {
     pub contact: ContactSummary,
     /// The operator's side.
     pub leader: LeaderSummary,
-    /// The twin's last word; `null` without one.
-    pub twin: Option<TwinSummary>,
+    /// The last word of each twin.
+    pub twins: Vec<TwinSummary>,
     /// The recording's folder; `null` without one.
     pub recording: Option<String>,
     /// What went into the recording; `null` without one.
@@ -166,7 +166,7 @@ impl fmt::Display for Summary {
             }
         )?;
         writeln!(f, "hand      peak force {:.1} N", self.leader.peak_force)?;
-        if let Some(twin) = &self.twin {
+        for twin in &self.twins {
             writeln!(f, "{twin}")?;
         }
         for (device, state) in &self.states {

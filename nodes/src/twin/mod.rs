@@ -1,5 +1,5 @@
-//! The twin of a joint as a node: the model of an experiment of the lab, held
-//! against the arm while it moves, live or played back.
+//! Twins of joints as a node: models of experiments of the lab, one for a joint at most,
+//! held against the arm while it moves, live or played back.
 //!
 //! It commands nothing and is no part of the control path: its step allocates
 //! (it keeps what came in for the lab), and its process has no real-time
@@ -10,42 +10,34 @@
 mod align;
 mod assess;
 mod goes_with;
+mod joint;
 mod open;
 mod report;
 #[cfg(test)]
 mod tests;
 
 pub use assess::Assessing;
-pub use open::{TwinModel, TwinOpenError, open};
+pub use open::{TwinModel, TwinOpenError, open, open_all};
 pub use report::{ChangeSummary, ParameterSummary, TwinSummary};
 
-use std::collections::VecDeque;
-
-use ferntast_identification::twin::{Flag, Twin, TwinOutput, TwinSample};
+use ferntast_identification::twin::Flag;
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, JointFields, JointNames, JointSample, Level, TemperatureSample,
-        TwinParametersSample, TwinVerdict,
+        Fault, JointNames, JointSample, Level, TemperatureSample, TwinParametersSample, TwinVerdict,
     },
 };
 
 use crate::{
     graph::Build,
-    node::{Newest, Node, Ticking, ports},
+    node::{Newest, Node, NodeHealth, Ticking, ports},
     process::NodeError,
 };
 
-use align::{Aligned, Alignment};
-use assess::Assessor;
-use goes_with::GoesWith;
+use joint::{JointTwin, Row};
 
 /// No measurement for this long \[s\] is a fault.
 const MEASUREMENT_WATCHDOG: f64 = 0.1;
-/// Between two messages on `/twin/parameters`, of the samples' own time \[s\].
-const PARAMETERS_EVERY: f64 = 0.1;
-/// Rows that may wait to be published: a step publishes one.
-const MAX_READY: usize = 256;
 
 ports! {
     /// The twin's topics.
@@ -71,133 +63,81 @@ pub const NAME: &str = "twin";
 ///
 /// # Errors
 ///
-/// No experiment is named, or it cannot be followed; a topic that cannot be
+/// No experiment is named, or one cannot be followed; a topic that cannot be
 /// opened.
 pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
-    let path = build.session.twin.as_deref().ok_or(NodeError::NoTwin)?;
+    let paths = &build.session.twins;
+    if paths.is_empty() {
+        return Err(NodeError::NoTwin);
+    }
     let joints = build.session.joints();
-    let model = open(path, joints).map_err(NodeError::own)?;
+    let models = open_all(paths, joints).map_err(NodeError::own)?;
     let assessing = match build.virtual_time {
         true => Assessing::Inline,
         false => Assessing::OnThread,
     };
     let ports = TwinPorts::connect(build.bus, &joints)?;
-    build.join(TwinNode::new(model, assessing), ports)
+    build.join(TwinNode::new(joints, models, assessing), ports)
 }
 
-/// The twin of a joint.
+/// The twins of an arm's joints.
 pub struct TwinNode {
-    twin: Twin,
     joints: JointNames,
-    joint: usize,
-    takes_joint_torque: bool,
-    takes_temperature: bool,
-    alignment: Alignment,
-    /// Stamp of the first sample: the twin's times count from it.
-    origin: Option<Time>,
+    twins: Vec<JointTwin>,
     heard: Option<Time>,
-    rows: Vec<TwinOutput>,
-    ready: VecDeque<TwinOutput>,
-    lost: u64,
-    assessor: Assessor,
-    goes_with: GoesWith,
-    parameters_due: f64,
-    said: Option<TwinParametersSample>,
-    words: Text<96>,
 }
 
 impl TwinNode {
-    /// A twin of `model`; `assessing` says where the lab works.
-    pub fn new(model: TwinModel, assessing: Assessing) -> Self {
+    /// Twins of `models`, of an arm of those joints; `assessing` says where the lab works.
+    pub fn new(joints: JointNames, models: Vec<TwinModel>, assessing: Assessing) -> Self {
+        let twins = models.into_iter();
         Self {
-            twin: model.twin,
-            joints: model.joints,
-            joint: model.joint,
-            takes_joint_torque: model.joint_torque,
-            takes_temperature: model.temperature,
-            alignment: Alignment::new(model.joint),
-            origin: None,
+            joints,
+            twins: twins.map(|own| JointTwin::new(own, assessing)).collect(),
             heard: None,
-            rows: Vec::new(),
-            ready: VecDeque::new(),
-            lost: 0,
-            assessor: Assessor::new(assessing),
-            goes_with: GoesWith::default(),
-            parameters_due: f64::NEG_INFINITY,
-            said: None,
-            words: Text::EMPTY,
         }
     }
 
-    /// Takes a sample; gives what is wrong with it.
-    fn push(&mut self, aligned: Aligned, temperature: Option<f64>) -> Option<Flag> {
-        let origin = *self.origin.get_or_insert(aligned.stamp);
-        let sample = TwinSample {
-            time: aligned.stamp.seconds_since(origin),
-            position: aligned.position,
-            motor_torque: aligned.motor_torque,
-            joint_torque: self.takes_joint_torque.then_some(aligned.joint_torque),
-            temperature,
-        };
-        let flag = self.twin.push(&sample, &mut self.rows);
-        for row in self.rows.drain(..) {
-            self.assessor.note(row.time, row.slides);
-            if row.slides {
-                self.goes_with.note(&row);
-            }
-            self.ready.push_back(row);
-            if self.ready.len() > MAX_READY {
-                self.ready.pop_front();
-                self.lost += 1;
-            }
-            self.assessor.step(&self.twin, row_time(&self.ready));
-        }
-        flag
-    }
-
+    /// Publishes the oldest rows that wait, of one stamp, and what one of their twins says.
     fn publish(&mut self, output: &mut TwinNodeOutput) {
-        let (Some(row), Some(origin)) = (self.ready.pop_front(), self.origin) else {
+        let stamps = self.twins.iter().filter_map(|own| own.front());
+        let Some(stamp) = stamps.map(|row| row.stamp).min() else {
             return;
         };
-        let stamp = origin.plus_nanos((row.time * 1e9).round() as i64);
-        let joint_sample = |effort: f64| {
-            let mut sample = JointSample::zero(self.joints, stamp);
-            for (values, value) in [
-                (&mut sample.position, row.position),
-                (&mut sample.velocity, row.velocity),
-                (&mut sample.effort, effort),
-            ] {
-                if let Some(place) = values.get_mut(self.joint) {
-                    *place = value;
-                }
+        let zero = JointSample::zero(self.joints, stamp);
+        let (mut predicted, mut residual, mut slides) = (zero, zero, false);
+        for own in &mut self.twins {
+            let Some(row) = own.front().filter(|row| row.stamp == stamp) else {
+                continue;
+            };
+            own.pop();
+            set(&mut predicted, own.joint, &row, row.own.predicted);
+            if row.own.slides {
+                slides = true;
+                let left = row.own.measured - row.own.predicted;
+                set(&mut residual, own.joint, &row, left);
             }
-            sample
-        };
-        output.predicted = Some(joint_sample(row.predicted));
-        if row.slides {
-            output.residual = Some(joint_sample(row.measured - row.predicted));
+            // One message a step: another twin says its own with its next row.
+            if output.parameters.is_none() {
+                output.parameters = own.says(&row);
+            }
         }
-        // Time may jump back, as where a recording begins again.
-        let early = self.parameters_due - row.time;
-        if early <= 0.0 || early > 2.0 * PARAMETERS_EVERY {
-            self.parameters_due = row.time + PARAMETERS_EVERY;
-            let (sample, words) = report::of(
-                &self.twin,
-                self.joints.get(self.joint).unwrap_or_default(),
-                stamp,
-                self.assessor.newest(),
-                self.goes_with.name(),
-            );
-            output.parameters = Some(sample);
-            self.said = Some(sample);
-            self.words = words;
-        }
+        output.predicted = Some(predicted);
+        output.residual = slides.then_some(residual);
     }
 }
 
-/// Time of the newest row \[s\].
-fn row_time(ready: &VecDeque<TwinOutput>) -> f64 {
-    ready.back().map_or(0.0, |row| row.time)
+/// A joint's row in a message, with that effort \[Nm\].
+fn set(sample: &mut JointSample, joint: usize, row: &Row, effort: f64) {
+    for (values, value) in [
+        (&mut sample.position, row.own.position),
+        (&mut sample.velocity, row.own.velocity),
+        (&mut sample.effort, effort),
+    ] {
+        if let Some(place) = values.get_mut(joint) {
+            *place = value;
+        }
+    }
 }
 
 impl Node for TwinNode {
@@ -205,46 +145,32 @@ impl Node for TwinNode {
     type Output = TwinNodeOutput;
 
     fn step(&mut self, now: Time, input: &TwinInput, output: &mut TwinNodeOutput) {
-        let temperature = input
-            .temperature
-            .get(self.joint)
-            .and_then(|newest| newest.message)
-            .map(|message| message.temperature)
-            .filter(|_| self.takes_temperature);
-        let needed = match self.takes_joint_torque {
-            true => JointFields::POSITION.with(JointFields::EFFORT),
-            false => JointFields::POSITION,
-        };
-        let mut flags = [None; 2];
+        self.twins.iter_mut().for_each(JointTwin::begin);
         for sample in input.measured_js.iter() {
             self.heard = Some(now);
-            match sample.in_order_of(&self.joints) {
-                Some(sample) if sample.fields.has(needed) => self.alignment.measured(&sample),
-                _ => flags[0] = Some(Flag::NotFinite),
+            let sample = sample.in_order_of(&self.joints);
+            for own in &mut self.twins {
+                own.measured(sample.as_ref());
             }
         }
-        let mut aligned = Vec::new();
-        for sample in input.motor_js.iter() {
-            if sample.fields.has(JointFields::EFFORT) {
-                self.alignment.motor(sample, |own| aligned.push(own));
-            }
-        }
-        // A model with a temperature needs one from the first sample on.
-        if !self.takes_temperature || temperature.is_some() {
-            for own in aligned {
-                flags[1] = self.push(own, temperature).or(flags[1]);
-            }
+        for own in &mut self.twins {
+            let temperature = input
+                .temperature
+                .get(own.joint)
+                .and_then(|newest| newest.message)
+                .map(|message| message.temperature);
+            own.motors(input.motor_js.iter(), temperature);
         }
         self.publish(output);
-        self.tell(now, flags[1].or(flags[0]), output);
+        self.tell(now, output);
     }
 }
 
 impl TwinNode {
-    /// Says on `/diagnostics` how it is.
-    fn tell(&self, now: Time, flag: Option<Flag>, output: &mut TwinNodeOutput) {
+    /// Says on `/diagnostics` how they are.
+    fn tell(&self, now: Time, output: &mut TwinNodeOutput) {
         let health = &mut output.health;
-        health.lost += self.lost + self.alignment.dropped();
+        health.lost += self.twins.iter().map(JointTwin::lost).sum::<u64>();
         let silence = self.heard.map(|heard| now.seconds_since(heard));
         health.input_age = silence.unwrap_or(f64::NAN);
         if silence.is_none_or(|silence| silence > MEASUREMENT_WATCHDOG) {
@@ -252,42 +178,57 @@ impl TwinNode {
             health.message = Text::new("no /follower/measured_js: is the arm running?");
             return;
         }
-        if self.takes_temperature && self.origin.is_none() {
-            health.message = Text::new("waits for temperature and motor torque");
+        let mut message = Text::EMPTY;
+        for own in &self.twins {
+            let words = tell(own, health);
+            if words.is_empty() {
+                continue;
+            }
+            message = match (self.twins.len(), message.is_empty()) {
+                (1, _) => words,
+                (_, true) => Text::display(format_args!("{}: {words}", own.name())),
+                (_, false) => Text::display(format_args!("{message}; {}: {words}", own.name())),
+            };
         }
-        if let Some(said) = &self.said {
-            if said.out_of_band == 1 {
-                health.raise(Fault::ResidualOutOfBand, Level::WARN);
-            }
-            if [TwinVerdict::MISSING, TwinVerdict::UNEXPLAINED].contains(&said.verdict) {
-                health.raise(Fault::ModelIncomplete, Level::WARN);
-            }
-            health.message = self.words;
-        }
-        let (fault, words) = match flag {
-            None => return,
-            Some(Flag::Gap) => {
-                health.message = Text::new("time jumped: the twin's filters start over");
-                return;
-            }
-            Some(Flag::NotFinite) => (
-                Fault::MeasurementInvalid,
-                "/follower/measured_js lacks position or effort, they are no numbers, or of other joints",
-            ),
-            Some(Flag::TimeBackwards) => (
-                Fault::MeasurementInvalid,
-                "/follower/measured_js: its stamps do not advance",
-            ),
-            Some(Flag::PositionStuck) => (
-                Fault::MeasurementInvalid,
-                "the position stays the same while the motor torque changes: check the encoder",
-            ),
-            Some(Flag::JointTorqueStuck) => (
-                Fault::TorqueStuck,
-                "the joint turns, but its torque stays the same: check its torque sensor",
-            ),
-        };
-        health.raise(fault, Level::WARN);
-        health.message = Text::new(words);
+        health.message = message;
     }
+}
+
+/// How a twin is: raises its faults and gives what there is to say.
+fn tell(own: &JointTwin, health: &mut NodeHealth) -> Text<96> {
+    let mut words = match own.waits() {
+        true => Text::new("waits for temperature and motor torque"),
+        false => Text::EMPTY,
+    };
+    if let Some(said) = &own.said {
+        if said.out_of_band == 1 {
+            health.raise(Fault::ResidualOutOfBand, Level::WARN);
+        }
+        if [TwinVerdict::MISSING, TwinVerdict::UNEXPLAINED].contains(&said.verdict) {
+            health.raise(Fault::ModelIncomplete, Level::WARN);
+        }
+        words = own.words;
+    }
+    let (fault, told) = match own.flag {
+        None => return words,
+        Some(Flag::Gap) => return Text::new("time jumped: the twin's filters start over"),
+        Some(Flag::NotFinite) => (
+            Fault::MeasurementInvalid,
+            "/follower/measured_js lacks position or effort, they are no numbers, or of other joints",
+        ),
+        Some(Flag::TimeBackwards) => (
+            Fault::MeasurementInvalid,
+            "/follower/measured_js: its stamps do not advance",
+        ),
+        Some(Flag::PositionStuck) => (
+            Fault::MeasurementInvalid,
+            "the position stays the same while the motor torque changes: check the encoder",
+        ),
+        Some(Flag::JointTorqueStuck) => (
+            Fault::TorqueStuck,
+            "the joint turns, but its torque stays the same: check its torque sensor",
+        ),
+    };
+    health.raise(fault, Level::WARN);
+    Text::new(told)
 }

@@ -71,6 +71,14 @@ pub enum TwinOpenError {
         /// What is wrong.
         source: TwinError,
     },
+    /// Another experiment is about the same joint.
+    #[error("{path}: {joint} has a twin already; give one experiment for each joint")]
+    Twice {
+        /// The experiment file.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+    },
     /// The message has no room for so many parameters.
     #[error(
         "{path}: the model has {found} parameters, a twin at most {MAX_TWIN_PARAMETERS}; leave some effects out"
@@ -115,6 +123,26 @@ pub fn open(path: &Path, joints: JointNames) -> Result<TwinModel, TwinOpenError>
         joint_torque: experiment.signals.joint_torque.is_some(),
         temperature: experiment.signals.temperature.is_some(),
     })
+}
+
+/// Opens each of `paths`, for an arm of those joints.
+///
+/// # Errors
+///
+/// See [`TwinOpenError`].
+pub fn open_all(paths: &[PathBuf], joints: JointNames) -> Result<Vec<TwinModel>, TwinOpenError> {
+    let mut models: Vec<TwinModel> = Vec::new();
+    for path in paths {
+        let model = open(path, joints)?;
+        if models.iter().any(|own| own.joint == model.joint) {
+            return Err(TwinOpenError::Twice {
+                path: path.clone(),
+                joint: joints.get(model.joint).unwrap_or_default().to_owned(),
+            });
+        }
+        models.push(model);
+    }
+    Ok(models)
 }
 
 /// The joint (from 0) whose topics the signals are.

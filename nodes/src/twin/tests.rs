@@ -3,7 +3,9 @@
 mod changes;
 mod faults;
 mod take_over;
+mod two_joints;
 
+use ferntast_identification::twin::Twin;
 use ferntast_identification::{Dataset, Inertia, ModelSpec, RecordedSession, Term};
 use ferntast_msgs::sample::Faults;
 
@@ -99,6 +101,11 @@ fn model_of(
         joint_torque,
         temperature: false,
     }
+}
+
+/// The twin of one joint.
+fn one(model: TwinModel, assessing: Assessing) -> TwinNode {
+    TwinNode::new(JointNames::numbered(2), vec![model], assessing)
 }
 
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
@@ -203,10 +210,13 @@ fn run(node: &mut TwinNode, seconds: f64, viscous: impl Fn(f64) -> f64) -> Publi
 
 #[test]
 fn a_right_model_is_silent() {
-    let mut node = TwinNode::new(model(), Assessing::Inline);
+    let mut node = one(model(), Assessing::Inline);
     let published = run(&mut node, 130.0, |_| 13.0);
     let last = published.parameters.last().unwrap();
-    let own = node.twin.assess().map(|diagnosis| diagnosis.verdict);
+    let own = node.twins[0]
+        .twin
+        .assess()
+        .map(|diagnosis| diagnosis.verdict);
     assert_eq!(last.verdict, TwinVerdict::COMPLETE, "{own:?}");
     assert!(published.faults.is_empty(), "{:?}", published.words);
     // A message with the first row after a tenth of a second; lists with the model's two parameters.
@@ -240,7 +250,7 @@ fn a_right_model_is_silent() {
 
 #[test]
 fn a_step_raises_the_alarm_and_is_told_in_words() {
-    let mut node = TwinNode::new(model(), Assessing::Inline);
+    let mut node = one(model(), Assessing::Inline);
     let published = run(&mut node, 130.0, |t| if t > 50.0 { 25.0 } else { 13.0 });
     assert!(published.faults.has(Fault::ResidualOutOfBand));
     let last = published.parameters.last().unwrap();
@@ -262,11 +272,7 @@ fn a_step_raises_the_alarm_and_is_told_in_words() {
 
 #[test]
 fn the_same_samples_give_the_same_messages() {
-    let mut runs = [0, 1].map(|_| {
-        run(&mut TwinNode::new(model(), Assessing::Inline), 30.0, |_| {
-            14.0
-        })
-    });
+    let mut runs = [0, 1].map(|_| run(&mut one(model(), Assessing::Inline), 30.0, |_| 14.0));
     let [first, second] = &mut runs;
     assert_eq!(first.predicted, second.predicted);
     assert_eq!(first.residual, second.residual);
@@ -275,20 +281,23 @@ fn the_same_samples_give_the_same_messages() {
 
 #[test]
 fn on_a_thread_the_lab_s_answer_comes_too() {
-    let mut node = TwinNode::new(model(), Assessing::OnThread);
+    let mut node = one(model(), Assessing::OnThread);
     run(&mut node, 130.0, |_| 13.0);
     let end = std::time::Instant::now() + std::time::Duration::from_secs(60);
-    while node.assessor.newest().verdict.is_none() && std::time::Instant::now() < end {
+    while node.twins[0].assessor.newest().verdict.is_none() && std::time::Instant::now() < end {
         std::thread::sleep(std::time::Duration::from_millis(10));
-        let twin = node.twin.clone();
-        node.assessor.step(&twin, 130.0);
+        let twin = node.twins[0].twin.clone();
+        node.twins[0].assessor.step(&twin, 130.0);
     }
-    assert_eq!(node.assessor.newest().code(), TwinVerdict::COMPLETE);
+    assert_eq!(
+        node.twins[0].assessor.newest().code(),
+        TwinVerdict::COMPLETE
+    );
 }
 
 #[test]
 fn nothing_heard_is_a_fault() {
-    let mut node = TwinNode::new(model(), Assessing::Inline);
+    let mut node = one(model(), Assessing::Inline);
     let mut output = TwinNodeOutput::default();
     let input = TwinInput::default();
     node.step(START, &input, &mut output);

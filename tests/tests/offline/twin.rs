@@ -25,8 +25,8 @@ fn played_back_it_is_what_it_was_live_byte_for_byte() {
     let replay = ["replay", "second", "--twin", "joint.toml", "--json"];
     let replay = run(&session, &replay).success().json();
     assert_eq!(replay["equal"], true, "{replay:#}");
-    let twin = &live["twin"];
-    assert_eq!(twin, &replay["twin"]);
+    let twin = &live["twins"][0];
+    assert_eq!(twin, &replay["twins"][0]);
     assert_eq!(twin["joint"], "joint_2", "{twin:#}");
     assert_ne!(twin["verdict"], "pending", "{twin:#}");
     assert_eq!(twin["parameters"].as_array().map(Vec::len), Some(5));

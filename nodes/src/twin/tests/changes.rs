@@ -19,7 +19,7 @@ fn watched(
 /// Coulomb friction falls while the joint warms up.
 #[test]
 fn a_temperature_that_rises_is_a_drift_of_coulomb_friction() {
-    let node = TwinNode::new(model(), Assessing::Inline);
+    let node = one(model(), Assessing::Inline);
     let (last, published) = watched(node, 300.0, |t, own| {
         torque(own, 13.0) - 2.0 * (1.0 - (-t / 100.0).exp()) * own[1].signum()
     });
@@ -44,7 +44,7 @@ fn a_spot_that_wears_is_a_step_of_its_parameter() {
     let model = model_of(&known, Inertia::Given(1.2), true, |_, own| {
         torque(own, 13.0) + 2.0 * at_the_spot(own)
     });
-    let node = TwinNode::new(model, Assessing::Inline);
+    let node = one(model, Assessing::Inline);
     let (last, _) = watched(node, 180.0, |t, own| {
         let worn = if t > 60.0 { 6.0 } else { 2.0 };
         torque(own, 13.0) + worn * at_the_spot(own)
@@ -59,7 +59,7 @@ fn a_spot_that_wears_is_a_step_of_its_parameter() {
 /// The spot was not there when the model was made: the residual goes with the position, and the lab names it.
 #[test]
 fn a_new_spot_raises_the_alarm_and_is_named() {
-    let node = TwinNode::new(model(), Assessing::Inline);
+    let node = one(model(), Assessing::Inline);
     let (last, published) = watched(node, 240.0, |_, own| {
         torque(own, 13.0) + 4.0 * at_the_spot(own)
     });
@@ -77,7 +77,7 @@ fn a_payload_is_a_step_of_the_inertia() {
     let model = model_of(&["coulomb", "viscous"], Inertia::Fit, false, |_, own| {
         with_load(3.0, own)
     });
-    let node = TwinNode::new(model, Assessing::Inline);
+    let node = one(model, Assessing::Inline);
     let (last, published) = watched(node, 160.0, |t, own| {
         with_load(if t > 60.0 { 5.0 } else { 3.0 }, own)
     });

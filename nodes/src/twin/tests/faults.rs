@@ -18,7 +18,7 @@ fn recovers(node: &mut TwinNode, from: f64) {
 }
 
 fn started() -> TwinNode {
-    let mut node = TwinNode::new(model(), Assessing::Inline);
+    let mut node = one(model(), Assessing::Inline);
     feed(&mut node, 0.0..40.0, moving(13.0));
     node
 }

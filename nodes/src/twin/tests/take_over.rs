@@ -24,7 +24,7 @@ fn a_stribeck_effect_that_the_twin_follows_is_fed_forward() {
         "stribeck",
     ];
     let model = model_of(&known, Inertia::Given(1.2), true, |_, own| bumpy(own));
-    let mut twin = TwinNode::new(model, Assessing::Inline);
+    let mut twin = one(model, Assessing::Inline);
     let published = feed(&mut twin, 0.0..55.0, |t, k, stamp| {
         let (motion, noise) = (motion(t), noise(k + 17));
         let torque = bumpy(motion) + 0.1 * noise;
@@ -38,14 +38,8 @@ fn a_stribeck_effect_that_the_twin_follows_is_fed_forward() {
     for k in 1..3_000 {
         let now = START.plus_nanos(k * 1_000_000);
         word.stamp = now;
-        let mut input = ServoInput {
-            twin: Newest {
-                message: Some(word),
-                received: now,
-                fresh: true,
-            },
-            ..ServoInput::default()
-        };
+        let mut input = ServoInput::default();
+        input.twin.push(word);
         if k == 1 {
             let command = FrictionCommandSample::new(now, FrictionCommand::TAKE_OVER);
             input.friction_command.push(command);
