@@ -48,6 +48,48 @@ fn status(address: &str, request: &str, headers: &[(&str, &str)]) -> u16 {
     code.unwrap_or_else(|| panic!("no status in {answer:?}"))
 }
 
+/// The page's hand, drawn along a path.
+struct Stroke<'a> {
+    browser: &'a Browser,
+    path: Vec<(f64, f64)>,
+}
+
+impl Stroke<'_> {
+    fn draw(&self) {
+        let step = Duration::from_millis(60);
+        self.browser.drag("#scene", &self.path, step);
+    }
+
+    /// Waits until `look` is true. Where the machine was held up, which pauses the arm or is a
+    /// fault, it is armed again, and drawn anew: the page's hand goes to the arm then.
+    fn until(&self, what: &str, look: &str) {
+        let browser = self.browser;
+        let seen = wait_for(PATIENCE, || {
+            let status = browser.run(
+                "return document.querySelector('#status').textContent",
+                Vec::new(),
+            );
+            let status = status.as_str().unwrap_or_default();
+            let words = [("arm PAUSED", "#rearm"), ("arm FAULT", "#arm")];
+            if let Some((_, word)) = words.iter().find(|(state, _)| status.contains(state)) {
+                browser.release();
+                browser.click(word);
+                let enabled =
+                    "return document.querySelector('#status').textContent.includes('arm ENABLED')";
+                browser.until("the arm is armed again", PATIENCE, enabled);
+                self.draw();
+            }
+            (browser.run(look, Vec::new()) == true).then_some(())
+        });
+        let page = || browser.text("body");
+        assert!(
+            seen.is_some(),
+            "{what}: not within {PATIENCE:?}; the page:\n{}",
+            page()
+        );
+    }
+}
+
 #[test]
 fn a_session_is_driven_by_dragging_and_the_stop_stops() {
     let session = Session::new();
@@ -71,24 +113,25 @@ fn a_session_is_driven_by_dragging_and_the_stop_stops() {
     let path: Vec<(f64, f64)> = (1..=20)
         .map(|step| (f64::from(step) * 0.0019 * scale, 0.0))
         .collect();
-    browser.drag("#scene", &path, Duration::from_millis(60));
+    let stroke = Stroke {
+        browser: &browser,
+        path,
+    };
+    stroke.draw();
     browser.until(
         "this page's hand holds the authority",
         PATIENCE,
         "return document.querySelector('#holder').textContent === 'this page'",
     );
-    browser.until(
+    stroke.until(
         "the contact is felt",
-        PATIENCE,
-        // The arm may have paused where the machine was held up.
-        "if (document.querySelector('#status').textContent.includes('arm PAUSED')) document.querySelector('#arm').click(); return Number(document.querySelector('#strip-force canvas').dataset.newest) > 5",
+        "return Number(document.querySelector('#strip-force canvas').dataset.newest) > 5",
     );
     let felt = browser.number(NORMAL_FORCE);
     // A calm stroke has some 50 N; a machine that stalls for 45 ms just then had 205.
     assert!((5.0..400.0).contains(&felt), "{felt} N");
-    browser.until(
+    stroke.until(
         "the bar shows it",
-        PATIENCE,
         "return parseFloat(document.querySelector('#force-bar').style.width) > 2",
     );
 
