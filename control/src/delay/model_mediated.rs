@@ -404,7 +404,8 @@ mod tests {
         assert_eq!(free, Vector3::zeros());
     }
 
-    const WALL: SurfaceModel = SurfaceModel {
+    /// Of 2 kN/m, across x.
+    pub(super) const WALL: SurfaceModel = SurfaceModel {
         normal: Vector3::new(-1.0, 0.0, 0.0),
         place: 0.0,
         stiffness: 2000.0,

@@ -72,14 +72,8 @@ impl Place {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::WALL;
     use super::*;
-
-    const WALL: SurfaceModel = SurfaceModel {
-        normal: Vector3::new(-1.0, 0.0, 0.0),
-        place: 0.0,
-        stiffness: 2000.0,
-        friction: 0.0,
-    };
 
     #[test]
     fn a_surface_that_moves_evenly_is_followed_without_lag() {
