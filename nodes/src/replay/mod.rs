@@ -4,20 +4,16 @@
 mod check;
 mod recorded;
 
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use ferntast_bus::{CreateError, Depth, Subscriber};
-use ferntast_msgs::{Time, sample::TwinParametersSample, topics};
+use ferntast_bus::CreateError;
 use serde::Serialize;
 
 use crate::{
     graph::{Graph, NodeRow},
     lockstep::{RunError, VirtualTime},
     process::SessionContext,
-    twin::TwinSummary,
+    twin::{LastWords, TwinSummary},
 };
 
 use recorded::Recorded;
@@ -87,11 +83,8 @@ pub fn run(
     time.add_nodes(rows.iter().copied(), &session)?;
     let compared = recorded.outputs(&rows, &joints)?;
     let mut checks = check::checks(compared, &joints, &recorded.bus, time.bus())?;
-    let mut said = time
-        .bus()
-        .subscriber(topics::TWIN_PARAMETERS, Depth::Queue(16))?;
+    let mut said = LastWords::new(time.bus())?;
 
-    let mut heard = BTreeMap::new();
     let mut result = Comparison {
         equal: true,
         compared: 0,
@@ -105,24 +98,13 @@ pub fn run(
         for check in &mut checks {
             check.check(now, &mut result);
         }
-        hear(&mut said, now, &mut heard);
+        said.update(now);
         if now.nanos_since(recorded.start) % 1_000_000_000 == 0 {
             progress(now.seconds_since(recorded.start) / duration);
         }
     }
     // What was published at the end is visible after it.
-    hear(&mut said, time.now(), &mut heard);
-    result.twins = heard.values().map(TwinSummary::of).collect();
+    said.update(time.now());
+    result.twins = said.summaries();
     Ok(result)
-}
-
-/// Takes in what the twins say, by joint.
-fn hear(
-    said: &mut Subscriber<TwinParametersSample>,
-    now: Time,
-    heard: &mut BTreeMap<String, TwinParametersSample>,
-) {
-    while let Some(own) = said.next(now) {
-        heard.insert(own.message.joint.to_string(), own.message);
-    }
 }

@@ -12,12 +12,15 @@ use ferntast_msgs::{
     sample::{
         AuthoritySample, ContactStateSample, Edge, Faults, FrictionStatusSample, HealthSample,
         JointNames, LinkStatusSample, OperatingState, OperatingStateSample, RecorderStatusSample,
-        TwinParametersSample, WrenchSample,
+        WrenchSample,
     },
     topics::{self, Topic},
 };
 
-use crate::{servo::FrictionSummary, twin::TwinSummary};
+use crate::{
+    servo::FrictionSummary,
+    twin::{LastWords, TwinSummary},
+};
 
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
@@ -80,7 +83,7 @@ pub struct Monitor {
     recorder: Subscriber<RecorderStatusSample>,
     /// The folders that the recorder told of.
     pub recordings: BTreeSet<PathBuf>,
-    twin_parameters: Subscriber<TwinParametersSample>,
+    twins: LastWords,
     /// Of each joint, and its last word.
     friction: Vec<(
         Subscriber<FrictionStatusSample>,
@@ -103,8 +106,6 @@ pub struct Monitor {
     edges: Vec<String>,
     peak_hand_force: f64,
     refused_masters: u64,
-    /// The newest word of each joint's twin.
-    twins: BTreeMap<String, TwinParametersSample>,
     servo_rates: (f64, u64),
 }
 
@@ -154,7 +155,7 @@ impl Monitor {
             authority: watch(bus, topics::LEADER_AUTHORITY)?,
             recorder: watch(bus, topics::RECORDER_STATUS)?,
             recordings: BTreeSet::new(),
-            twin_parameters: bus.subscriber(topics::TWIN_PARAMETERS, Depth::Queue(16))?,
+            twins: LastWords::new(bus)?,
             friction: friction.collect::<Result<_, CreateError>>()?,
             nodes: BTreeMap::new(),
             link_status: None,
@@ -168,7 +169,6 @@ impl Monitor {
             edges: Vec::new(),
             peak_hand_force: 0.0,
             refused_masters: 0,
-            twins: BTreeMap::new(),
             servo_rates: (0.0, 0),
         })
     }
@@ -225,10 +225,7 @@ impl Monitor {
                 self.recordings.insert(PathBuf::from(folder.as_str()));
             }
         }
-        while let Some(received) = self.twin_parameters.next(now) {
-            let own = received.message;
-            self.twins.insert(own.joint.to_string(), own);
-        }
+        self.twins.update(now);
         for (joint, told) in &mut self.friction {
             if let Some(received) = joint.newest(now) {
                 *told = Some(received.message);
@@ -316,7 +313,7 @@ impl Monitor {
 
     /// The twins, by joint.
     pub fn twins(&self) -> Vec<TwinSummary> {
-        self.twins.values().map(TwinSummary::of).collect()
+        self.twins.summaries()
     }
 
     /// The friction that the servo feeds forward.

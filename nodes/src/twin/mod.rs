@@ -11,12 +11,14 @@ mod align;
 mod assess;
 mod goes_with;
 mod joint;
+mod last_words;
 mod open;
 mod report;
 #[cfg(test)]
 mod tests;
 
 pub use assess::Assessing;
+pub use last_words::LastWords;
 pub use open::{TwinModel, TwinOpenError, open, open_all};
 pub use report::{ChangeSummary, ParameterSummary, TwinSummary};
 
