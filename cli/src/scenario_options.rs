@@ -24,7 +24,7 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "NAME|FILE")]
     pub link: Option<String>,
 
-    /// Delay law to start with: position_force, position_position, four_channel, wave, tdpa, model_mediated.
+    /// Delay law to start with: position_force, position_position, four_channel, wave, tdpa, model_mediated, two_layer.
     #[arg(long, value_name = "NAME")]
     pub law: Option<String>,
 

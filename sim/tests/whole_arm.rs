@@ -244,6 +244,51 @@ fn model_mediated_renders_a_wall_that_moves_as_it_is() {
     }
 }
 
+/// What a law feels like that claims passivity, as a share of what is there.
+#[test]
+fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
+    let felt = |environment: Environment, round_trip: f64| {
+        let outcome = run("two_layer", round_trip, environment, Task::PressAndSlide);
+        let told = format!("{} {round_trip} s: {outcome:?}", environment.name());
+        assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
+        assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
+        // The inner law's 12 N·s/m and up to 3 that fill the tank.
+        assert!((13.0..15.5).contains(&outcome.felt_damping), "{told}");
+        assert!((0.0..=0.451).contains(&outcome.force_step), "{told}");
+        assert!(outcome.drift < 1.2e-3, "{told}");
+        let stiffness = environment.surface().0.min(3300.0);
+        (outcome.felt_stiffness.expect("it presses") / stiffness, told)
+    };
+    for round_trip in ROUND_TRIPS {
+        let (share, told) = felt(Environment::SoftSpring, round_trip);
+        assert!((0.93..1.07).contains(&share), "{told}");
+        let (share, told) = felt(Environment::HardWall, round_trip);
+        assert!((0.8..1.1).contains(&share), "{told}");
+        // What recedes takes energy at once, and the hand's comes a round trip later.
+        let (share, told) = felt(Environment::MovingWall, round_trip);
+        assert!((0.8..1.05).contains(&share), "{told}");
+    }
+}
+
+/// At the scale of a session nothing is missing.
+#[test]
+fn two_layers_at_the_scale_of_a_session_feel_a_hard_wall_as_it_is() {
+    for round_trip in ROUND_TRIPS {
+        let mut own = trial(
+            "two_layer",
+            round_trip,
+            Environment::HardWall,
+            Task::PressAndSlide,
+        );
+        own.law = scaled("two_layer", 0.05, &arm());
+        let outcome = own.run().expect("a valid trial");
+        let felt = outcome.felt_stiffness.expect("it presses");
+        // 0.05 · 20 kN/m.
+        assert!((980.0..1020.0).contains(&felt), "{round_trip} s: {outcome:?}");
+        assert!(outcome.energy_margin > -1e-3, "{round_trip} s: {outcome:?}");
+    }
+}
+
 #[test]
 fn a_free_arm_follows_and_nothing_is_felt_with_position_force() {
     let outcome = run(

@@ -33,6 +33,11 @@ impl LastCommand {
         self.position
     }
 
+    /// What was commanded in place of what the last step gave, hand units \[m\].
+    pub fn replace(&mut self, position: Vector3<f64>) {
+        self.position = self.position.and(Some(position));
+    }
+
     /// A step of `dt` \[s\] that gave `command`, or none; forgotten after `life` \[s\], and at
     /// once where nothing may be commanded.
     pub fn step(&mut self, dt: f64, command: Option<Vector3<f64>>, connected: bool, life: f64) {
@@ -43,6 +48,22 @@ impl LastCommand {
         } else if self.since > life || !connected {
             self.position = None;
         }
+    }
+}
+
+/// The tip as late as the estimate of the contact's force, which came through two poles.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Late([Option<Vector3<f64>>; 2]);
+
+impl Late {
+    /// After `dt` \[s\] with the tip at `tip` \[m\], as it was `lag` \[s\] ago.
+    pub fn step(&mut self, dt: f64, lag: f64, tip: Vector3<f64>) -> Vector3<f64> {
+        let share = dt / (dt + 0.5 * lag);
+        self.0.iter_mut().fold(tip, |input, pole| {
+            let own = pole.get_or_insert(input);
+            *own += share * (input - *own);
+            *own
+        })
     }
 }
 

@@ -10,6 +10,7 @@
 //! passivity and transparency", IEEE T-RO 27).
 
 use super::Energy;
+use nalgebra::Vector3;
 
 /// Energy in hand. In hand units.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,6 +27,14 @@ pub(super) struct EnergyTank {
 }
 
 impl EnergyTank {
+    /// A tank that has `level` \[J\].
+    pub fn with(level: f64) -> EnergyTank {
+        EnergyTank {
+            level,
+            ..EnergyTank::default()
+        }
+    }
+
     /// Books what went through the port (sums since the start).
     pub fn port(&mut self, port: Energy, share: f64) {
         let entered = port.entered - self.port.entered;
@@ -44,6 +53,13 @@ impl EnergyTank {
         self.received = Some(promised);
     }
 
+    /// Promises `share` of what is there beyond `kept` to the other end.
+    pub fn give(&mut self, share: f64, kept: f64) {
+        let promise = share * (self.level - kept).max(0.0);
+        self.level -= promise;
+        self.promised += promise;
+    }
+
     /// What is beyond `reserve` is dissipated.
     pub fn limit(&mut self, reserve: f64) {
         if self.level > reserve {
@@ -57,14 +73,38 @@ impl EnergyTank {
         self.level
     }
 
-    /// Promised to the other end since the start [J].
-    pub fn promised(&self) -> f64 {
-        self.promised
-    }
-
     /// Since the start [J].
     pub fn dissipated(&self) -> f64 {
         self.dissipated
+    }
+
+    /// What a packet says of the energy at the port: promised in place of entered.
+    pub fn told(&self, port: Energy) -> Energy {
+        Energy {
+            entered: self.promised,
+            left: port.left,
+        }
+    }
+
+    /// `force` \[N\] on a hand as far as the level pays for it in a step of `dt` \[s\]: the force
+    /// f gives out f v Δt to a hand that moves along with it at v, and f² Δt²/m more, as it
+    /// makes a hand of mass m \[kg\] faster.
+    pub fn pays_for(
+        &self,
+        dt: f64,
+        force: Vector3<f64>,
+        velocity: Vector3<f64>,
+        mass: f64,
+    ) -> Vector3<f64> {
+        let size = force.norm();
+        if size < 1e-9 || dt <= 0.0 {
+            return force;
+        }
+        let speed = velocity.dot(&force) / size;
+        // The positive root of f² Δt²/m + f v Δt = level.
+        let root = (speed * speed + 4.0 * self.level.max(0.0) / mass).sqrt();
+        let most = 0.5 * mass / dt * (root - speed);
+        force * (most / size).clamp(0.0, 1.0)
     }
 
     /// Puts in, or takes out when negative [J].
@@ -96,8 +136,9 @@ mod tests {
                 ports[own].entered += entered;
                 ports[own].left += left;
                 stores[own].port(ports[own], share);
+                stores[own].give(share, 0.1);
                 if heard {
-                    let promised = stores[1 - own].promised();
+                    let promised = stores[1 - own].promised;
                     stores[own].promise(promised);
                 }
                 let balance = ports[0].balance() + ports[1].balance();
@@ -124,7 +165,7 @@ mod tests {
             },
             1.0,
         );
-        assert_eq!((tank.level(), tank.promised()), (-0.5, 0.0));
+        assert_eq!((tank.level(), tank.promised), (-0.5, 0.0));
         tank.port(
             Energy {
                 entered: 3.0,
@@ -132,7 +173,7 @@ mod tests {
             },
             1.0,
         );
-        assert_eq!((tank.level(), tank.promised()), (0.0, 1.0));
+        assert_eq!((tank.level(), tank.promised), (0.0, 1.0));
         tank.add(0.3);
         tank.limit(0.1);
         assert!((tank.dissipated() - 0.2).abs() < 1e-12);

@@ -219,4 +219,8 @@ impl Follower for FourChannelFollower {
             },
         }
     }
+
+    fn commanded(&mut self, position: Vector3<f64>) {
+        self.command.replace(position);
+    }
 }

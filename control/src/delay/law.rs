@@ -1,62 +1,71 @@
 //! The laws there are, behind one type.
 
-use super::{
-    Energy, Follower, FollowerEnd, FollowerInput, FollowerOutput, FourChannel, Guarantee, Leader,
-    LeaderEnd, LeaderInput, LeaderOutput, Mapping, ModelMediated, Parameters, PositionForce,
-    PositionPosition, Tdpa, Wave,
-};
-use ferntast_model::{ParameterError, Section};
-use serde::{Deserialize, Serialize};
+use super::{FollowerEnd, Guarantee, LeaderEnd, PositionForce};
 
-/// Makes [`Law`] and its ends from one line a law.
+/// Makes an enum of laws and those of their ends from one line a law.
 macro_rules! laws {
-    ($($(#[$doc:meta])* $law:ident,)*) => {
-        /// Which law, with its parameters: the section `[law]` of a configuration.
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    (
+        $(#[$of_laws:meta])* $laws:ident, $leaders:ident, $followers:ident:
+        $($(#[$doc:meta])* $law:ident,)*
+    ) => {
+        $(#[$of_laws])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         #[serde(tag = "kind", rename_all = "snake_case")]
-        pub enum Law {
-            $($(#[$doc])* $law($law),)*
+        pub enum $laws {
+            $($(#[$doc])* $law($crate::delay::$law),)*
         }
 
-        /// The leader's end of any law.
+        /// The leader's end of any of these laws.
         #[derive(Clone, Debug)]
-        pub enum LeaderLaw {
-            $($(#[$doc])* $law(<$law as Parameters>::Leader),)*
+        pub enum $leaders {
+            $($(#[$doc])* $law(<$crate::delay::$law as $crate::delay::Parameters>::Leader),)*
         }
 
-        /// The follower's end of any law.
+        /// The follower's end of any of these laws.
         #[derive(Clone, Debug)]
-        pub enum FollowerLaw {
-            $($(#[$doc])* $law(<$law as Parameters>::Follower),)*
+        pub enum $followers {
+            $($(#[$doc])* $law(<$crate::delay::$law as $crate::delay::Parameters>::Follower),)*
         }
 
-        impl Law {
-            /// Names of all laws, as in configurations.
-            pub const NAMES: &[&str] = &[$(<$law as Parameters>::NAME,)*];
+        impl $laws {
+            /// Names of these laws, as in configurations.
+            pub const NAMES: &[&str] =
+                &[$(<$crate::delay::$law as $crate::delay::Parameters>::NAME,)*];
 
-            /// Every law, with the parameters that it has by default.
-            pub fn all() -> Vec<Law> {
-                vec![$(Law::$law($law::default()),)*]
+            /// Each of them, with the parameters that it has by default.
+            pub fn all() -> Vec<$laws> {
+                vec![$($laws::$law($crate::delay::$law::default()),)*]
             }
 
             /// Its name, as in configurations.
             pub const fn name(&self) -> &'static str {
                 match self {
-                    $(Law::$law(_) => <$law as Parameters>::NAME,)*
+                    $($laws::$law(_) => <$crate::delay::$law as $crate::delay::Parameters>::NAME,)*
                 }
             }
 
             /// What it guarantees. Under which assumptions, the law's file says.
-            pub const fn guarantee(&self) -> Guarantee {
+            pub fn guarantee(&self) -> $crate::delay::Guarantee {
+                use $crate::delay::Parameters;
                 match self {
-                    $(Law::$law(_) => <$law as Parameters>::GUARANTEE,)*
+                    $($laws::$law(law) => Parameters::guarantee(law),)*
                 }
             }
 
             /// Scales between hand and tip.
-            pub fn mapping(&self) -> Mapping {
+            pub fn mapping(&self) -> $crate::delay::Mapping {
+                use $crate::delay::Parameters;
                 match self {
-                    $(Law::$law(law) => law.mapping(),)*
+                    $($laws::$law(law) => Parameters::mapping(law),)*
+                }
+            }
+
+            /// The same law between the scales of `mapping`.
+            #[must_use]
+            pub fn between(&self, mapping: &$crate::delay::Mapping) -> $laws {
+                use $crate::delay::Parameters;
+                match self {
+                    $($laws::$law(law) => $laws::$law(Parameters::between(law, mapping)),)*
                 }
             }
 
@@ -65,58 +74,88 @@ macro_rules! laws {
             /// # Errors
             ///
             /// The first value that is out of bounds.
-            pub fn validate(&self) -> Result<(), ParameterError> {
+            pub fn validate(&self) -> Result<(), ferntast_model::ParameterError> {
                 match self {
-                    $(Law::$law(law) => law.validate(),)*
+                    $($laws::$law(law) => law.validate(),)*
                 }
             }
 
-            /// The leader's end.
-            pub fn leader(&self) -> LeaderEnd {
-                LeaderEnd::new(match self {
-                    $(Law::$law(law) => LeaderLaw::$law(law.leader()),)*
-                })
+            /// The leader's end, without what counts its energy.
+            pub(in $crate::delay) fn bare_leader(&self) -> $leaders {
+                use $crate::delay::Parameters;
+                match self {
+                    $($laws::$law(law) => $leaders::$law(Parameters::leader(law)),)*
+                }
             }
 
-            /// The follower's end.
-            pub fn follower(&self) -> FollowerEnd {
-                FollowerEnd::new(match self {
-                    $(Law::$law(law) => FollowerLaw::$law(law.follower()),)*
-                })
+            /// The follower's end, without what counts its energy.
+            pub(in $crate::delay) fn bare_follower(&self) -> $followers {
+                use $crate::delay::Parameters;
+                match self {
+                    $($laws::$law(law) => $followers::$law(Parameters::follower(law)),)*
+                }
             }
         }
 
-        impl Leader for LeaderLaw {
-            fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
+        impl ferntast_model::Section for $laws {
+            fn validate_at(&self, key: &str) -> Result<(), ferntast_model::ParameterError> {
+                let within = |error: ferntast_model::ParameterError| {
+                    error.within(&format!("{key} ({})", self.name()))
+                };
+                self.validate().map_err(within)
+            }
+        }
+
+        impl $crate::delay::Leader for $leaders {
+            fn step(
+                &mut self,
+                dt: f64,
+                input: &$crate::delay::LeaderInput,
+                energy: $crate::delay::Energy,
+            ) -> $crate::delay::LeaderOutput {
                 match self {
-                    $(LeaderLaw::$law(law) => law.step(dt, input, energy),)*
+                    $($leaders::$law(law) => law.step(dt, input, energy),)*
                 }
             }
 
             fn dissipated(&self) -> f64 {
                 match self {
-                    $(LeaderLaw::$law(law) => law.dissipated(),)*
+                    $($leaders::$law(law) => law.dissipated(),)*
                 }
             }
         }
 
-        impl Follower for FollowerLaw {
-            fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
+        impl $crate::delay::Follower for $followers {
+            fn step(
+                &mut self,
+                dt: f64,
+                input: &$crate::delay::FollowerInput,
+                energy: $crate::delay::Energy,
+            ) -> $crate::delay::FollowerOutput {
                 match self {
-                    $(FollowerLaw::$law(law) => law.step(dt, input, energy),)*
+                    $($followers::$law(law) => law.step(dt, input, energy),)*
+                }
+            }
+
+            fn commanded(&mut self, position: nalgebra::Vector3<f64>) {
+                match self {
+                    $($followers::$law(law) => law.commanded(position),)*
                 }
             }
 
             fn dissipated(&self) -> f64 {
                 match self {
-                    $(FollowerLaw::$law(law) => law.dissipated(),)*
+                    $($followers::$law(law) => law.dissipated(),)*
                 }
             }
         }
     };
 }
+pub(super) use laws;
 
 laws! {
+    /// Which law, with its parameters: the section `[law]` of a configuration.
+    Law, LeaderLaw, FollowerLaw:
     /// Position forward, force back.
     PositionForce,
     /// Position forward, position back.
@@ -129,6 +168,8 @@ laws! {
     Tdpa,
     /// The surface as the follower estimates it, rendered at the leader.
     ModelMediated,
+    /// Another law within limits of energy.
+    TwoLayer,
 }
 
 impl Default for Law {
@@ -138,6 +179,16 @@ impl Default for Law {
 }
 
 impl Law {
+    /// The leader's end.
+    pub fn leader(&self) -> LeaderEnd {
+        LeaderEnd::new(self.bare_leader())
+    }
+
+    /// The follower's end.
+    pub fn follower(&self) -> FollowerEnd {
+        FollowerEnd::new(self.bare_follower())
+    }
+
     /// The law of that name, with the parameters that it has by default.
     pub fn by_name(name: &str) -> Option<Law> {
         Law::all().into_iter().find(|law| law.name() == name)
@@ -145,7 +196,7 @@ impl Law {
 
     /// Whether it claims that no more energy leaves at hand and tip than entered, whatever the
     /// channel does, with the arm, the servo and the estimator that ship.
-    pub const fn claims_passivity(&self) -> bool {
+    pub fn claims_passivity(&self) -> bool {
         matches!(self.guarantee(), Guarantee::Passive)
     }
 
@@ -153,13 +204,6 @@ impl Law {
     /// \[-\]: energy at the follower's port times this compares with the leader's.
     pub fn power_scale(&self) -> f64 {
         self.mapping().power_scale()
-    }
-}
-
-impl Section for Law {
-    fn validate_at(&self, key: &str) -> Result<(), ParameterError> {
-        let within = |error: ParameterError| error.within(&format!("{key} ({})", self.name()));
-        self.validate().map_err(within)
     }
 }
 

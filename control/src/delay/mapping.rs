@@ -115,6 +115,18 @@ macro_rules! law_parameters {
                     force_ramp: self.force_ramp,
                 }
             }
+
+            /// The same law between the scales of `mapping`.
+            fn between(&self, mapping: &$crate::delay::Mapping) -> Self {
+                $name {
+                    position_scale: mapping.position_scale,
+                    force_scale: mapping.force_scale,
+                    workspace_offset: mapping.workspace_offset,
+                    deadline: mapping.deadline,
+                    force_ramp: mapping.force_ramp,
+                    ..self.clone()
+                }
+            }
         }
     };
 }
@@ -126,12 +138,19 @@ macro_rules! law_ends {
     ($name:ident, $text:literal, $guarantee:ident, $leader:ident, $follower:ident) => {
         impl $crate::delay::Parameters for $name {
             const NAME: &'static str = $text;
-            const GUARANTEE: $crate::delay::Guarantee = $crate::delay::Guarantee::$guarantee;
             type Leader = $leader;
             type Follower = $follower;
 
+            fn guarantee(&self) -> $crate::delay::Guarantee {
+                $crate::delay::Guarantee::$guarantee
+            }
+
             fn mapping(&self) -> $crate::delay::Mapping {
                 self.mapping()
+            }
+
+            fn between(&self, mapping: &$crate::delay::Mapping) -> Self {
+                self.between(mapping)
             }
 
             fn leader(&self) -> $leader {

@@ -27,6 +27,7 @@ mod model_mediated;
 mod position_force;
 mod position_position;
 mod tdpa;
+mod two_layer;
 mod wave;
 
 pub use end::{FollowerEnd, LeaderEnd};
@@ -38,6 +39,7 @@ pub use model_mediated::{ModelMediated, ModelMediatedFollower, ModelMediatedLead
 pub use position_force::{PositionForce, PositionForceFollower, PositionForceLeader};
 pub use position_position::{PositionPosition, PositionPositionFollower, PositionPositionLeader};
 pub use tdpa::{Tdpa, TdpaFollower, TdpaLeader};
+pub use two_layer::{InnerLaw, TwoLayer, TwoLayerFollower, TwoLayerLeader};
 pub use wave::{Wave, WaveFollower, WaveLeader};
 
 use nalgebra::Vector3;
@@ -163,6 +165,11 @@ pub trait Leader {
 pub trait Follower {
     /// One step of `dt` \[s\]; `energy` is what went through this end's port.
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput;
+    /// The command of the last step was given as `position` \[m\], hand units, where that is
+    /// not what the step said.
+    fn commanded(&mut self, position: Vector3<f64>) {
+        let _ = position;
+    }
     /// Energy that the law itself dissipated at this end since the start \[J\].
     fn dissipated(&self) -> f64 {
         0.0
@@ -194,14 +201,17 @@ pub enum Guarantee {
 pub trait Parameters {
     /// Name of the law, as in configurations.
     const NAME: &'static str;
-    /// What the law guarantees.
-    const GUARANTEE: Guarantee;
     /// The leader's end.
     type Leader: Leader;
     /// The follower's end.
     type Follower: Follower;
+    /// What the law guarantees.
+    fn guarantee(&self) -> Guarantee;
     /// Scales between hand and tip.
     fn mapping(&self) -> Mapping;
+    /// The same law between the scales of `mapping`.
+    #[must_use]
+    fn between(&self, mapping: &Mapping) -> Self;
     /// The leader's end, at rest.
     fn leader(&self) -> Self::Leader;
     /// The follower's end, at rest.

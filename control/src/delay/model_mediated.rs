@@ -42,7 +42,7 @@ mod place;
 
 pub use estimate::SurfaceModel;
 
-use super::contact::{LastCommand, TouchingTip};
+use super::contact::{LastCommand, Late, TouchingTip};
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
@@ -239,7 +239,7 @@ pub struct ModelMediatedFollower {
     parameters: ModelMediated,
     estimator: SurfaceEstimator,
     /// The tip as late as the force.
-    late: [Option<Vector3<f64>>; 2],
+    late: Late,
     model: Option<SurfaceModel>,
     place: Option<Place>,
     command: LastCommand,
@@ -256,7 +256,7 @@ impl ModelMediatedFollower {
                 threshold: threshold(law),
                 searched: SEARCHED * law.force_scale * law.search_force,
             }),
-            late: [None; 2],
+            late: Late::default(),
             model: None,
             place: None,
             command: LastCommand::default(),
@@ -282,22 +282,6 @@ fn threshold(law: &ModelMediated) -> f64 {
     (law.force_scale * law.contact_threshold).max(1e-9)
 }
 
-/// What comes through two poles that are late by `lag` \[s\], as the force came through those
-/// of its estimate.
-fn late(
-    poles: &mut [Option<Vector3<f64>>; 2],
-    dt: f64,
-    lag: f64,
-    tip: Vector3<f64>,
-) -> Vector3<f64> {
-    let share = dt / (dt + 0.5 * lag);
-    poles.iter_mut().fold(tip, |input, pole| {
-        let own = pole.get_or_insert(input);
-        *own += share * (input - *own);
-        *own
-    })
-}
-
 impl Follower for ModelMediatedFollower {
     fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
         let own = &self.parameters;
@@ -307,7 +291,7 @@ impl Follower for ModelMediatedFollower {
             contact, tip, here, ..
         } = TouchingTip::new(&mapping, input, &self.command);
         if let (Some(tip), Some(contact)) = (tip, contact) {
-            let tip = late(&mut self.late, dt, own.force_lag, tip);
+            let tip = self.late.step(dt, own.force_lag, tip);
             self.model = self.estimator.step(dt, tip, contact);
             let touches = contact.norm() >= threshold(own);
             self.place = self.model.map(|model| {
@@ -360,6 +344,10 @@ impl Follower for ModelMediatedFollower {
                 _ => Packet::empty(energy),
             },
         }
+    }
+
+    fn commanded(&mut self, position: Vector3<f64>) {
+        self.command.replace(position);
     }
 }
 

@@ -157,6 +157,10 @@ impl Follower for PositionPositionFollower {
         }
     }
 
+    fn commanded(&mut self, position: Vector3<f64>) {
+        self.command.replace(position);
+    }
+
     fn dissipated(&self) -> f64 {
         self.dissipated
     }

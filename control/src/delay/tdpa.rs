@@ -117,7 +117,7 @@ impl Leader for TdpaLeader {
             self.position = None;
             return LeaderOutput {
                 force: [0.0; 3],
-                packet: Packet::empty(promise(&self.tank, energy)),
+                packet: Packet::empty(self.tank.told(energy)),
             };
         };
         let here = Vector3::from(hand.position);
@@ -128,7 +128,9 @@ impl Leader for TdpaLeader {
         };
         self.position = Some(here);
         let level = self.tank.level();
-        let mut force = affordable(dt, share * self.force, velocity, level, own.hand_mass);
+        let mut force = self
+            .tank
+            .pays_for(dt, share * self.force, velocity, own.hand_mass);
         force -= own.damping * Vector3::from(hand.velocity);
         let square = velocity.norm_squared();
         if level < 0.0 && square > STANDING * STANDING {
@@ -136,41 +138,12 @@ impl Leader for TdpaLeader {
         }
         LeaderOutput {
             force: force.into(),
-            packet: Packet::new(hand.position, hand.velocity, promise(&self.tank, energy)),
+            packet: Packet::new(hand.position, hand.velocity, self.tank.told(energy)),
         }
     }
 
     fn dissipated(&self) -> f64 {
         self.tank.dissipated()
-    }
-}
-
-/// `force` as far as `level` pays for it in a step of `dt`: the force f gives
-/// out f v Δt to a hand that moves along with it at v, and f² Δt²/m more, as it
-/// makes a hand of mass m faster.
-fn affordable(
-    dt: f64,
-    force: Vector3<f64>,
-    velocity: Vector3<f64>,
-    level: f64,
-    mass: f64,
-) -> Vector3<f64> {
-    let size = force.norm();
-    if size < 1e-9 || dt <= 0.0 {
-        return force;
-    }
-    let speed = velocity.dot(&force) / size;
-    // The positive root of f² Δt²/m + f v Δt = level.
-    let root = (speed * speed + 4.0 * level.max(0.0) / mass).sqrt();
-    let most = 0.5 * mass / dt * (root - speed);
-    force * (most / size).clamp(0.0, 1.0)
-}
-
-/// What a packet says of energy: promised in place of entered.
-fn promise(tank: &EnergyTank, energy: Energy) -> Energy {
-    Energy {
-        entered: tank.promised(),
-        left: energy.left,
     }
 }
 
@@ -232,7 +205,7 @@ impl Follower for TdpaFollower {
         });
         let given = motion.map(|(position, _)| position);
         self.command.step(dt, given, input.connected, own.deadline);
-        let energy = promise(&self.tank, energy);
+        let energy = self.tank.told(energy);
         FollowerOutput {
             command: motion.map(|(position, velocity)| self.mapping.command(position, velocity)),
             packet: match (input.tip, tip.contact) {
@@ -240,6 +213,10 @@ impl Follower for TdpaFollower {
                 _ => Packet::empty(energy),
             },
         }
+    }
+
+    fn commanded(&mut self, position: Vector3<f64>) {
+        self.command.replace(position);
     }
 
     fn dissipated(&self) -> f64 {

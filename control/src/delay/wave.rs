@@ -316,6 +316,10 @@ impl Follower for WaveFollower {
         }
     }
 
+    fn commanded(&mut self, position: Vector3<f64>) {
+        self.command.replace(position);
+    }
+
     fn dissipated(&self) -> f64 {
         self.tank.dissipated()
     }

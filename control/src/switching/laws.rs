@@ -5,13 +5,14 @@ use crate::frame::LAST_LAW_CODE;
 
 /// The laws by their codes in frames: the place in this list. Names keep their
 /// places; new ones are appended, at most to the sixteenth.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 7] = [
     "position_force",
     "position_position",
     "four_channel",
     "wave",
     "tdpa",
     "model_mediated",
+    "two_layer",
 ];
 
 const _: () = assert!(NAMES.len() <= LAST_LAW_CODE as usize + 1);

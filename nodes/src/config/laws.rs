@@ -82,19 +82,23 @@ impl Loaded {
 
 /// Key of the stiffness of the arm's servo at the tip \[N/m\].
 const SERVO_STIFFNESS: &str = "servo_stiffness";
+/// Key of the law inside of another one.
+const INNER_LAW: &str = "inside";
 
 /// `law` with a servo no softer than `least` \[N/m\] ([`servo::stiffest`]), if it asks for one.
 pub fn stiff_enough(law: &Law, least: f64) -> Law {
-    let Ok(Value::Object(mut own)) = serde_json::to_value(law) else {
+    let Ok(mut own) = serde_json::to_value(law) else {
         return law.clone();
     };
-    match own.get_mut(SERVO_STIFFNESS) {
-        Some(place) if place.as_f64().is_some_and(|given| given < least) => {
+    let stiffen = |section: Option<&mut Value>| {
+        let place = section.and_then(|own| own.get_mut(SERVO_STIFFNESS));
+        if let Some(place) = place.filter(|own| own.as_f64().is_some_and(|own| own < least)) {
             *place = Value::from(least);
         }
-        _ => return law.clone(),
-    }
-    let stiff = serde_json::from_value::<Law>(Value::Object(own));
+    };
+    stiffen(own.get_mut(INNER_LAW));
+    stiffen(Some(&mut own));
+    let stiff = serde_json::from_value::<Law>(own);
     stiff
         .ok()
         .filter(|law| law.validate().is_ok())

@@ -1,0 +1,161 @@
+//! The layers at the arm's end.
+
+use super::inside::InnerFollower;
+use super::{TwoLayer, packet};
+use crate::delay::contact::{LastCommand, Late, TouchingTip};
+use crate::delay::energy_tank::EnergyTank;
+use crate::delay::mapping::Mapping;
+use crate::delay::{Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput};
+use nalgebra::Vector3;
+
+/// Time constant with which a command comes to the lead that the tank pays for, longer than the
+/// servo's lag [s].
+const YIELD_TIME: f64 = 0.05;
+/// Speed of a command that the arm does not keep up with [m/s].
+const TAKING_OVER: f64 = 0.03;
+/// With this a command that was kept back speeds up and brakes again [m/s²].
+const CATCH_UP: f64 = 0.5;
+
+/// The follower's end: sends what the inner law says, and what it promises.
+#[derive(Clone, Debug)]
+pub struct TwoLayerFollower {
+    parameters: TwoLayer,
+    mapping: Mapping,
+    inner: InnerFollower,
+    tank: EnergyTank,
+    /// At the tip, of what is known of its contact.
+    meter: EnergyMeter,
+    late: Late,
+    /// Of the contact on the tip at the last step [N].
+    contact: Vector3<f64>,
+    command: LastCommand,
+    /// The command is kept back, or catches up.
+    kept: bool,
+    /// Of the command [m/s].
+    speed: f64,
+}
+
+impl TwoLayerFollower {
+    pub(super) fn new(law: &TwoLayer) -> Self {
+        TwoLayerFollower {
+            parameters: law.clone(),
+            mapping: law.mapping(),
+            inner: law.inside.between(&law.mapping()).bare_follower(),
+            tank: EnergyTank::with(law.credit),
+            meter: EnergyMeter::default(),
+            late: Late::default(),
+            contact: Vector3::zeros(),
+            command: LastCommand::default(),
+            kept: false,
+            speed: 0.0,
+        }
+    }
+
+    /// Counts what went through the tip.
+    fn count(&mut self, dt: f64, seen: &TouchingTip) {
+        let Some((tip, contact)) = seen.tip.zip(seen.contact) else {
+            self.contact = Vector3::zeros();
+            self.meter.step([0.0; 3], None);
+            return;
+        };
+        let tip = self.late.step(dt, self.parameters.force_lag, tip);
+        // It changed on the way: its mean did the work.
+        let mean = 0.5 * (contact + self.contact);
+        self.contact = contact;
+        self.meter.step(mean.into(), Some(tip.into()));
+    }
+
+    /// How fast the command may go [m/s]: ½ m v² ≤ E.
+    fn fastest(&self) -> f64 {
+        // A mass is to be scaled as a stiffness is.
+        let mass = self.mapping.stiffness_at_hand(self.parameters.tip_mass);
+        let paid = 2.0 * self.tank.level().max(0.0) / mass;
+        paid.sqrt().max(self.parameters.least_speed)
+    }
+
+    /// How far the command may go in a step of `dt` [s] where it should go on by `ahead` [m], to
+    /// what moves with `velocity` [m/s].
+    fn stride(&self, dt: f64, ahead: &Vector3<f64>, velocity: &Vector3<f64>) -> f64 {
+        let (whole, fastest) = (ahead.norm(), self.fastest() * dt);
+        if !self.kept && whole <= fastest {
+            return whole;
+        }
+        let braking = velocity.norm() + (2.0 * CATCH_UP * whole).sqrt();
+        fastest.min(braking.min(self.speed + CATCH_UP * dt) * dt)
+    }
+
+    /// How far the command may go in a step of `dt` [s] along the force with which it pushes,
+    /// `lead` [m] ahead of the tip: ½ k d² ≤ E.
+    fn deeper(&self, dt: f64, lead: f64) -> f64 {
+        let own = &self.parameters;
+        let stiffness = self.mapping.stiffness_at_hand(own.servo_stiffness);
+        let most = (2.0 * self.tank.level().max(0.0) / stiffness).sqrt();
+        ((most - lead) / YIELD_TIME).max(-own.yield_speed) * dt
+    }
+
+    /// Of the command that the inner law wants, position \[m\] and velocity \[m/s\], what the
+    /// tank pays for.
+    fn allowed(
+        &mut self,
+        dt: f64,
+        seen: &TouchingTip,
+        wanted: (Vector3<f64>, Vector3<f64>),
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let (position, velocity) = wanted;
+        let Some((before, tip)) = seen.here.zip(seen.tip) else {
+            return wanted;
+        };
+        let leash = self.parameters.largest_lead / self.mapping.position_scale;
+        let ahead = tip + (position - tip).cap_magnitude(leash) - before;
+        let mut way = ahead.cap_magnitude(self.stride(dt, &ahead, &velocity));
+        if (before - tip).norm() > 0.5 * leash {
+            // The servo is taking over, and brakes softly in that.
+            way = way.cap_magnitude(TAKING_OVER * dt);
+        }
+        if let Some(along) = (-self.contact).try_normalize(1e-9) {
+            let lead = (before - tip).dot(&along);
+            way += (self.deeper(dt, lead) - way.dot(&along)).min(0.0) * along;
+        }
+        let given = before + way;
+        self.kept = (given - position).norm() > 1e-9;
+        self.speed = if dt > 0.0 { way.norm() / dt } else { 0.0 };
+        match self.kept && dt > 0.0 {
+            true => (given, way / dt),
+            false => wanted,
+        }
+    }
+}
+
+impl Follower for TwoLayerFollower {
+    fn step(&mut self, dt: f64, input: &FollowerInput, energy: Energy) -> FollowerOutput {
+        let seen = TouchingTip::new(&self.mapping, input, &self.command);
+        self.count(dt, &seen);
+        let own = &self.parameters;
+        self.tank.port(self.meter.energy(), own.promised_share);
+        if let Some(received) = self.mapping.live(input.connected, input.received) {
+            self.tank.promise(f64::from(received.packet.energy[0]));
+        }
+        self.tank.give(dt / own.transfer_time, own.kept_at_tip);
+        self.tank.limit(own.reserve);
+        let deadline = own.deadline;
+        let wanted = self.inner.step(dt, input, energy);
+        let command = wanted.command.map(|command| {
+            let position = self.mapping.tip_at_hand(command.position);
+            let velocity = Vector3::from(command.velocity) / self.mapping.position_scale;
+            self.allowed(dt, &seen, (position, velocity))
+        });
+        let given = command.map(|(position, _)| position);
+        if let Some(position) = given {
+            self.inner.commanded(position);
+        }
+        self.command.step(dt, given, input.connected, deadline);
+        FollowerOutput {
+            command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
+            packet: packet(wanted.packet, &self.tank, self.meter.energy()),
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.tank.dissipated() + self.inner.dissipated()
+    }
+}

@@ -1,0 +1,30 @@
+//! The laws that the layer of passivity can be put around.
+
+use crate::delay::ModelMediated;
+use crate::delay::law::laws;
+
+laws! {
+    /// What the layer of transparency is, with its parameters. Of `tdpa` there is none: it has
+    /// such a layer of its own, whose books go the same way.
+    InnerLaw, InnerLeader, InnerFollower:
+    /// Position forward, force back.
+    PositionForce,
+    /// Position forward, position back.
+    PositionPosition,
+    /// Position and force both ways.
+    FourChannel,
+    /// Wave variables with impedance matching and drift correction.
+    Wave,
+    /// The surface as the follower estimates it, rendered at the leader.
+    ModelMediated,
+}
+
+impl Default for InnerLaw {
+    fn default() -> Self {
+        InnerLaw::ModelMediated(ModelMediated {
+            // The layer adds its own.
+            damping: 12.0,
+            ..ModelMediated::default()
+        })
+    }
+}

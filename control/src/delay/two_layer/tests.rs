@@ -1,0 +1,162 @@
+use super::*;
+use crate::delay::{Follower, FollowerInput, Motion, PositionForce, Received};
+
+const DT: f64 = 1e-3;
+
+/// Around position and force as they come.
+fn law() -> TwoLayer {
+    TwoLayer {
+        inside: InnerLaw::PositionForce(PositionForce::default()),
+        force_scale: 1.0,
+        workspace_offset: [0.0; 3],
+        ..TwoLayer::default()
+    }
+}
+
+fn received(position: f64, force_or_speed: f64, promised: f64) -> Option<Received> {
+    Some(Received {
+        packet: Packet {
+            valid: true,
+            position: [position as f32, 0.0, 0.0],
+            vector: [force_or_speed as f32, 0.0, 0.0],
+            energy: [promised as f32, 0.0],
+        },
+        fresh: true,
+        silence: 0.0,
+        age: 0.0,
+    })
+}
+
+fn moving(position: f64, speed: f64) -> Option<Motion> {
+    Some(Motion {
+        position: [position, 0.0, 0.0],
+        velocity: [speed, 0.0, 0.0],
+    })
+}
+
+/// A hand that is pulled along by 5 N: what it gets, with what was promised \[J\].
+fn pulled(promised: f64) -> f64 {
+    let mut leader = law().leader();
+    let (mut position, mut given, mut force) = (0.0, 0.0, 0.0);
+    let mut energy = Energy::default();
+    for k in 0..2000 {
+        position += 1e-4;
+        let work = force * 1e-4;
+        energy.left += f64::max(work, 0.0);
+        energy.entered += f64::max(-work, 0.0);
+        given += work;
+        // Sums since the start; the first one tells where they begin.
+        let promised = if k < 10 { 0.0 } else { promised };
+        let step = leader.step(
+            DT,
+            &LeaderInput {
+                hand: moving(position, 0.1),
+                received: received(0.0, 5.0, promised),
+                connected: true,
+            },
+            energy,
+        );
+        assert!((step.force[0] - force).abs() <= 0.45 + 1e-9, "{step:?}");
+        force = step.force[0];
+    }
+    given
+}
+
+#[test]
+fn a_hand_gets_what_was_promised_and_no_more() {
+    let nothing = pulled(0.0);
+    assert!((-0.1..=1e-6).contains(&nothing), "{nothing}");
+    // 5 N over 0.2 m would be 1 J.
+    let some = pulled(0.02);
+    assert!((0.001..=0.02).contains(&some), "{some}");
+}
+
+struct Tip {
+    follower: TwoLayerFollower,
+    command: f64,
+    tip: f64,
+}
+
+impl Tip {
+    fn new(credit: f64) -> Tip {
+        let law = TwoLayer { credit, ..law() };
+        Tip {
+            follower: law.follower(),
+            command: 0.0,
+            tip: 0.0,
+        }
+    }
+
+    /// A step with the hand at `hand` \[m\] and the contact's force \[N\].
+    fn step(&mut self, hand: f64, force: f64) {
+        let step = self.follower.step(
+            DT,
+            &FollowerInput {
+                tip: moving(self.tip, 0.0),
+                contact_force: Some([force, 0.0, 0.0]),
+                received: received(hand, 0.0, 0.0),
+                connected: true,
+            },
+            Energy::default(),
+        );
+        self.command = step.command.expect("a command").position[0];
+    }
+}
+
+#[test]
+fn a_free_tip_goes_as_fast_as_the_tank_pays_for_and_catches_up() {
+    let mut tip = Tip::new(0.02);
+    let (mut fastest, mut before, mut changed) = (0.0_f64, 0.0, 0.0_f64);
+    let mut speed_before = 0.0;
+    for _ in 0..4000 {
+        // The hand jumps to 50 mm.
+        tip.step(0.05, 0.0);
+        let speed = (tip.command - before) / DT;
+        fastest = fastest.max(speed);
+        changed = changed.max((speed - speed_before).abs() / DT);
+        (before, speed_before) = (tip.command, speed);
+        tip.tip = tip.command;
+    }
+    // ½ · 4 kg · v² = 20 mJ at the start: 0.1 m/s; it gives all but 5 mJ away.
+    assert!((0.04..=0.06).contains(&fastest), "{fastest} m/s");
+    assert!((tip.command - 0.05).abs() < 1e-4, "{}", tip.command);
+    assert!((0.4..1.2).contains(&changed), "{changed} m/s²");
+}
+
+#[test]
+fn in_contact_an_empty_tank_lets_the_spring_go() {
+    let mut tip = Tip::new(0.0);
+    tip.tip = 1e-3;
+    for _ in 0..1000 {
+        tip.step(0.05, -5.0);
+    }
+    // As far as the tip, and no further.
+    assert!((tip.command - tip.tip).abs() < 1e-5, "{}", tip.command);
+}
+
+#[test]
+fn in_contact_the_spring_is_wound_up_to_what_the_tank_has() {
+    let mut tip = Tip::new(0.005);
+    tip.tip = 1e-3;
+    for _ in 0..1000 {
+        tip.step(0.05, -5.0);
+    }
+    // ½ · 7 kN/m · d² = 5 mJ, which the end keeps for itself: 1.2 mm.
+    let lead = tip.command - tip.tip;
+    assert!((1.1e-3..1.3e-3).contains(&lead), "{lead} m");
+}
+
+#[test]
+fn a_servo_that_does_not_take_over_finds_its_command_near_the_tip() {
+    let mut tip = Tip::new(0.1);
+    for _ in 0..4000 {
+        tip.step(0.05, 0.0);
+    }
+    assert!((2.9e-3..3.1e-3).contains(&tip.command), "{}", tip.command);
+}
+
+#[test]
+fn it_claims_what_is_tried_at_the_true_ports() {
+    assert_eq!(TwoLayer::default().guarantee(), Guarantee::Passive);
+    assert_eq!(law().guarantee(), Guarantee::ByItsBooks);
+}

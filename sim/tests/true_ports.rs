@@ -1,0 +1,108 @@
+//! Every law that claims passivity, between seeded channels, hands, scales and things to touch,
+//! on the whole arm: servo, contact-force estimator and limiter of the hand's force as they ship.
+//! What leaves at hand and tip, by the simulated bodies themselves, is never more than what
+//! entered there.
+
+#[path = "common/random_cases.rs"]
+mod random_cases;
+
+use ferntast_control::delay::{InnerLaw, Law, TwoLayer};
+use ferntast_control::haptics::MasterConfig;
+use ferntast_control::servo::{self, ServoConfig};
+use ferntast_sim::arm::ArmConfig;
+use ferntast_sim::teleoperation::{ArmUnderTrial, Environment, FollowerModel, Task, Trial};
+use random_cases::{Draw, failures, report};
+
+/// Seeds tried for all laws together.
+const CASES: u64 = 1000;
+
+fn arm() -> ArmUnderTrial {
+    let text = include_str!("../../config/arms/rokviss.toml");
+    ArmUnderTrial {
+        arm: toml::from_str::<ArmConfig>(text).expect("the shipped arm"),
+        servo: ServoConfig::default(),
+    }
+}
+
+/// A trial on `arm` with a law that `law` makes of a draw.
+fn trial(arm: &ArmUnderTrial, seed: u64, law: impl Fn(&mut Draw) -> Law) -> Trial {
+    let mut draw = Draw::of(seed);
+    let law = law(&mut draw);
+    let link = draw.link(true);
+    let pick = draw.between(0.0, 15.0) as usize;
+    let environment = Environment::ALL[pick % 5];
+    let mut trial = Trial::new(law, link, environment, seed);
+    trial.task = Task::ALL[pick / 5];
+    if draw.chance(0.3) {
+        trial.buffer = draw.between(0.0, 0.15);
+    }
+    trial.hand = draw.hand();
+    trial.follower = FollowerModel::Arm(Box::new(arm.clone()));
+    trial.master = Some(MasterConfig::default());
+    trial
+}
+
+/// The layers around `inside`, at scales of their own.
+fn two_layer(draw: &mut Draw, inside: InnerLaw, stiffness: f64) -> Law {
+    Law::TwoLayer(TwoLayer {
+        inside,
+        position_scale: draw.between(0.5, 1.5),
+        force_scale: draw.between(0.02, 1.0),
+        servo_stiffness: stiffness,
+        ..TwoLayer::default()
+    })
+}
+
+/// The arm, and how stiff its servo is at most \[N/m\].
+fn stiff_arm() -> (ArmUnderTrial, f64) {
+    let arm = arm();
+    let stiffness = servo::stiffest(&arm.arm.model(), &arm.servo).expect("a stiffness");
+    (arm, stiffness)
+}
+
+#[test]
+fn a_law_that_claims_passivity_gives_out_no_more_than_it_took_in() {
+    let claiming = Law::all();
+    let claiming = claiming.iter().filter(|law| law.claims_passivity());
+    let names = claiming.map(Law::name);
+    assert!(names.eq(["two_layer"]), "a new one needs its own draw");
+    let (arm, stiffness) = stiff_arm();
+    report(&failures(CASES, |seed| {
+        trial(&arm, seed, |draw| {
+            two_layer(draw, InnerLaw::default(), stiffness)
+        })
+    }));
+}
+
+/// Bare, each of them makes some joules or some tens of them in some of the cases.
+#[test]
+fn around_the_other_laws_the_layer_leaves_a_tenth_of_a_joule_of_it() {
+    let (arm, stiffness) = stiff_arm();
+    for inside in InnerLaw::all() {
+        let cases = 60;
+        let outcomes = |bare: bool| -> Vec<f64> {
+            let energy = |seed| {
+                let inside = inside.clone();
+                let make = |draw: &mut Draw| {
+                    let layered = two_layer(draw, inside.clone(), stiffness);
+                    match bare {
+                        true => Law::by_name(inside.name())
+                            .expect("every inner law is a law")
+                            .between(&layered.mapping()),
+                        false => layered,
+                    }
+                };
+                let trial = trial(&arm, seed, make);
+                trial.run().expect("a valid trial").energy_margin
+            };
+            (0..cases).map(energy).collect()
+        };
+        let worst = |bare| outcomes(bare).into_iter().fold(0.0, f64::min);
+        let (with, without) = (worst(false), worst(true));
+        let told = format!("{}: {with:.3} J, bare {without:.3} J", inside.name());
+        assert!(with > -0.15, "{told}");
+        let makes_energy = inside.name() != "model_mediated";
+        assert!(!makes_energy || without < 5.0 * with.min(-0.02), "{told}");
+        println!("{told}");
+    }
+}
