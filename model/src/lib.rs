@@ -16,6 +16,7 @@ pub mod joints;
 pub mod kinematics;
 mod parameter;
 pub mod recursive_least_squares;
+pub mod rigid_body;
 pub mod section;
 
 pub use joints::{JointCount, Joints, MAX_JOINTS};

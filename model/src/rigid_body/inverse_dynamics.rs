@@ -1,0 +1,76 @@
+//! Inverse dynamics: the torques that a motion takes.
+
+use nalgebra::Vector3;
+
+use crate::Joints;
+
+use super::chain::Chain;
+
+impl Chain {
+    /// Joint torques τ \[Nm\] or \[N\] that the motion q, q̇, q̈ takes in `gravity`
+    /// \[m/s², base frame\] without contact: M(q) q̈ + C(q, q̇) q̇ + g(q), with the
+    /// armatures in M. With a force F at the tip, J(q)ᵀ F comes off.
+    ///
+    /// The recursive Newton-Euler algorithm of Luh, Walker and Paul 1980, each link's
+    /// quantities in its own frame, about its frame's origin instead of its centre of
+    /// mass (Featherstone 2008, table 5.1).
+    pub fn inverse_dynamics(
+        &self,
+        q: &Joints<f64>,
+        qd: &Joints<f64>,
+        qdd: &Joints<f64>,
+        gravity: &Vector3<f64>,
+    ) -> Joints<f64> {
+        self.expect_joints(q);
+        self.expect_joints(qd);
+        self.expect_joints(qdd);
+        let mut placements = [super::Placement::identity(); crate::MAX_JOINTS];
+        let mut forces = [Vector3::zeros(); crate::MAX_JOINTS];
+        let mut moments = [Vector3::zeros(); crate::MAX_JOINTS];
+
+        // Velocity and acceleration, from the base on. The base accelerates against gravity,
+        // which stands for the weight of all links.
+        let (mut turning, mut turning_rate) = (Vector3::zeros(), Vector3::zeros());
+        let mut acceleration = -gravity;
+        for (joint, link) in self.links.iter().enumerate() {
+            let placement = link.placement(q[joint]);
+            let (rotation, shift) = (&placement.rotation, &placement.translation);
+            acceleration = rotation.tr_mul(
+                &(acceleration + turning_rate.cross(shift) + turning.cross(&turning.cross(shift))),
+            );
+            turning = rotation.tr_mul(&turning);
+            turning_rate = rotation.tr_mul(&turning_rate);
+            let (rate, rate_change) = (link.axis * qd[joint], link.axis * qdd[joint]);
+            if link.is_revolute() {
+                turning_rate += rate_change + turning.cross(&rate);
+                turning += rate;
+            } else {
+                acceleration += rate_change + turning.cross(&rate) * 2.0;
+            }
+            let inertia = &link.inertia;
+            let (lever, rotational) = (&inertia.first_moment, &inertia.rotational);
+            forces[joint] = acceleration * inertia.mass
+                + turning_rate.cross(lever)
+                + turning.cross(&turning.cross(lever));
+            moments[joint] = rotational * turning_rate
+                + turning.cross(&(rotational * turning))
+                + lever.cross(&acceleration);
+            placements[joint] = placement;
+        }
+
+        // Forces, from the tip on: each joint carries what all links behind it need.
+        let mut torques = self.armature().map(|armature| armature);
+        for (joint, link) in self.links.iter().enumerate().rev() {
+            torques[joint] =
+                torques[joint] * qdd[joint] + link.along(&moments[joint], &forces[joint]);
+            if joint > 0 {
+                let placement = &placements[joint];
+                let force = placement.rotation * forces[joint];
+                moments[joint - 1] +=
+                    placement.rotation * moments[joint] + placement.translation.cross(&force);
+                forces[joint - 1] += force;
+            }
+        }
+        torques
+    }
+}
