@@ -10,8 +10,9 @@ mod table;
 use std::path::PathBuf;
 
 /// The crates that must not reach a clock, a file, a socket, a thread or the middleware.
-const PURE: [&str; 8] = [
+const PURE: [&str; 9] = [
     "model",
+    "urdf",
     "control",
     "seal",
     "identification",
