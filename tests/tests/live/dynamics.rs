@@ -4,23 +4,9 @@ use ferntast_model::{Vector2, arm::Arm};
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 use serde_json::{Value, json};
 
+use super::numbers::Numbers;
+
 const ARM: &str = include_str!("../../../config/arms/rokviss.toml");
-
-/// Random numbers within −1 … 1, the same every time (xorshift).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn pair(&mut self, scale: f64) -> [f64; 2] {
-        [scale * self.next(), scale * self.next()]
-    }
-}
 
 /// The shipped arm with nothing to touch and no friction.
 fn free(gravity: [f64; 2]) -> ArmConfig {
@@ -63,7 +49,7 @@ fn arm_of(config: &ArmConfig) -> Value {
 
 #[test]
 fn the_arms_dynamics_are_those_of_an_independent_library() {
-    let mut numbers = Numbers(0x2005_0126);
+    let mut numbers = Numbers::new(0x2005_0126);
     for gravity in [[0.0, 0.0], [0.0, -9.80665], [3.0, -2.0]] {
         let config = free(gravity);
         let states: Vec<_> = (0..200)
