@@ -135,7 +135,8 @@ impl Settings {
     /// One step of `chain` from `q` by `motion`: a change of the tip's point \[m\] and a
     /// turn \[rad\], in the base frame. `home` \[rad\] or \[m\] is where the joints go where
     /// the tip leaves them free. The step is shortened so that no joint moves by more than
-    /// a singularity is away; call it again with what is left, or with the next one.
+    /// a singularity is away; call it again with what is left, or with the next one. What
+    /// is not finite moves nothing: the step is held.
     ///
     /// # Panics
     ///
@@ -151,7 +152,17 @@ impl Settings {
         let jacobian = self.scaled(chain.jacobian(q));
         let rank = self.rows().min(chain.links.len());
         let mobility = least_singular_value(&jacobian, rank);
+        let held = Step {
+            q: *q,
+            mobility,
+            held: true,
+        };
+        if !mobility.is_finite() {
+            return held;
+        }
         let wanted = self.scaled_motion(motion);
+        // Longer than any step will be; it keeps what follows finite.
+        let wanted = wanted / wanted.amax().max(1.0);
         let attempt = |weakest| {
             let mut change = self.within_limits(chain, q, home, &jacobian, &wanted, weakest);
             if weakest == Weakest::Stays {
@@ -174,6 +185,9 @@ impl Settings {
             })
         };
         let may_be = |next: &Joints<f64>| {
+            if !next.iter().all(|value| value.is_finite()) {
+                return false;
+            }
             if mobility >= 2.0 * self.stop_below {
                 return true;
             }
@@ -190,11 +204,7 @@ impl Settings {
                 };
             }
         }
-        Step {
-            q: *q,
-            mobility,
-            held: true,
-        }
+        held
     }
 
     /// Joint positions \[rad\] or \[m\] that bring the tip of `chain` to `target` (in the
@@ -407,9 +417,12 @@ fn weakest_direction(squares: &Vector6<f64>) -> Option<(usize, f64)> {
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The least of the `rank` greatest singular values.
+/// The least of the `rank` greatest singular values; NaN of what is not finite.
 fn least_singular_value(jacobian: &Jacobian, rank: usize) -> f64 {
     let product: Matrix6<f64> = jacobian * jacobian.transpose();
+    if !product.iter().all(|value| value.is_finite()) {
+        return f64::NAN;
+    }
     let mut squares: [f64; 6] = product.symmetric_eigenvalues().into();
     squares.sort_by(|a, b| b.total_cmp(a));
     squares[rank - 1].max(0.0).sqrt()

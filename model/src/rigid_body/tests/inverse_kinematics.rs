@@ -169,3 +169,17 @@ fn a_target_out_of_reach_is_told_with_its_distance() {
     target.translation.x = f64::NAN;
     assert_eq!(solve(target), Err(InverseKinematicsError::NotFinite));
 }
+
+#[test]
+fn what_is_not_finite_moves_nothing() {
+    let (chain, settings, good) = (seven_joints(), Settings::default(), Joints::from(BENT));
+    let (motion, bad) = (Vector6::repeat(0.01), Joints::from([f64::NAN; 7]));
+    for motion in [f64::NAN, f64::INFINITY] {
+        let step = settings.step(&chain, &good, &Vector6::repeat(motion), &good);
+        assert!(step.held && step.q == good, "{step:?}");
+    }
+    assert!(settings.step(&chain, &good, &motion, &bad).held);
+    assert!(settings.step(&chain, &bad, &motion, &good).held);
+    let far = settings.step(&chain, &good, &Vector6::repeat(1e300), &good);
+    assert!(!far.held && far.q != good);
+}
