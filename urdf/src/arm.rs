@@ -62,11 +62,7 @@ impl Robot {
             .map(|name| self.joint(name.as_ref()))
             .collect::<Result<_, _>>()?;
         let (Some(first), Some(last)) = (joints.first(), joints.last()) else {
-            let none = String::new();
-            return Err(ArmError::NoJoints {
-                base: none.clone(),
-                tip: none,
-            });
+            return Err(ArmError::EmptyList);
         };
         let fixed = joints.iter().map(|joint| &self.joints[*joint]);
         let fixed = fixed

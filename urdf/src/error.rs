@@ -204,6 +204,9 @@ pub enum ArmError {
         /// The joint.
         joint: String,
     },
+    /// A list of no joints.
+    #[error("the list of joints is empty; name the arm's joints in order from its base to its tip")]
+    EmptyList,
     /// Nothing moves.
     #[error(
         "between \"{base}\" and \"{tip}\" no joint moves; choose a base and a tip with the arm between them"

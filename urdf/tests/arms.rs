@@ -129,7 +129,7 @@ fn a_list_of_joints_stands_on_what_is_fixed_below_it() {
     assert!(told(&["shoulder", "slide", "finger_joint"]).contains("mimics joint \"slide\""));
     assert!(matches!(
         robot.of_joints(&[""; 0]),
-        Err(ArmError::NoJoints { .. })
+        Err(ArmError::EmptyList)
     ));
 }
 

@@ -208,7 +208,9 @@ impl Settings {
     }
 
     /// Joint positions \[rad\] or \[m\] that bring the tip of `chain` to `target` (in the
-    /// base frame) to within `tolerance`, from `start`, in at most `most_steps` steps.
+    /// base frame) to within `tolerance`, from `start`, in at most `most_steps` steps. They
+    /// are on the side of all singularities that `start` is on; a target that is reached on
+    /// another side only (elbow bent the other way) needs a start there.
     ///
     /// # Errors
     ///
