@@ -2,7 +2,9 @@
 //!
 //! * [`message_path`]: which number of a message is a signal,
 //! * [`schema`]: numbers out of messages of whatever type a recording carries,
-//! * [`csv`]: the same out of columns,
+//! * [`table`]: the same out of columns, whatever the file's format,
+//! * [`unit`]: units of signals,
+//! * [`guess`]: what names and numbers say of a signal and its unit,
 //! * [`joints`]: which joints a recording is about,
 //! * [`recording`]: signals put on one time base and cut into sessions,
 //! * [`experiment`]: the file that names recordings, signals and model, and
@@ -12,14 +14,16 @@
 //!
 //! What the data say about a model is the work of `ferntast-identification`.
 
-pub mod csv;
 pub mod experiment;
+pub mod guess;
 pub mod joints;
 pub mod message_path;
 mod numbers;
 pub mod recording;
 pub mod report;
 pub mod schema;
+pub mod table;
+pub mod unit;
 pub mod work;
 
 /// Of `names` those most like `wanted`, the most alike first; at most 12.

@@ -196,7 +196,7 @@ fn sessions_end_at_gaps_and_files_and_keep_their_dates() {
     fs::create_dir(bench.path("bag")).unwrap();
     bench.mcap("bag/bag_0.mcap", Some(Compression::Zstd), &samples);
     bench.mcap("one.mcap", None, &swing(DATE, 100));
-    bench.mcap("never.mcap", None, &swing(DATE + DAY, 80));
+    bench.mcap("never.mcap", None, &swing(DATE + DAY, 120));
     let text = format!("held_out = \"never.mcap\"\n{SIGNALS}{MODEL}");
     let loaded = load(&bench.experiment("[\"bag\", \"one.mcap\"]", &text)).unwrap();
     let found: Vec<_> = loaded
@@ -306,7 +306,11 @@ fn every_fault_has_its_message() {
     bench.mcap("good.mcap", None, &good);
     bench.mcap("empty.mcap", None, &[]);
     bench.mcap("short.mcap", None, &good[..30]);
-    bench.mcap("nan.mcap", None, &with(&|s| s[99].1 = f64::NAN));
+    bench.mcap(
+        "nan.mcap",
+        None,
+        &with(&|s| s.iter_mut().for_each(|s| s.1 = f64::NAN)),
+    );
     bench.mcap("back.mcap", None, &with(&|s| s[150].0 -= 20_000_000));
     let back = with(&|s| s[150].0 -= 20_000_000);
     bench.logged("log_back.mcap", None, &back, |stamp| stamp);
@@ -324,15 +328,15 @@ fn every_fault_has_its_message() {
     fs::write(bench.path("cut.mcap"), &whole[..whole.len() / 2]).unwrap();
     fs::write(bench.path("nothing.mcap"), "").unwrap();
     fs::write(bench.path("other.mcap"), "t_s,q\n0,1\n").unwrap();
-    fs::write(bench.path("run.txt"), "x").unwrap();
+    fs::write(bench.path("run.xyz"), "x").unwrap();
     fs::create_dir(bench.path("hollow")).unwrap();
     for (file, words) in [
         ("empty.mcap", "signals.position: topic /js of "),
         (
             "short.mcap",
-            "30 samples without a gap are too few, 50 are needed",
+            "30 samples without a gap are too few, 100 are needed",
         ),
-        ("nan.mcap", "signals.position is NaN in "),
+        ("nan.mcap", "signals.position: none of 200 samples in "),
         (
             "back.mcap",
             "time runs backwards by 0.019 s under signals.position in ",
@@ -341,12 +345,12 @@ fn every_fault_has_its_message() {
             "log_back.mcap",
             "time runs backwards by 0.019 s under signals.position in ",
         ),
-        ("still.mcap", "signals.position is 0.5 in every sample"),
-        ("slack.mcap", "signals.motor_torque is 0 in every sample"),
+        ("still.mcap", "signals.position is 0.5 rad in every sample"),
+        ("slack.mcap", "signals.motor_torque is 0 Nm in every sample"),
         ("cut.mcap", "run `ferntast bag repair "),
         ("nothing.mcap", "is empty"),
         ("other.mcap", "is not an MCAP file"),
-        ("run.txt", "is no recording that is read"),
+        ("run.xyz", "is no recording that is read"),
         ("hollow", "holds no recording"),
         ("missing.mcap", "there is no recording at "),
         ("missing.csv", "cannot read "),
@@ -357,8 +361,18 @@ fn every_fault_has_its_message() {
             "{message}"
         );
     }
-    let nan = bench.refused("\"nan.mcap\"", &format!("{SIGNALS}{MODEL}"));
-    assert!(nan.contains("message 100"), "{nan}");
+    bench.mcap("hole.mcap", None, &with(&|s| s[99].1 = f64::NAN));
+    let loaded = bench.load("hole.mcap");
+    let told = loaded.notes.join("\n");
+    assert!(
+        told.contains("1 samples without a number") && told.contains("message 100"),
+        "{told}"
+    );
+    assert_eq!(loaded.dataset.sessions[0].len(), 200);
+    assert_eq!(
+        (loaded.tallies[0].without_number, loaded.tallies[0].bridged),
+        (1, 1)
+    );
 }
 
 #[test]
@@ -469,7 +483,8 @@ fn signals_that_never_meet_are_refused() {
     let text = SIGNALS.replace("/temperature", "/late");
     let message = bench.refused("\"two_clocks.mcap\"", &format!("{text}{MODEL}"));
     assert!(
-        message.contains("signals.temperature (5.000 … 5.099 s)")
+        message.contains("signals.temperature (5.000 … 5.099 s, ")
+            && message.contains("4.901 s apart")
             && message.contains("never overlap"),
         "{message}"
     );

@@ -15,6 +15,12 @@ pub enum ExperimentError {
         /// What the system said.
         source: io::Error,
     },
+    /// A recording in place of an experiment file.
+    #[error("{} is a recording, not an experiment file: make one first: ferntast lab new {}", path.display(), path.display())]
+    IsRecording {
+        /// The recording.
+        path: PathBuf,
+    },
     /// Not TOML, a key that is not known or missing, a value of a wrong type.
     #[error("{}: {message}", path.display())]
     Syntax {
@@ -37,7 +43,7 @@ pub enum ExperimentError {
     #[error(transparent)]
     Open(#[from] OpenBagError),
     /// The recording does not say how it came about.
-    #[error("{} was not recorded by ferntast, so its signals must be named: write an experiment file; numbers that it has: {}", path.display(), available.join(", "))]
+    #[error("{} was not recorded by ferntast, so its signals must be named: ferntast lab new {}; numbers that it has: {}", path.display(), path.display(), available.join(", "))]
     NotOurs {
         /// The recording.
         path: PathBuf,

@@ -4,16 +4,21 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use super::Lineage;
+use super::{Lineage, reading::Join};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
-    pub(super) recording: Paths,
+    pub(super) recording: Recordings,
+    /// Names of columns, where a table has none or others are wanted.
     #[serde(default)]
-    pub(super) held_out: Paths,
+    pub(super) columns: ColumnNames,
+    pub(super) rate_hz: Option<f64>,
+    pub(super) join: Option<Join>,
     #[serde(default)]
-    pub(super) unloaded: Paths,
+    pub(super) held_out: Recordings,
+    #[serde(default)]
+    pub(super) unloaded: Recordings,
     pub(super) filter: Option<ferntast_identification::StatedFilter>,
     pub(super) joint: Option<Joint>,
     pub(super) contact: Option<Contact>,
@@ -22,27 +27,86 @@ pub(super) struct File {
     pub(super) lineage: Option<Lineage>,
 }
 
-/// One path or a list.
+/// One path, or a list of paths and of lists: files that are joined.
 #[derive(Debug, Deserialize)]
-#[serde(untagged, expecting = "expected a path or a list of paths")]
-pub(super) enum Paths {
+#[serde(
+    untagged,
+    expecting = "expected a path, a list of paths, or in that list a list of files to be joined: [[\"position.csv\", \"current.csv\"]]"
+)]
+pub(super) enum Recordings {
     One(String),
-    Many(Vec<String>),
+    Many(Vec<Files>),
 }
 
-impl Default for Paths {
-    fn default() -> Paths {
-        Paths::Many(Vec::new())
+/// One file, or several that are joined.
+#[derive(Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a path, or a list of files to be joined"
+)]
+pub(super) enum Files {
+    One(String),
+    Joined(Vec<String>),
+}
+
+impl Default for Recordings {
+    fn default() -> Recordings {
+        Recordings::Many(Vec::new())
     }
 }
 
-impl Paths {
-    pub(super) fn list(self) -> Vec<String> {
+impl Recordings {
+    /// The files of each recording, the one that gives the time first.
+    pub(super) fn list(self) -> Vec<Vec<String>> {
         match self {
-            Paths::One(path) => vec![path],
-            Paths::Many(paths) => paths,
+            Recordings::One(path) => vec![vec![path]],
+            Recordings::Many(paths) => {
+                let paths = paths.into_iter().map(|files| match files {
+                    Files::One(path) => vec![path],
+                    Files::Joined(paths) => paths,
+                });
+                paths.collect()
+            }
         }
     }
+}
+
+/// Names of all columns; of joined files a list each.
+#[derive(Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected names of columns, [\"t\", \"q\", \"i\"], or of files that are joined a list of them each"
+)]
+pub(super) enum ColumnNames {
+    Same(Vec<String>),
+    Each(Vec<Vec<String>>),
+}
+
+impl Default for ColumnNames {
+    fn default() -> ColumnNames {
+        ColumnNames::Same(Vec::new())
+    }
+}
+
+/// Where a signal is: a message path or column, or that with its unit.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a column or message path, or { column = \"…\", unit = \"…\" }"
+)]
+pub(super) enum Source {
+    Path(String),
+    Table(SourceTable),
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SourceTable {
+    #[serde(alias = "path")]
+    pub(super) column: String,
+    pub(super) unit: Option<String>,
+    /// The column that is this signal's own time.
+    pub(super) time: Option<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -63,18 +127,19 @@ pub(super) struct Contact {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SignalsTable {
-    pub(super) position: Option<String>,
+    pub(super) position: Option<Source>,
     /// Of a contact, in place of the position: x and y of the tip.
     pub(super) tip: Option<[String; 2]>,
-    pub(super) motor_torque: Option<String>,
-    pub(super) joint_torque: Option<String>,
-    pub(super) tangential_force: Option<String>,
-    pub(super) normal_force: Option<String>,
-    pub(super) temperature: Option<String>,
-    pub(super) valid: Option<String>,
-    pub(super) time: Option<String>,
+    pub(super) velocity: Option<Source>,
+    pub(super) motor_torque: Option<Source>,
+    pub(super) joint_torque: Option<Source>,
+    pub(super) tangential_force: Option<Source>,
+    pub(super) normal_force: Option<Source>,
+    pub(super) temperature: Option<Source>,
+    pub(super) valid: Option<Source>,
+    pub(super) time: Option<Source>,
     #[serde(default)]
-    pub(super) extra: BTreeMap<String, String>,
+    pub(super) extra: BTreeMap<String, Source>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,18 +1,23 @@
 //! The experiment file: which recordings, which signals, which model.
 //!
 //! ```toml
-//! recording = "run.mcap"        # or a list: rosbag2 directories, .mcap, .csv
+//! recording = "run.mcap"        # or a list: rosbag2 directories, .mcap, tables (.csv, .npz, .mat, …);
+//!                               # in the list [["q.csv", "i.csv"]]: files that are joined
+//! columns = ["t", "q", "i"]     # tables only, optional: names in place of those in the file
+//! rate_hz = 500                 # tables only, in place of time
+//! join = "time"                 # or "row"; else by time where each file has one
 //! unloaded = ["free.mcap"]      # optional: fitted too, run free of load: shows the torque sensor's zero
 //! held_out = ["other.mcap"]     # optional: never fitted
 //! [joint]
 //! type = "revolute"             # or "prismatic": m, N, kg
 //! [signals]                     # message paths; in CSV names of columns
 //! position = "/joint_states.position[0]"      # rad
-//! motor_torque = "/motor.effort[0]"           # Nm
+//! motor_torque = "/motor.effort[0]"           # Nm; { column = "u", unit = "V" } where it is none
+//! velocity = "/joint_states.velocity[0]"      # rad/s, optional
 //! joint_torque = "/joint_states.effort[0]"    # Nm, optional
 //! temperature = "/temperature.temperature"    # degC, optional
 //! valid = "/drive.enabled"                    # optional: what counts, where it is above 0.5
-//! time = "t_s"                  # CSV only: the column that is time [s]
+//! time = { column = "t", unit = "ms" }        # tables only: the column that is time
 //! extra.supply = "/power.voltage"             # anything else
 //! [filter]                      # optional: as published, else chosen from the noise
 //! butterworth_hz = 100          # position, order 4, forwards and backwards
@@ -43,6 +48,9 @@
 //! `position` goes along a straight contour as it is; `tip` is laid on the
 //! `contour`. [`contact`](self::contact) has the rest.
 //!
+//! A signal is a path or column, or a table with its `column` (or `path`), its
+//! `unit` ([`Unit`](crate::unit::Unit); else SI) and, in tables, its own `time`.
+//!
 //! Relative paths count from the file's folder. `${FERNTAST_DATA}` at the
 //! beginning of a path stands for the folder of shared recordings: the
 //! environment variable of that name, else `../shared/data` seen from the
@@ -53,6 +61,8 @@ mod error;
 mod file;
 mod lineage;
 mod own;
+mod reading;
+mod signals;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -62,15 +72,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_identification::{
-    CustomEffect, Inertia, JointType, ModelSpec, StatedFilter, Term,
-    effects::expression::signal_names,
-};
+use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, StatedFilter, Term};
+
+use crate::table::Format;
 
 pub use contact::Contour;
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
 pub use own::RECORD;
+pub use reading::{Join, Reading};
+pub use signals::Signals;
 pub use write::{NextStep, write_child};
 
 /// What stands for the folder of shared recordings in a path.
@@ -85,6 +96,10 @@ pub struct Experiment {
     pub title: String,
     /// What is fitted.
     pub recordings: Vec<PathBuf>,
+    /// Files that are joined to a recording, by that.
+    pub joined: BTreeMap<PathBuf, Vec<PathBuf>>,
+    /// How tables are read.
+    pub reading: Reading,
     /// What is never fitted.
     pub held_out: Vec<PathBuf>,
     /// What is fitted too, and was run free of load.
@@ -101,30 +116,6 @@ pub struct Experiment {
     pub model: ModelSpec,
     /// Where it came from.
     pub lineage: Option<Lineage>,
-}
-
-/// Where the signals are: message paths, in CSV names of columns.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Signals {
-    /// q \[rad\]; of a contact the place along the contour \[m\], or x of the
-    /// tip where there is a `tip_y`.
-    pub position: String,
-    /// y of the tip \[m\].
-    pub tip_y: Option<String>,
-    /// τ_m \[Nm\]; of a contact F_T \[N\].
-    pub motor_torque: String,
-    /// F_N \[N\] of a contact.
-    pub normal_force: Option<String>,
-    /// τ \[Nm\].
-    pub joint_torque: Option<String>,
-    /// \[degC\].
-    pub temperature: Option<String>,
-    /// Samples count where it is above 0.5, as while a drive is enabled.
-    pub valid: Option<String>,
-    /// In CSV the column that is time \[s\].
-    pub time: Option<String>,
-    /// Anything else by name.
-    pub extra: BTreeMap<String, String>,
 }
 
 /// The folder of shared recordings: what the environment variable
@@ -149,6 +140,11 @@ impl Experiment {
     ///
     /// [`ExperimentError`].
     pub fn open(path: &Path, data_folder: &Path) -> Result<Vec<Experiment>, ExperimentError> {
+        if Format::of(path).is_some() && !path.is_dir() {
+            return Err(ExperimentError::IsRecording {
+                path: path.to_owned(),
+            });
+        }
         let is_recording = path.is_dir() || path.extension().is_some_and(|end| end == "mcap");
         match is_recording {
             true => own::of_recording(path),
@@ -162,6 +158,12 @@ impl Experiment {
     ///
     /// [`ExperimentError`]: file, line, key, and what is wrong.
     pub fn read(path: &Path, data_folder: &Path) -> Result<Experiment, ExperimentError> {
+        let is_mcap = path.extension().is_some_and(|end| end == "mcap");
+        if Format::of(path).is_some() || is_mcap {
+            return Err(ExperimentError::IsRecording {
+                path: path.to_owned(),
+            });
+        }
         let text = std::fs::read_to_string(path).map_err(|source| ExperimentError::Read {
             path: path.to_owned(),
             source,
@@ -189,15 +191,28 @@ impl Experiment {
             reason,
         };
         let folder = folder_of(path);
-        let resolve = |paths: file::Paths| -> Vec<PathBuf> {
-            let paths = paths.list().into_iter();
-            let resolved = paths.map(|text| match text.strip_prefix(DATA_VARIABLE) {
-                Some(rest) => data_folder.join(rest.trim_start_matches('/')),
-                None => folder.join(text),
-            });
-            resolved.collect()
+        let of_text = |text: String| match text.strip_prefix(DATA_VARIABLE) {
+            Some(rest) => data_folder.join(rest.trim_start_matches('/')),
+            None => folder.join(text),
+        };
+        let mut joined = BTreeMap::new();
+        let mut resolve = |recordings: file::Recordings| -> Vec<PathBuf> {
+            let mut firsts = Vec::new();
+            for files in recordings.list() {
+                let mut files = files.into_iter().map(of_text);
+                let Some(first) = files.next() else {
+                    continue;
+                };
+                let others: Vec<PathBuf> = files.collect();
+                if !others.is_empty() {
+                    joined.insert(first.clone(), others);
+                }
+                firsts.push(first);
+            }
+            firsts
         };
         let recordings = resolve(file.recording);
+        let (held_out, unloaded) = (resolve(file.held_out), resolve(file.unloaded));
         if recordings.is_empty() {
             return Err(refuse(
                 "recording",
@@ -224,12 +239,14 @@ impl Experiment {
             path: Some(path.to_owned()),
             title: title.to_string_lossy().into_owned(),
             recordings,
-            held_out: resolve(file.held_out),
-            unloaded: resolve(file.unloaded),
+            joined,
+            reading: reading::reading(file.columns, file.rate_hz, file.join, &refuse)?,
+            held_out,
+            unloaded,
             filter: filter(file.filter, &refuse)?,
             joint,
             contour,
-            signals: signals(file.signals, joint, &refuse)?,
+            signals: signals::signals(file.signals, joint, &refuse)?,
             model: model(file.model, joint, &refuse)?,
             lineage: file.lineage,
         })
@@ -255,85 +272,6 @@ fn filter(
         }
     }
     Ok(stated)
-}
-
-fn signals(
-    table: file::SignalsTable,
-    joint: JointType,
-    refuse: &impl Fn(&str, String) -> ExperimentError,
-) -> Result<Signals, ExperimentError> {
-    let taken = signal_names(joint.subject());
-    for name in table.extra.keys() {
-        let key = format!("signals.extra.{name}");
-        if taken.contains(&name.as_str()) {
-            let reason = format!(
-                "the name is taken; choose another than {}",
-                taken.join(", ")
-            );
-            return Err(refuse(&key, reason));
-        }
-        if !is_name(name) {
-            return Err(refuse(&key, NO_NAME.to_owned()));
-        }
-    }
-    let must = |key: &str, path: Option<String>, what: &str| {
-        path.ok_or_else(|| refuse(&format!("signals.{key}"), format!("it is missing: {what}")))
-    };
-    let contact_only = [
-        ("tip", table.tip.is_some()),
-        ("tangential_force", table.tangential_force.is_some()),
-        ("normal_force", table.normal_force.is_some()),
-    ];
-    let joint_only = [
-        ("motor_torque", table.motor_torque.is_some()),
-        ("joint_torque", table.joint_torque.is_some()),
-    ];
-    let (others, of) = match joint.is_contact() {
-        true => (&joint_only[..], "a joint, but this is a [contact]"),
-        false => (
-            &contact_only[..],
-            "a contact: write [contact] into the file",
-        ),
-    };
-    if let Some((name, _)) = others.iter().find(|(_, given)| *given) {
-        return Err(refuse(
-            &format!("signals.{name}"),
-            format!("it is a signal of {of}"),
-        ));
-    }
-    let (position, tip_y) = match (table.position, table.tip) {
-        (Some(_), Some(_)) => {
-            let reason = "there is a position too: name one of the two".to_owned();
-            return Err(refuse("signals.tip", reason));
-        }
-        (position, None) => (must("position", position, contact::position(joint))?, None),
-        (None, Some([x, y])) => (x, Some(y)),
-    };
-    let (motor_torque, normal_force) = match joint.is_contact() {
-        true => (
-            must(
-                "tangential_force",
-                table.tangential_force,
-                contact::TANGENTIAL,
-            )?,
-            Some(must("normal_force", table.normal_force, contact::NORMAL)?),
-        ),
-        false => (
-            must("motor_torque", table.motor_torque, contact::MOTOR)?,
-            None,
-        ),
-    };
-    Ok(Signals {
-        position,
-        tip_y,
-        motor_torque,
-        normal_force,
-        joint_torque: table.joint_torque,
-        temperature: table.temperature,
-        valid: table.valid,
-        time: table.time,
-        extra: table.extra,
-    })
 }
 
 const NO_NAME: &str = "a name is letters, digits and underscores, a letter first";

@@ -1,6 +1,6 @@
 //! A recording of ferntast's own in place of an experiment file.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{Inertia, JointType, ModelSpec, Term};
@@ -10,7 +10,7 @@ use ferntast_msgs::{
     topics,
 };
 
-use super::{Experiment, ExperimentError, Signals};
+use super::{Experiment, ExperimentError, Reading, Signals};
 use crate::{joints::recorded_joints, numbers::numbers_of};
 
 /// Name of the metadata record that a recording of ours carries: what it was
@@ -64,6 +64,8 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
             path: None,
             title: name.to_owned(),
             recordings: vec![path.to_owned()],
+            joined: BTreeMap::new(),
+            reading: Reading::default(),
             held_out: Vec::new(),
             unloaded: Vec::new(),
             filter: None,

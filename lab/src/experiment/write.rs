@@ -71,6 +71,8 @@ pub fn write_child(parent: &Experiment, step: &NextStep, output: &Path) -> Resul
         &parent.held_out[..],
     ]
     .concat();
+    let joined = recordings.iter().filter_map(|own| parent.joined.get(own));
+    recordings.extend(joined.flatten().cloned().collect::<Vec<PathBuf>>());
     if let Some(recording) = &step.twin_recording {
         let path = turned(&recording.to_string_lossy(), Path::new("."), &to);
         document.insert("recording", value(path));
@@ -168,18 +170,19 @@ fn lineage(step: &NextStep, hash: &str, from: &Path, to: &Path, parent_path: &Pa
 
 /// Turns relative paths that count from `from` into such that count from `to`.
 fn turn_paths(item: &mut Item, from: &Path, to: &Path) {
-    let turn = |value: &mut Value| {
-        if let Some(text) = value.as_str() {
-            let new = turned(text, from, to);
-            let decor = value.decor().clone();
-            *value = new.into();
-            *value.decor_mut() = decor;
-        }
-    };
-    match item.as_value_mut() {
-        Some(Value::Array(paths)) => paths.iter_mut().for_each(turn),
-        Some(value) => turn(value),
-        None => {}
+    if let Some(value) = item.as_value_mut() {
+        turn_value(value, from, to);
+    }
+}
+
+fn turn_value(value: &mut Value, from: &Path, to: &Path) {
+    if let Value::Array(paths) = value {
+        paths.iter_mut().for_each(|own| turn_value(own, from, to));
+    } else if let Some(text) = value.as_str() {
+        let new = turned(text, from, to);
+        let decor = value.decor().clone();
+        *value = new.into();
+        *value.decor_mut() = decor;
     }
 }
 

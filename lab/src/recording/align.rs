@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use ferntast_identification::numerics::statistics::quantile;
+use ferntast_identification::{data::check::MIN_SAMPLES, numerics::statistics::quantile};
 
-use super::{LoadError, Series, VALID};
+use super::{LoadError, Series, VALID, tally::Tally};
 
 /// An interval more than that many periods long is a gap.
 const GAP: i64 = 10;
 
-/// Shorter stretches than this are left out \[samples\].
-pub(super) const SHORTEST: usize = 50;
+/// Shorter stretches than this are left out \[samples\]: a fit takes none.
+pub(super) const SHORTEST: usize = MIN_SAMPLES;
 
 /// Sample times that deviate less than this part of a period from a uniform
 /// grid are taken as uniform.
@@ -39,21 +39,17 @@ struct Timed<'a> {
     at: usize,
 }
 
-/// Cuts the series of one file (the position first) into pieces; what is not
-/// valid is in none of them.
-/// Returns them with the number of samples left out in short ones.
-pub(super) fn align(file: &Path, all: &[Series]) -> Result<(Vec<Piece>, usize), LoadError> {
+/// Cuts the series of one recording (the position first) into pieces; what is not
+/// valid is in none of them. `tally` is told what becomes of the position's
+/// samples. There may be no piece that is long enough.
+pub(super) fn align(
+    file: &Path,
+    all: &[Series],
+    tally: &mut Tally,
+) -> Result<Vec<Piece>, LoadError> {
     let Some(position) = all.first() else {
-        return Ok((Vec::new(), 0));
+        return Ok(Vec::new());
     };
-    let too_short = |samples: usize| LoadError::TooShort {
-        file: file.to_owned(),
-        samples,
-        needed: SHORTEST,
-    };
-    if position.times.len() < SHORTEST {
-        return Err(too_short(position.times.len()));
-    }
     let period = median_interval(position).max(1);
     if period > SLOWEST {
         return Err(LoadError::TooSlow {
@@ -68,15 +64,14 @@ pub(super) fn align(file: &Path, all: &[Series]) -> Result<(Vec<Piece>, usize), 
         .map(|series| Timed::new(series, period))
         .collect();
     for other in &others {
-        other.check_overlap(file, position)?;
+        other.check_overlap(position)?;
     }
     let mut cut = Cutter {
         period,
         columns: vec![Vec::new(); all.len()],
         times: Vec::new(),
         pieces: Vec::new(),
-        left_out: 0,
-        longest: 0,
+        tally,
     };
     let valid = all.iter().position(|series| series.signal == VALID);
     let is_valid = |row: &[f64]| valid.and_then(|at| row.get(at)).is_none_or(|v| *v > 0.5);
@@ -91,19 +86,23 @@ pub(super) fn align(file: &Path, all: &[Series]) -> Result<(Vec<Piece>, usize), 
                 None => complete = false,
             }
         }
-        match complete && is_valid(&row) {
-            true => cut.push(time, &row),
-            false => cut.close(),
+        match (complete, is_valid(&row)) {
+            (true, true) => cut.push(time, &row),
+            (true, false) => {
+                cut.tally.not_valid += 1;
+                cut.close();
+            }
+            (false, _) => {
+                cut.tally.without_other_signal += 1;
+                cut.close();
+            }
         }
     }
     cut.close();
-    match cut.pieces.is_empty() {
-        true => Err(too_short(cut.longest)),
-        false => Ok((cut.pieces, cut.left_out)),
-    }
+    Ok(cut.pieces)
 }
 
-fn median_interval(series: &Series) -> i64 {
+pub(super) fn median_interval(series: &Series) -> i64 {
     let mut intervals: Vec<i64> = series
         .times
         .windows(2)
@@ -129,7 +128,7 @@ impl<'a> Timed<'a> {
         }
     }
 
-    fn check_overlap(&self, file: &Path, position: &Series) -> Result<(), LoadError> {
+    fn check_overlap(&self, position: &Series) -> Result<(), LoadError> {
         let ends = |series: &Series| {
             let first = series.times.first().copied().unwrap_or(0);
             (first, series.times.last().copied().unwrap_or(first))
@@ -145,7 +144,9 @@ impl<'a> Timed<'a> {
         let seconds = |time: i64| time.saturating_sub(origin) as f64 * 1e-9;
         Err(LoadError::NoOverlap {
             signal: self.series.signal.clone(),
-            file: file.to_owned(),
+            file: self.series.file.clone(),
+            position_file: position.file.clone(),
+            apart: seconds(from.max(position_from)) - seconds(to.min(position_to)),
             from: seconds(from),
             to: seconds(to),
             position_from: seconds(position_from),
@@ -179,16 +180,15 @@ impl<'a> Timed<'a> {
     }
 }
 
-struct Cutter {
+struct Cutter<'a> {
     period: i64,
     times: Vec<i64>,
     columns: Vec<Vec<f64>>,
     pieces: Vec<Piece>,
-    left_out: usize,
-    longest: usize,
+    tally: &'a mut Tally,
 }
 
-impl Cutter {
+impl Cutter<'_> {
     fn push(&mut self, time: i64, row: &[f64]) {
         let last = self.times.last().copied();
         if last.is_some_and(|last| time.saturating_sub(last) > GAP * self.period) {
@@ -204,13 +204,54 @@ impl Cutter {
     fn close(&mut self) {
         let times = std::mem::take(&mut self.times);
         let columns: Vec<Vec<f64>> = self.columns.iter_mut().map(std::mem::take).collect();
-        self.longest = self.longest.max(times.len());
-        if times.len() < SHORTEST {
-            self.left_out += times.len();
+        let tally = &mut *self.tally;
+        tally.longest = tally.longest.max(times.len());
+        if times.is_empty() {
             return;
         }
-        self.pieces.push(uniform(&times, columns));
+        if times.len() < SHORTEST {
+            tally.in_short_stretches += times.len();
+            tally.short_stretches += 1;
+            return;
+        }
+        let samples = times.len();
+        let piece = uniform(&times, columns);
+        let filled = piece.channels.first().map_or(0, Vec::len);
+        tally.stretches += 1;
+        tally.used += filled;
+        tally.bridged += filled.saturating_sub(samples);
+        self.pieces.push(piece);
     }
+}
+
+/// Steps of a uniform grid at which samples stand, where they stand on one and
+/// some steps have none; with the period \[s\].
+fn grid_with_holes(seconds: &[f64]) -> Option<(f64, Vec<usize>)> {
+    let mut intervals: Vec<f64> = seconds.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let usual = quantile(&mut intervals, 0.5, f64::total_cmp)?;
+    // Step by step, so that a period that is a little off does not add up.
+    let mut steps = vec![0_usize];
+    for pair in seconds.windows(2) {
+        let last = steps.last().copied().unwrap_or(0);
+        steps.push(last + ((pair[1] - pair[0]) / usual).round().max(1.0) as usize);
+    }
+    let period = seconds.last()? / (*steps.last()?).max(1) as f64;
+    let on_grid =
+        |(step, time): (&usize, &f64)| (time - *step as f64 * period).abs() <= UNIFORM * period;
+    let fits = steps.iter().zip(seconds).all(on_grid);
+    fits.then_some((period, steps))
+}
+
+/// `column` with a straight line where `steps` leave some out.
+fn bridged(column: &[f64], steps: &[usize]) -> Vec<f64> {
+    let mut all = Vec::with_capacity(steps.last().map_or(0, |last| last + 1));
+    for (values, steps) in column.windows(2).zip(steps.windows(2)) {
+        let count = steps[1] - steps[0];
+        let step = (values[1] - values[0]) / count as f64;
+        all.extend((0..count).map(|k| values[0] + step * k as f64));
+    }
+    all.extend(column.last());
+    all
 }
 
 /// The same on a uniform grid: as it is where it is uniform already, else
@@ -230,6 +271,14 @@ fn uniform(times: &[i64], columns: Vec<Vec<f64>>) -> Piece {
             start,
             period: mean,
             channels: columns,
+        };
+    }
+    if let Some((period, steps)) = grid_with_holes(&seconds) {
+        let channels = columns.iter().map(|column| bridged(column, &steps));
+        return Piece {
+            start,
+            period,
+            channels: channels.collect(),
         };
     }
     // The mean, not the median, where intervals are of two kinds: so as many
@@ -267,10 +316,21 @@ fn uniform(times: &[i64], columns: Vec<Vec<f64>>) -> Piece {
 mod tests {
     use proptest::prelude::*;
 
-    use super::*;
+    use super::{super::series::Wanted, *};
+
+    fn cut(all: &[Series]) -> Result<(Vec<Piece>, Tally), LoadError> {
+        let mut tally = Tally::default();
+        Ok((align(Path::new("a"), all, &mut tally)?, tally))
+    }
 
     fn series(signal: &str, times: Vec<i64>) -> Series {
-        let mut series = Series::new(signal, Path::new("a"));
+        let wanted = Wanted {
+            signal: signal.to_owned(),
+            path: String::new(),
+            unit: None,
+            time: None,
+        };
+        let mut series = Series::new(&wanted, Path::new("a"));
         series.values = times.iter().map(|&time| time as f64 * 1e-9).collect();
         series.times = times;
         series
@@ -285,12 +345,14 @@ mod tests {
             .map(|n| 2 * n * ms)
             .filter(|t| !(151 * ms..250 * ms).contains(t));
         let torque = series("motor_torque", torque.collect());
-        let (pieces, left_out) = align(Path::new("a"), &[position, torque]).unwrap();
+        let (pieces, tally) = cut(&[position, torque]).unwrap();
         let ranges: Vec<(i64, usize)> = pieces
             .iter()
             .map(|piece| (piece.start / ms, piece.channels[1].len()))
             .collect();
-        assert_eq!((ranges, left_out), (vec![(0, 151), (250, 149)], 0));
+        assert_eq!(ranges, [(0, 151), (250, 149)]);
+        let (used, without) = (tally.used, tally.without_other_signal);
+        assert_eq!((used, without, tally.stretches), (300, 100, 2));
         for piece in &pieces {
             let pairs = piece.channels[0].iter().zip(&piece.channels[1]);
             assert!(pairs.into_iter().all(|(q, tau)| (q - tau).abs() < 1e-12));
@@ -306,15 +368,34 @@ mod tests {
             *value = f64::from(u8::from(!(100..200).contains(&n)));
         }
         let mut all = [position, valid];
-        let (pieces, _) = align(Path::new("a"), &all).unwrap();
+        let (pieces, _) = cut(&all).unwrap();
         let starts: Vec<i64> = pieces.iter().map(|p| p.start / 10_000_000).collect();
         assert_eq!(starts, [0, 200]);
         assert!(pieces.iter().all(|piece| piece.channels[0].len() == 100));
         all[1].values.fill(0.0);
-        assert!(matches!(
-            align(Path::new("a"), &all),
-            Err(LoadError::TooShort { samples: 0, .. })
-        ));
+        let (pieces, tally) = cut(&all).unwrap();
+        assert_eq!((pieces.len(), tally.not_valid, tally.longest), (0, 300, 0));
+    }
+
+    #[test]
+    fn a_short_hole_is_bridged_and_the_rest_stays_as_it_is() {
+        let ms = 1_000_000;
+        let times = (0..400).filter(|n| !(100..105).contains(n)).map(|n| n * ms);
+        let mut position = series("position", times.collect());
+        for (value, time) in position.values.iter_mut().zip(&position.times) {
+            *value = (*time as f64 * 1e-7).sin();
+        }
+        let known = position.values.clone();
+        let (pieces, tally) = cut(&[position]).unwrap();
+        let [piece] = pieces.as_slice() else {
+            panic!("{} pieces", pieces.len());
+        };
+        assert_eq!((tally.used, tally.bridged), (400, 5));
+        assert!((piece.period - 1e-3).abs() < 1e-12);
+        assert_eq!(piece.channels[0][..100], known[..100]);
+        assert_eq!(piece.channels[0][105..], known[100..]);
+        let middle = known[99] + (known[100] - known[99]) * 0.5;
+        assert!((piece.channels[0][102] - middle).abs() < 1e-12);
     }
 
     proptest! {
@@ -338,7 +419,9 @@ mod tests {
                 }).collect()
             };
             let all = [series("position", sum(&steps)), series("temperature", sum(&slow))];
-            if let Ok((pieces, _)) = align(Path::new("a"), &all) {
+            if let Ok((pieces, tally)) = cut(&all) {
+                let left_out = tally.without_other_signal + tally.in_short_stretches;
+                prop_assert_eq!(tally.used - tally.bridged + left_out, all[0].times.len());
                 for piece in pieces {
                     prop_assert!(piece.period > 0.0);
                     prop_assert!(piece.channels.iter().all(|c| c.len() == piece.channels[0].len()));

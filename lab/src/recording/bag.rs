@@ -5,7 +5,7 @@ use std::{path::Path, sync::Arc};
 use ferntast_bus::mcap::{BagReader, BagTopic, Place, RawMessage};
 use ferntast_msgs::Time;
 
-use super::{LoadError, Series, Wanted};
+use super::{LoadError, Series, Wanted, tally::Tally};
 use crate::{
     message_path::MessagePath,
     numbers::numbers_of,
@@ -48,7 +48,7 @@ pub(super) fn read(
     file: &Path,
     wanted: &[Wanted],
     notes: &mut Vec<String>,
-) -> Result<Vec<Series>, LoadError> {
+) -> Result<(Vec<Series>, Tally), LoadError> {
     let mut signals = Vec::new();
     for each in wanted {
         let path = MessagePath::parse(&each.path).map_err(|source| LoadError::Path {
@@ -106,10 +106,11 @@ pub(super) fn read(
             file.display()
         ));
     }
-    signals
-        .into_iter()
-        .map(|signal| series(file, signal, by_log_time))
-        .collect()
+    let mut tally = Tally::new(file);
+    tally.samples = signals.first().map_or(0, |signal| signal.samples.len());
+    let all = signals.into_iter().zip(wanted);
+    let all = all.map(|(signal, wanted)| series(file, signal, wanted, by_log_time));
+    Ok((all.collect::<Result<_, LoadError>>()?, tally))
 }
 
 /// That the signal's path leads to a number, before anything is read.
@@ -300,16 +301,24 @@ fn of_two_clocks(signals: &[Signal]) -> bool {
     signals.iter().any(|signal| !stamped(signal)) && signals.iter().any(apart)
 }
 
-fn series(file: &Path, mut signal: Signal, by_log_time: bool) -> Result<Series, LoadError> {
+fn series(
+    file: &Path,
+    mut signal: Signal,
+    wanted: &Wanted,
+    by_log_time: bool,
+) -> Result<Series, LoadError> {
     // Messages come in the order of their log times. In the order in which they
     // were written it shows whether time ever ran backwards.
     signal.samples.sort_by_key(|sample| sample.place);
     let stamped = !by_log_time && signal.samples.iter().any(|sample| sample.stamp != 0);
-    let mut series = Series::new(&signal.name, file);
+    let mut series = Series::new(wanted, file);
     for (index, sample) in signal.samples.iter().enumerate() {
         let time = match (stamped, sample.stamp) {
             // A stamp of zero says that the message is not valid.
-            (true, 0) => continue,
+            (true, 0) => {
+                series.miss(|| format!("message {}", index + 1));
+                continue;
+            }
             (true, stamp) => stamp,
             (false, _) => sample.log,
         };

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use ferntast_bus::mcap::{OpenBagError, ReadMessageError, SelectTopicError};
 
 use crate::{
-    csv::CsvError,
     message_path::MessagePathError,
     schema::{DecodeError, SchemaError, SelectError},
+    table::TableError,
 };
 
 /// Why recordings give no data to fit a model to.
@@ -33,14 +33,36 @@ pub enum LoadError {
         source: Box<SelectTopicError>,
     },
     /// Neither a rosbag2 directory nor a file that is read.
-    #[error("{} is no recording that is read: give a rosbag2 directory, an .mcap file or a .csv file", path.display())]
+    #[error("{} is no recording that is read: give a rosbag2 directory, an .mcap file, or a table: {}", path.display(), endings())]
     Kind {
         /// What was given.
         path: PathBuf,
     },
-    /// A CSV file.
+    /// A table.
     #[error(transparent)]
-    Csv(Box<CsvError>),
+    Table(Box<TableError>),
+    /// A column is in several of the files that are joined.
+    #[error("signals.{signal}: column {column:?} is in {}: write {}:{column}", files.join(" and in "), files.first().map_or("", String::as_str))]
+    Ambiguous {
+        /// The signal.
+        signal: String,
+        /// The column asked for.
+        column: String,
+        /// The files that have it.
+        files: Vec<String>,
+    },
+    /// Files that are joined by row have not as many rows.
+    #[error("{} has {rows} rows, {} has {first_rows}: files are joined row by row only where these agree; give both a time column and write join = \"time\"", file.display(), first.display())]
+    Rows {
+        /// The file.
+        file: PathBuf,
+        /// Its rows.
+        rows: u64,
+        /// The first of the files.
+        first: PathBuf,
+        /// Its rows.
+        first_rows: u64,
+    },
     /// A signal's path cannot be read.
     #[error("signals.{signal}: {source}")]
     Path {
@@ -141,17 +163,15 @@ pub enum LoadError {
         /// The recording.
         file: PathBuf,
     },
-    /// A value that is not finite.
-    #[error("signals.{signal} is {value} in {}, {place}: leave that part out of the recording", file.display())]
-    NotFinite {
+    /// Not a single number.
+    #[error("signals.{signal}: none of {samples} samples in {} is a number (NaN or infinite all): is it the right signal?", file.display())]
+    NoNumbers {
         /// The signal.
         signal: String,
-        /// The value.
-        value: f64,
         /// The recording.
         file: PathBuf,
-        /// Message or line.
-        place: String,
+        /// How many there are.
+        samples: usize,
     },
     /// Time runs backwards.
     #[error("time runs backwards by {by} s under signals.{signal} in {}, {place}: cut the recording there, or order it by time", file.display())]
@@ -166,12 +186,16 @@ pub enum LoadError {
         by: f64,
     },
     /// Two signals are never there at the same time.
-    #[error("signals.{signal} ({from:.3} … {to:.3} s) and signals.position ({position_from:.3} … {position_to:.3} s) never overlap in {}: they must be of the same run and clock", file.display())]
+    #[error("signals.{signal} ({from:.3} … {to:.3} s, {}) and signals.position ({position_from:.3} … {position_to:.3} s, {}) never overlap, they are {apart:.3} s apart: they must be of the same run and clock; where only the clocks differ, shift one by .@add(…) on its time", file.display(), position_file.display())]
     NoOverlap {
         /// The signal.
         signal: String,
         /// The recording.
         file: PathBuf,
+        /// The position's.
+        position_file: PathBuf,
+        /// From the end of the earlier to the beginning of the later \[s\].
+        apart: f64,
         /// Its first time \[s\].
         from: f64,
         /// Its last time \[s\].
@@ -183,13 +207,15 @@ pub enum LoadError {
     },
     /// A signal does not move at all.
     #[error(
-        "signals.{signal} is {value} in every sample of {recordings}: nothing can be learnt from a constant; is it the right signal?"
+        "signals.{signal} is {value} {unit} in every sample of {recordings}: nothing can be learnt from a constant; is it the right signal?"
     )]
     Constant {
         /// The signal.
         signal: String,
         /// Its value.
         value: f64,
+        /// Its unit; may be empty.
+        unit: String,
         /// The recordings.
         recordings: String,
     },
@@ -204,7 +230,7 @@ pub enum LoadError {
         needed: usize,
     },
     /// Sampled so slowly that it must be another unit.
-    #[error("signals.{signal} in {} comes every {period} s: time is in seconds here; if the column is in another unit, add .@div(…) to signals.time", file.display())]
+    #[error("signals.{signal} in {} comes every {period} s: time is in seconds here; if the column is in another unit, write time = {{ column = \"…\", unit = \"ms\" }} (or us, ns) under [signals]", file.display())]
     TooSlow {
         /// The signal.
         signal: String,
@@ -234,8 +260,14 @@ fn longest(length: Option<u64>) -> String {
     })
 }
 
-impl From<CsvError> for LoadError {
-    fn from(error: CsvError) -> LoadError {
-        LoadError::Csv(Box::new(error))
+fn endings() -> String {
+    let names = crate::table::ENDINGS.iter();
+    let names: Vec<String> = names.map(|(name, _)| format!(".{name}")).collect();
+    names.join(", ")
+}
+
+impl From<TableError> for LoadError {
+    fn from(error: TableError) -> LoadError {
+        LoadError::Table(Box::new(error))
     }
 }

@@ -6,25 +6,32 @@
 //!   temperature) stands for one of its own periods at its ends.
 //! * Time is the message's header stamp where it has a `std_msgs/Header` at
 //!   `header`, else the log time; a stamp of zero says that the message is not
-//!   valid. In CSV it is a column \[s\].
+//!   valid. In a table it is a column, or comes from the rate.
 //! * A session ends where the position, or another signal, has a gap, where
-//!   `valid` is not above 0.5, and with the file. Stretches of fewer than 50
-//!   samples are left out.
+//!   `valid` is not above 0.5, and with the file. Stretches that are too short for
+//!   a fit are left out. Samples that are no numbers are as if they were not there;
+//!   a hole of up to ten samples is bridged by a straight line, a longer one is a gap.
 //! * Unevenly sampled sessions are interpolated onto their mean period.
 //! * Sessions keep the time between them where files carry a date; files whose
 //!   clock starts again are put one behind the other.
 
 mod align;
 mod bag;
+mod columns;
 mod error;
+mod plausible;
+mod series;
+mod tally;
 
 use std::path::{Path, PathBuf};
 
 use ferntast_identification::{Dataset, RecordedSession};
 
-use crate::{csv, experiment::Experiment};
+use crate::{experiment::Experiment, table::Format};
 
 pub use error::LoadError;
+use series::{Series, Wanted};
+pub use tally::Tally;
 
 /// The signal that says which samples count.
 const VALID: &str = "valid";
@@ -36,60 +43,6 @@ const TIP_Y: &str = "tip[1]";
 /// Times above this are dates: 1973 \[ns\] since 1970.
 const DATES: i64 = 100_000_000_000_000_000;
 
-/// One signal as it was recorded.
-#[derive(Debug)]
-struct Series {
-    signal: String,
-    file: PathBuf,
-    /// \[ns\], ascending.
-    times: Vec<i64>,
-    values: Vec<f64>,
-}
-
-impl Series {
-    fn new(signal: &str, file: &Path) -> Series {
-        Series {
-            signal: signal.to_owned(),
-            file: file.to_owned(),
-            times: Vec::new(),
-            values: Vec::new(),
-        }
-    }
-
-    /// Takes a sample; `place` names it in errors. A second sample of the same
-    /// time is the first one sent again, and left out.
-    fn push(&mut self, time: i64, value: f64, place: impl Fn() -> String) -> Result<(), LoadError> {
-        if !value.is_finite() {
-            return Err(LoadError::NotFinite {
-                signal: self.signal.clone(),
-                value,
-                file: self.file.clone(),
-                place: place(),
-            });
-        }
-        match self.times.last() {
-            Some(&last) if time < last => Err(LoadError::Backwards {
-                signal: self.signal.clone(),
-                file: self.file.clone(),
-                place: place(),
-                by: last.saturating_sub(time) as f64 * 1e-9,
-            }),
-            Some(&last) if time == last => Ok(()),
-            _ => {
-                self.times.push(time);
-                self.values.push(value);
-                Ok(())
-            }
-        }
-    }
-}
-
-/// A signal to be read.
-struct Wanted {
-    signal: String,
-    path: String,
-}
-
 /// Data, and what should be known of how they were read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
@@ -97,6 +50,8 @@ pub struct Loaded {
     pub dataset: Dataset,
     /// Sentences for the user: what was left out, what looks odd.
     pub notes: Vec<String>,
+    /// What of each recording is used.
+    pub tallies: Vec<Tally>,
 }
 
 /// Reads what an experiment names.
@@ -114,14 +69,23 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
     let wanted = wanted(experiment);
     let mut notes = Vec::new();
     let mut clock = Clock::default();
+    let mut tallies = Vec::new();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<RecordedSession>, LoadError> {
         let mut sessions = Vec::new();
         for path in paths {
-            sessions.extend(read_file(
-                experiment, path, &wanted, &mut clock, &mut notes,
-            )?);
+            let (own, tally) = read_file(experiment, path, &wanted, &mut clock, &mut notes)?;
+            sessions.extend(own);
+            tallies.push(tally);
         }
-        Ok(sessions)
+        // One that is too short is left out, but not the last one.
+        match (sessions.is_empty(), tallies.last()) {
+            (true, Some(tally)) if !paths.is_empty() => Err(LoadError::TooShort {
+                file: tally.file.clone(),
+                samples: tally.longest,
+                needed: align::SHORTEST,
+            }),
+            _ => Ok(sessions),
+        }
     };
     let mut sessions = read(&experiment.recordings)?;
     let mut unloaded = read(&experiment.unloaded)?;
@@ -145,6 +109,7 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
             filter: experiment.filter,
         },
         notes,
+        tallies,
     })
 }
 
@@ -179,10 +144,21 @@ fn wanted(experiment: &Experiment) -> Vec<Wanted> {
     }
     let extra = signals.extra.iter();
     wanted.extend(extra.map(|(name, path)| (format!("extra.{name}"), path.clone())));
-    let wanted = wanted.into_iter();
-    wanted
-        .map(|(signal, path)| Wanted { signal, path })
-        .collect()
+    let wanted = wanted.into_iter().map(|(signal, path)| {
+        let key = match signal.as_str() {
+            TIP_X | TIP_Y => "tip",
+            key => key,
+        };
+        // The unit of an extra signal is for people.
+        let unit = signals.unit(key).filter(|_| !key.starts_with("extra."));
+        Wanted {
+            unit,
+            time: signals.times.get(key).cloned(),
+            signal,
+            path,
+        }
+    });
+    wanted.collect()
 }
 
 /// Where the sessions of the next file lie in time.
@@ -212,13 +188,31 @@ fn read_file(
     wanted: &[Wanted],
     clock: &mut Clock,
     notes: &mut Vec<String>,
-) -> Result<Vec<RecordedSession>, LoadError> {
-    let series = read_series(experiment, path, wanted, notes)?;
-    let (pieces, left_out) = align::align(path, &series)?;
-    if left_out > 0 {
+) -> Result<(Vec<RecordedSession>, Tally), LoadError> {
+    let (series, mut tally) = read_series(experiment, path, wanted, notes)?;
+    for own in &series {
+        if own.times.is_empty() {
+            return Err(LoadError::NoNumbers {
+                signal: own.signal.clone(),
+                file: own.file.clone(),
+                samples: own.missing,
+            });
+        }
+    }
+    if let Some(position) = series.first() {
+        tally.without_number = position.missing;
+        tally.repeated_time = position.repeated;
+    }
+    tell_holes(&series, notes);
+    plausible::check(experiment, &series, notes);
+    let pieces = align::align(path, &series, &mut tally)?;
+    drop(series);
+    if tally.short_stretches > 0 {
         notes.push(format!(
-            "{}: {left_out} samples left out, in stretches of fewer than {} without a gap",
+            "{}: {} samples left out, in {} stretches of fewer than {} without a gap",
             path.display(),
+            tally.in_short_stretches,
+            tally.short_stretches,
             align::SHORTEST
         ));
     }
@@ -263,7 +257,26 @@ fn read_file(
         clock.end = clock.end.max(start + session.period * session.len() as f64);
         sessions.push(session);
     }
-    Ok(sessions)
+    Ok((sessions, tally))
+}
+
+/// Tells where samples are no numbers, or have no time of their own.
+fn tell_holes(series: &[Series], notes: &mut Vec<String>) {
+    for own in series {
+        let (signal, file) = (&own.signal, own.file.display());
+        if let Some(first) = &own.first_missing {
+            notes.push(format!(
+                "{file}: signals.{signal} has {} samples without a number or time, the first in {first}: up to ten in a row are bridged, more are cut out",
+                own.missing
+            ));
+        }
+        if own.repeated > 0 {
+            notes.push(format!(
+                "{file}: {} samples of signals.{signal} have the time of the one before and are left out; if many, the time has too few digits: give rate_hz instead",
+                own.repeated
+            ));
+        }
+    }
 }
 
 fn read_series(
@@ -271,42 +284,18 @@ fn read_series(
     path: &Path,
     wanted: &[Wanted],
     notes: &mut Vec<String>,
-) -> Result<Vec<Series>, LoadError> {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    let is = |wanted: &str| ending.as_deref().is_some_and(|ending| ending == wanted);
-    if is("csv") && !path.is_dir() {
-        return read_csv(experiment, path, wanted);
+) -> Result<(Vec<Series>, Tally), LoadError> {
+    if Format::of(path).is_some() && !path.is_dir() {
+        return columns::read(experiment, path, wanted, notes);
     }
-    if path.is_dir() || is("mcap") || !path.exists() {
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    let is_mcap = ending.is_some_and(|ending| ending == "mcap");
+    if path.is_dir() || is_mcap || !path.exists() {
         return bag::read(path, wanted, notes);
     }
     Err(LoadError::Kind {
         path: path.to_owned(),
     })
-}
-
-fn read_csv(
-    experiment: &Experiment,
-    path: &Path,
-    wanted: &[Wanted],
-) -> Result<Vec<Series>, LoadError> {
-    let names: Vec<(&str, &str)> = wanted
-        .iter()
-        .map(|each| (each.signal.as_str(), each.path.as_str()))
-        .collect();
-    let columns = csv::read_file(path, experiment.signals.time.as_deref(), &names)?;
-    let mut all = Vec::new();
-    for (each, values) in wanted.iter().zip(&columns.values) {
-        let mut series = Series::new(&each.signal, path);
-        let rows = columns.time.iter().zip(values).zip(&columns.lines);
-        for ((&time, &value), line) in rows {
-            // Beyond 292 years the time saturates, and so ends the series.
-            let nanos = (time * 1e9).round() as i64;
-            series.push(nanos, value, || format!("line {line}"))?;
-        }
-        all.push(series);
-    }
-    Ok(all)
 }
 
 fn check_constant(
@@ -338,6 +327,7 @@ fn check_constant(
         let error = LoadError::Constant {
             signal: signal.to_owned(),
             value,
+            unit: experiment.unit_of(signal),
             recordings: experiment
                 .recordings
                 .iter()

@@ -8,7 +8,7 @@ use std::{
 use ferntast_identification::{Addition, CustomEffect, Term, add, fit::Parameter};
 use serde::Serialize;
 
-use super::{Opened, WorkError};
+use super::{Opened, WorkError, units};
 use crate::experiment::{FittedParameter, NextStep, write_child};
 
 /// What one addition did.
@@ -98,8 +98,9 @@ impl Opened {
     ///
     /// [`WorkError::Prepare`], [`WorkError::Write`]; nothing is written then.
     pub fn add(&self, effect: &Term, output: &Path) -> Result<Added, WorkError> {
-        let addition: Addition = add(&self.dataset, &self.experiment.model, effect)
+        let mut addition: Addition = add(&self.dataset, &self.experiment.model, effect)
             .map_err(|error| self.refuse(error))?;
+        units::in_units_of(&self.experiment, &mut addition.parameters);
         let step = NextStep {
             effect: Some(effect.clone()),
             twin_recording: None,

@@ -6,6 +6,7 @@ use ferntast_identification::PrepareError;
 
 use crate::{
     experiment::{ExperimentError, WriteError},
+    guess::Role,
     recording::LoadError,
 };
 
@@ -18,9 +19,9 @@ pub enum WorkError {
     /// A recording cannot be used.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// A CSV file cannot be used.
+    /// A table cannot be used.
     #[error(transparent)]
-    Csv(#[from] crate::csv::CsvError),
+    Table(#[from] crate::table::TableError),
     /// The data or the model lack something.
     #[error("{title}: {source}")]
     Prepare {
@@ -33,7 +34,7 @@ pub enum WorkError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// A new file would lie over another one.
-    #[error("{path} exists already: choose another name")]
+    #[error("{path} exists already: choose another name, or --force to write over it")]
     Exists {
         /// The file.
         path: PathBuf,
@@ -79,4 +80,48 @@ pub enum WorkError {
     /// A custom effect is not described as it has to be.
     #[error("{0}")]
     OwnEffect(String),
+}
+
+/// Why there is no new experiment file.
+#[derive(Debug, thiserror::Error)]
+pub enum NewError {
+    /// No file was given.
+    #[error("name a recording: a table (.csv, …), an .mcap file, or a folder")]
+    NoFile,
+    /// A folder without recordings.
+    #[error("{}: neither .mcap files nor tables in it", path.display())]
+    EmptyFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Tables and messages together.
+    #[error("tables and MCAP recordings cannot be in one experiment: name one kind")]
+    Mixed,
+    /// The user has to say which column is a signal.
+    #[error("which column is the {}? {why}; say {} COLUMN or COLUMN:UNIT{}; columns: {}", role.key(), option(*role), suggested(choices), columns.join(", "))]
+    Unsure {
+        /// The signal.
+        role: Role,
+        /// Why it is not clear.
+        why: String,
+        /// What it can be, best first; may be empty.
+        choices: Vec<String>,
+        /// The columns that there are.
+        columns: Vec<String>,
+    },
+    /// The recordings cannot be used, or the file not be written.
+    #[error(transparent)]
+    Work(#[from] WorkError),
+}
+
+/// The option that says which column a signal is.
+fn option(role: Role) -> String {
+    format!("--{}", role.key().replace('_', "-"))
+}
+
+fn suggested(choices: &[String]) -> String {
+    match choices {
+        [] => String::new(),
+        choices => format!(" ({})", choices.join(" or ")),
+    }
 }

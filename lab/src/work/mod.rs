@@ -2,10 +2,14 @@
 //! open it, hold its model against its recordings, add an effect.
 
 mod add;
+mod document;
 mod error;
+mod new;
 mod paths;
+mod sources;
 mod start;
 mod twin;
+mod units;
 
 use std::path::Path;
 
@@ -15,11 +19,12 @@ use ferntast_identification::{
 
 use crate::{
     experiment::{self, Experiment},
-    recording,
+    recording::{self, Tally},
 };
 
 pub use add::{Added, beside, own_effect};
-pub use error::WorkError;
+pub use error::{NewError, WorkError};
+pub use new::{Made, NewSignal, Request, Said, make};
 pub use paths::{Offered, offered};
 pub use start::{Beginning, start};
 pub use twin::{FromTwin, from_twin};
@@ -33,13 +38,15 @@ pub struct Opened {
     pub dataset: Dataset,
     /// What was noticed while reading.
     pub notes: Vec<String>,
+    /// What of each recording is used.
+    pub tallies: Vec<Tally>,
 }
 
 impl Opened {
     /// Unit of torques or forces.
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
-        self.experiment.joint.force_unit()
+        self.experiment.force_unit()
     }
 
     /// Reads the recordings of `experiment`.
@@ -53,6 +60,7 @@ impl Opened {
             experiment,
             dataset: loaded.dataset,
             notes: loaded.notes,
+            tallies: loaded.tallies,
         })
     }
 
@@ -62,7 +70,7 @@ impl Opened {
     ///
     /// [`WorkError::Prepare`]: what data or model lack.
     pub fn compare(&self) -> Result<Comparison, WorkError> {
-        compare(&self.dataset, &self.experiment.model).map_err(|error| self.refuse(error))
+        self.compare_drawing_with(None)
     }
 
     /// The same, with up to `most` points of each session to be drawn.
@@ -71,8 +79,19 @@ impl Opened {
     ///
     /// [`WorkError::Prepare`]: what data or model lack.
     pub fn compare_drawing(&self, most: usize) -> Result<Comparison, WorkError> {
-        compare_drawing(&self.dataset, &self.experiment.model, most)
-            .map_err(|error| self.refuse(error))
+        self.compare_drawing_with(Some(most))
+    }
+
+    fn compare_drawing_with(&self, most: Option<usize>) -> Result<Comparison, WorkError> {
+        let model = &self.experiment.model;
+        let found = match most {
+            Some(most) => compare_drawing(&self.dataset, model, most),
+            None => compare(&self.dataset, model),
+        };
+        let mut comparison = found.map_err(|error| self.refuse(error))?;
+        units::in_units_of(&self.experiment, &mut comparison.parameters);
+        units::maps(&self.experiment, &mut comparison.residual_maps);
+        Ok(comparison)
     }
 
     /// Which effect is missing. `progress` is called with the share done, 0 … 1.
@@ -81,8 +100,12 @@ impl Opened {
     ///
     /// [`WorkError::Prepare`]: what data or model lack.
     pub fn diagnose(&self, progress: &mut dyn FnMut(f64)) -> Result<Diagnosis, WorkError> {
-        diagnose(&self.dataset, &self.experiment.model, progress)
-            .map_err(|error| self.refuse(error))
+        let found = diagnose(&self.dataset, &self.experiment.model, progress);
+        let mut diagnosis = found.map_err(|error| self.refuse(error))?;
+        for candidate in &mut diagnosis.candidates {
+            units::in_units_of(&self.experiment, &mut candidate.parameters);
+        }
+        Ok(diagnosis)
     }
 
     fn refuse(&self, source: ferntast_identification::PrepareError) -> WorkError {

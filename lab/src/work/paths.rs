@@ -6,34 +6,34 @@ use ferntast_bus::mcap::BagReader;
 use serde::Serialize;
 
 use super::WorkError;
-use crate::{csv, experiment::ExperimentError, numbers::numbers_of};
+use crate::{
+    experiment::ExperimentError,
+    numbers::numbers_of,
+    table::{Format, Table},
+};
 
 /// The numbers of a recording that can be signals.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Offered {
-    /// Message paths; of a CSV file the names of its columns.
+    /// Message paths; of a table the names of its columns.
     pub paths: Vec<String>,
-    /// Of a CSV file the column that is taken for time.
+    /// Of a table the column that is taken for time.
     pub time: Option<String>,
     /// Whether it is a recording of ferntast's own, which needs no mapping.
     pub own: bool,
 }
 
-/// What the recording at `path` (a rosbag2 directory, `.mcap` or `.csv`) offers.
+/// What the recording at `path` (a rosbag2 directory, `.mcap` or a table) offers.
 ///
 /// # Errors
 ///
 /// It cannot be read.
 pub fn offered(path: &Path) -> Result<Offered, WorkError> {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-    if ending.is_some_and(|ending| ending == "csv") && !path.is_dir() {
-        let paths = csv::column_names(path)?;
-        let time = csv::TIME_COLUMNS
-            .iter()
-            .find(|name| paths.iter().any(|column| column == *name));
+    if Format::of(path).is_some() && !path.is_dir() {
+        let table = Table::open(path, &[])?;
         return Ok(Offered {
-            time: time.map(|name| (*name).to_owned()),
-            paths,
+            time: table.time_column().map(str::to_owned),
+            paths: table.names(),
             own: false,
         });
     }

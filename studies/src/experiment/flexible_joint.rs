@@ -21,7 +21,7 @@ use ferntast_identification::{
     experiments::flexible_joint::{FlexibleJointSignals, Inertias, Row, rows},
 };
 use ferntast_lab::{
-    experiment::{Experiment, RECORD, Signals},
+    experiment::{Experiment, RECORD, Reading, Signals},
     recording,
 };
 use ferntast_msgs::{
@@ -115,6 +115,8 @@ pub fn read(folder: &Path) -> Result<[Vec<Row>; 3], IdentifyError> {
         path: None,
         title: "flexible joint".to_owned(),
         recordings: vec![folder.to_owned()],
+        joined: BTreeMap::new(),
+        reading: Reading::default(),
         held_out: Vec::new(),
         unloaded: Vec::new(),
         filter: None,

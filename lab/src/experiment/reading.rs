@@ -1,0 +1,52 @@
+//! How the files of an experiment are read.
+
+use serde::{Deserialize, Serialize};
+
+use super::{ExperimentError, file};
+
+/// How tables are read, where they do not say it themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// Names of the columns: none, one list for all files, or of files that are
+    /// joined one each.
+    pub columns: Vec<Vec<String>>,
+    /// Rows in a second, in place of a column that is time \[Hz\].
+    pub rate_hz: Option<f64>,
+    /// How files are joined; `None`: by time where each has one, else by row.
+    pub join: Option<Join>,
+}
+
+/// How files that were recorded together are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Join {
+    /// Signals of all files onto the times of the position.
+    Time,
+    /// The n-th row of each file belongs to the n-th of the first.
+    Row,
+}
+
+/// What the file says of that.
+pub(super) fn reading(
+    columns: file::ColumnNames,
+    rate_hz: Option<f64>,
+    join: Option<Join>,
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<Reading, ExperimentError> {
+    if let Some(rate) = rate_hz
+        && !(1e-3..=1e8).contains(&rate)
+    {
+        let reason = format!("{rate} is outside 0.001 … 100000000 Hz");
+        return Err(refuse("rate_hz", reason));
+    }
+    let columns = match columns {
+        file::ColumnNames::Same(names) if names.is_empty() => Vec::new(),
+        file::ColumnNames::Same(names) => vec![names],
+        file::ColumnNames::Each(lists) => lists,
+    };
+    Ok(Reading {
+        columns,
+        rate_hz,
+        join,
+    })
+}

@@ -1,0 +1,10 @@
+//! What names and numbers say of a signal and its unit. Pure: what was seen of a
+//! file is an argument.
+
+mod names;
+mod roles;
+mod values;
+
+pub use names::unit_in_name;
+pub use roles::{Role, by_name};
+pub use values::{angle_unit, time_unit};

@@ -1,0 +1,92 @@
+//! One signal as it was recorded.
+
+use std::path::{Path, PathBuf};
+
+use super::LoadError;
+use crate::unit::Unit;
+
+/// A signal to be read.
+pub(super) struct Wanted {
+    pub(super) signal: String,
+    /// Message path or column.
+    pub(super) path: String,
+    /// The unit of what the path gives, where it is stated.
+    pub(super) unit: Option<Unit>,
+    /// The column that is this signal's own time.
+    pub(super) time: Option<String>,
+}
+
+/// One signal as it was recorded.
+#[derive(Debug)]
+pub(super) struct Series {
+    pub(super) signal: String,
+    pub(super) file: PathBuf,
+    unit: Option<Unit>,
+    /// \[ns\], ascending.
+    pub(super) times: Vec<i64>,
+    pub(super) values: Vec<f64>,
+    /// Samples without a number.
+    pub(super) missing: usize,
+    /// Where the first of them is.
+    pub(super) first_missing: Option<String>,
+    /// Samples with the time of the one before.
+    pub(super) repeated: usize,
+}
+
+impl Series {
+    pub(super) fn new(wanted: &Wanted, file: &Path) -> Series {
+        Series {
+            signal: wanted.signal.clone(),
+            file: file.to_owned(),
+            unit: wanted.unit,
+            times: Vec::new(),
+            values: Vec::new(),
+            missing: 0,
+            first_missing: None,
+            repeated: 0,
+        }
+    }
+
+    /// Counts a sample without a number; `place` names it.
+    pub(super) fn miss(&mut self, place: impl Fn() -> String) {
+        self.missing += 1;
+        self.first_missing.get_or_insert_with(place);
+    }
+
+    /// Takes a sample; `place` names it in errors. A second sample of the same
+    /// time is the first one sent again, and left out.
+    pub(super) fn push(
+        &mut self,
+        time: i64,
+        value: f64,
+        place: impl Fn() -> String,
+    ) -> Result<(), LoadError> {
+        if !value.is_finite() {
+            self.miss(place);
+            return Ok(());
+        }
+        match self.times.last() {
+            Some(&last) if time < last => Err(LoadError::Backwards {
+                signal: self.signal.clone(),
+                file: self.file.clone(),
+                place: place(),
+                by: last.saturating_sub(time) as f64 * 1e-9,
+            }),
+            Some(&last) if time == last => {
+                self.repeated += 1;
+                Ok(())
+            }
+            _ => {
+                self.times.push(time);
+                let value = self.unit.map_or(value, |unit| unit.convert(value));
+                self.values.push(value);
+                Ok(())
+            }
+        }
+    }
+
+    /// Median interval \[s\]; 0 without two samples.
+    pub(super) fn interval(&self) -> f64 {
+        super::align::median_interval(self) as f64 * 1e-9
+    }
+}

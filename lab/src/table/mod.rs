@@ -1,0 +1,237 @@
+//! Tables: columns of numbers in one file, whatever its format.
+//!
+//! * [`text`]: `.csv`, `.tsv`, `.txt`, `.dat`,
+//! * what else there is, stands in [`Format`].
+
+pub mod error;
+mod survey;
+pub mod text;
+
+use std::path::{Path, PathBuf};
+
+pub use error::TableError;
+pub use survey::ColumnSurvey;
+pub use text::number::Cell;
+
+use crate::message_path::{Function, functions_of};
+use text::dialect::Dialect;
+
+/// Names of the column that is time, where none is given; the first column of
+/// the file that has one of them is it.
+pub const TIME_COLUMNS: [&str; 4] = ["t_s", "time", "timestamp", "t"];
+
+/// What a file holds, by the ending of its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Text: CSV and its relatives.
+    Text,
+}
+
+/// The endings of files that hold tables.
+pub const ENDINGS: [(&str, Format); 4] = [
+    ("csv", Format::Text),
+    ("tsv", Format::Text),
+    ("txt", Format::Text),
+    ("dat", Format::Text),
+];
+
+impl Format {
+    /// The format of the file at `path`; `None` where its name does not end as
+    /// that of a table.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Format> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        let mut known = ENDINGS.iter();
+        known
+            .find(|(name, _)| *name == ending)
+            .map(|(_, format)| *format)
+    }
+}
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Its unit, where the file says it apart from the name.
+    pub unit: Option<String>,
+}
+
+/// A file with columns of numbers. Rows are read from the file each time.
+#[derive(Clone, Debug)]
+pub struct Table {
+    path: PathBuf,
+    columns: Vec<Column>,
+    named: bool,
+    content: Content,
+}
+
+#[derive(Clone, Debug)]
+enum Content {
+    Text(Dialect),
+}
+
+/// A column that a signal is made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selected {
+    /// Which column it is.
+    pub index: usize,
+    /// The column's name.
+    pub name: String,
+    /// What is done to its values.
+    pub functions: Vec<Function>,
+}
+
+impl Selected {
+    /// A value with the functions done to it.
+    #[must_use]
+    pub fn apply(&self, value: f64) -> f64 {
+        let functions = self.functions.iter();
+        functions.fold(value, |value, function| function.apply(value))
+    }
+}
+
+impl Table {
+    /// Looks at the file at `path`. `columns` are the columns' names in place of
+    /// those in the file; none: as the file says.
+    ///
+    /// # Errors
+    ///
+    /// It cannot be read, is empty, or has another number of columns.
+    pub fn open(path: &Path, columns: &[String]) -> Result<Table, TableError> {
+        let dialect = text::look(path)?;
+        let units = dialect.units.iter().cloned();
+        let mut own: Vec<Column> = dialect
+            .names
+            .iter()
+            .zip(units.chain(std::iter::repeat(None)))
+            .map(|(name, unit)| Column {
+                name: name.clone(),
+                unit,
+            })
+            .collect();
+        let mut named = dialect.named;
+        if !columns.is_empty() {
+            if columns.len() != own.len() {
+                return Err(TableError::Names {
+                    path: path.to_owned(),
+                    given: columns.len(),
+                    there: own.len(),
+                });
+            }
+            named = true;
+            for (column, name) in own.iter_mut().zip(columns) {
+                column.name.clone_from(name);
+            }
+        }
+        Ok(Table {
+            path: path.to_owned(),
+            columns: own,
+            named,
+            content: Content::Text(dialect),
+        })
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its columns, in order.
+    #[must_use]
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The columns' names, in order.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        self.columns.iter().map(|own| own.name.clone()).collect()
+    }
+
+    /// Whether the names were given, by the file or otherwise.
+    #[must_use]
+    pub fn is_named(&self) -> bool {
+        self.named
+    }
+
+    /// About how many rows it has.
+    #[must_use]
+    pub fn estimated_rows(&self) -> u64 {
+        match &self.content {
+            Content::Text(dialect) => {
+                let bytes = self.path.metadata().map_or(0, |data| data.len());
+                (bytes as f64 / dialect.row_bytes.max(1.0)).ceil() as u64
+            }
+        }
+    }
+
+    /// The column called `name`, which may end in functions as a message path does.
+    ///
+    /// # Errors
+    ///
+    /// There is none of that name, or more than one; the function is none.
+    pub fn select(&self, signal: &str, name: &str) -> Result<Selected, TableError> {
+        let has = |name: &str| self.columns.iter().any(|column| column.name == name);
+        let (plain, functions) = match has(name) {
+            true => (name, Vec::new()),
+            false => functions_of(name).map_err(|source| TableError::Function {
+                signal: signal.to_owned(),
+                source,
+            })?,
+        };
+        let of_that_name = self.columns.iter().enumerate();
+        let mut places = of_that_name.filter(|(_, column)| column.name == plain);
+        match (places.next(), places.next()) {
+            (None, _) => Err(TableError::NoColumn {
+                signal: signal.to_owned(),
+                path: self.path.clone(),
+                column: plain.to_owned(),
+                columns: crate::nearest(plain, self.columns.iter().map(|own| own.name.as_str())),
+            }),
+            (Some(_), Some(_)) => Err(TableError::Twice {
+                signal: signal.to_owned(),
+                path: self.path.clone(),
+                column: plain.to_owned(),
+            }),
+            (Some((index, _)), None) => Ok(Selected {
+                index,
+                name: plain.to_owned(),
+                functions,
+            }),
+        }
+    }
+
+    /// The column of [`TIME_COLUMNS`], in the order of the file.
+    #[must_use]
+    pub fn time_column(&self) -> Option<&str> {
+        let mut names = self.columns.iter().map(|own| own.name.as_str());
+        names.find(|name| TIME_COLUMNS.contains(name))
+    }
+
+    /// Calls `visit` with the place (a line or a row, counted from 1) and the
+    /// cells of the columns `wanted` of every row, in order. Tells whether the
+    /// file is cut off within its last row, which is left out then.
+    ///
+    /// # Errors
+    ///
+    /// What `visit` says; the file cannot be read.
+    pub fn rows<E: From<TableError>>(
+        &self,
+        wanted: &[usize],
+        visit: impl FnMut(u64, &[Cell<'_>]) -> Result<(), E>,
+    ) -> Result<bool, E> {
+        match &self.content {
+            Content::Text(dialect) => text::rows(&self.path, dialect, wanted, visit),
+        }
+    }
+
+    /// What a place is called in messages.
+    #[must_use]
+    pub fn place(&self, number: u64) -> String {
+        match &self.content {
+            Content::Text(_) => format!("line {number}"),
+        }
+    }
+}
