@@ -130,7 +130,6 @@ pub(super) struct SignalsTable {
     pub(super) position: Option<Source>,
     /// Of a contact, in place of the position: x and y of the tip.
     pub(super) tip: Option<[String; 2]>,
-    pub(super) velocity: Option<Source>,
     pub(super) motor_torque: Option<Source>,
     pub(super) joint_torque: Option<Source>,
     pub(super) tangential_force: Option<Source>,

@@ -13,7 +13,6 @@
 //! [signals]                     # message paths; in CSV names of columns
 //! position = "/joint_states.position[0]"      # rad
 //! motor_torque = "/motor.effort[0]"           # Nm; { column = "u", unit = "V" } where it is none
-//! velocity = "/joint_states.velocity[0]"      # rad/s, optional
 //! joint_torque = "/joint_states.effort[0]"    # Nm, optional
 //! temperature = "/temperature.temperature"    # degC, optional
 //! valid = "/drive.enabled"                    # optional: what counts, where it is above 0.5

@@ -16,8 +16,6 @@ pub struct Signals {
     pub position: String,
     /// y of the tip \[m\].
     pub tip_y: Option<String>,
-    /// q̇ \[rad/s\], where it is measured.
-    pub velocity: Option<String>,
     /// τ_m \[Nm\]; of a contact F_T \[N\].
     pub motor_torque: String,
     /// F_N \[N\] of a contact.
@@ -52,7 +50,6 @@ impl Signals {
     /// The signals of a joint that have a unit, with their paths.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let optional = [
-            ("velocity", &self.velocity),
             ("joint_torque", &self.joint_torque),
             ("normal_force", &self.normal_force),
             ("temperature", &self.temperature),
@@ -95,8 +92,6 @@ impl Experiment {
         let unit = match key {
             "position" | "place" if revolute => "rad",
             "position" | "place" => "m",
-            "velocity" if revolute => "rad/s",
-            "velocity" => "m/s",
             "motor_torque" | "joint_torque" | "normal_force" | "tangential_force" => {
                 self.force_unit()
             }
@@ -113,8 +108,6 @@ fn quantities(key: &str, joint: JointType) -> &'static [Quantity] {
     match (key, joint) {
         ("position", JointType::Revolute) => &[Quantity::Angle],
         ("position" | "tip", _) => &[Quantity::Length],
-        ("velocity", JointType::Revolute) => &[Quantity::AngularVelocity],
-        ("velocity", _) => &[Quantity::Velocity],
         ("motor_torque" | "joint_torque", JointType::Revolute) => {
             &[Quantity::Torque, Quantity::Drive]
         }
@@ -185,7 +178,6 @@ pub(super) fn signals(
     let joint_only = [
         ("motor_torque", table.motor_torque.is_some()),
         ("joint_torque", table.joint_torque.is_some()),
-        ("velocity", table.velocity.is_some()),
     ];
     let (others, of) = match joint.is_contact() {
         true => (&joint_only[..], "a joint, but this is a [contact]"),
@@ -232,7 +224,6 @@ pub(super) fn signals(
     let mut signals = Signals {
         position: taker.take("position", position)?,
         tip_y,
-        velocity: taker.maybe("velocity", table.velocity)?,
         motor_torque: taker.take(key, force)?,
         normal_force: taker.maybe("normal_force", normal_force)?,
         joint_torque: taker.maybe("joint_torque", table.joint_torque)?,

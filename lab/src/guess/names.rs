@@ -18,6 +18,11 @@ pub fn unit_in_name(name: &str) -> (&str, Option<Unit>) {
             return (bare.trim_end(), Some(unit));
         }
     }
+    for (ending, unit) in [("_rad_s", "rad/s"), ("_deg_s", "deg/s"), ("_m_s", "m/s")] {
+        if let Some(bare) = name.strip_suffix(ending) {
+            return (bare, Unit::parse(unit));
+        }
+    }
     for sign in [" / ", "/", "_in_", "_", "-", " "] {
         if let Some((bare, unit)) = name.rsplit_once(sign)
             && !bare.is_empty()
@@ -55,6 +60,7 @@ mod tests {
             ("t/ms", "t", Some("ms")),
             ("torque_Nm", "torque", Some("Nm")),
             ("temp_C", "temp", Some("degC")),
+            ("qd_rad_s", "qd", Some("rad/s")),
             ("q_1", "q_1", None),
             ("q", "q", None),
             ("/js.position_deg", "/js.position_deg", None),

@@ -13,8 +13,6 @@ pub enum Role {
     Time,
     /// q.
     Position,
-    /// q̇.
-    Velocity,
     /// τ_m, or what goes into the drive.
     MotorTorque,
     /// τ.
@@ -30,7 +28,6 @@ impl Role {
         match self {
             Role::Time => "time",
             Role::Position => "position",
-            Role::Velocity => "velocity",
             Role::MotorTorque => "motor_torque",
             Role::JointTorque => "joint_torque",
             Role::Temperature => "temperature",
@@ -55,15 +52,6 @@ impl Role {
                 ("phi", None),
                 ("qm", None),
                 ("x", Some("m")),
-            ],
-            Role::Velocity => &[
-                ("qd", None),
-                ("dq", None),
-                ("qdot", None),
-                ("velocity", None),
-                ("vel", None),
-                ("speed", None),
-                ("omega", None),
             ],
             Role::MotorTorque => &[
                 ("motor_torque", None),
@@ -153,7 +141,6 @@ mod tests {
             one(Role::MotorTorque),
             Some(("motor_current (A)", Some("A")))
         );
-        assert_eq!(one(Role::Velocity), Some(("qd", None)));
         assert_eq!(one(Role::Temperature), Some(("temp_C", None)));
         assert_eq!(one(Role::JointTorque), None);
         let paths = ["/js.position[0]", "/js.position[1]", "/js.effort[0]"];

@@ -1,8 +1,9 @@
 //! Tables: columns of numbers in one file, whatever its format.
 //!
 //! * [`text`]: `.csv`, `.tsv`, `.txt`, `.dat`,
-//! * what else there is, stands in [`Format`].
+//! * `arrays`: `.npz`, `.npy`, `.mat`.
 
+mod arrays;
 pub mod error;
 mod survey;
 pub mod text;
@@ -14,6 +15,7 @@ pub use survey::ColumnSurvey;
 pub use text::number::Cell;
 
 use crate::message_path::{Function, functions_of};
+use arrays::Array;
 use text::dialect::Dialect;
 
 /// Names of the column that is time, where none is given; the first column of
@@ -25,14 +27,23 @@ pub const TIME_COLUMNS: [&str; 4] = ["t_s", "time", "timestamp", "t"];
 pub enum Format {
     /// Text: CSV and its relatives.
     Text,
+    /// A ZIP archive of NumPy's arrays.
+    Npz,
+    /// One of NumPy's arrays.
+    Npy,
+    /// MATLAB's file.
+    Mat,
 }
 
 /// The endings of files that hold tables.
-pub const ENDINGS: [(&str, Format); 4] = [
+pub const ENDINGS: [(&str, Format); 7] = [
     ("csv", Format::Text),
     ("tsv", Format::Text),
     ("txt", Format::Text),
     ("dat", Format::Text),
+    ("npz", Format::Npz),
+    ("npy", Format::Npy),
+    ("mat", Format::Mat),
 ];
 
 impl Format {
@@ -69,6 +80,7 @@ pub struct Table {
 #[derive(Clone, Debug)]
 enum Content {
     Text(Dialect),
+    Arrays(Vec<Array>),
 }
 
 /// A column that a signal is made from.
@@ -99,9 +111,26 @@ impl Table {
     ///
     /// It cannot be read, is empty, or has another number of columns.
     pub fn open(path: &Path, columns: &[String]) -> Result<Table, TableError> {
+        match Format::of(path) {
+            Some(format) if format != Format::Text => Table::of_arrays(path, format, columns),
+            _ => Table::of_text(path, columns),
+        }
+    }
+
+    fn of_arrays(path: &Path, format: Format, columns: &[String]) -> Result<Table, TableError> {
+        let arrays = arrays::read(path, format)?;
+        let own = arrays.iter().map(|array| Column {
+            name: array.name.clone(),
+            unit: None,
+        });
+        let own = own.collect();
+        Table::named(path, own, true, columns, Content::Arrays(arrays))
+    }
+
+    fn of_text(path: &Path, columns: &[String]) -> Result<Table, TableError> {
         let dialect = text::look(path)?;
         let units = dialect.units.iter().cloned();
-        let mut own: Vec<Column> = dialect
+        let own: Vec<Column> = dialect
             .names
             .iter()
             .zip(units.chain(std::iter::repeat(None)))
@@ -110,7 +139,17 @@ impl Table {
                 unit,
             })
             .collect();
-        let mut named = dialect.named;
+        let named = dialect.named;
+        Table::named(path, own, named, columns, Content::Text(dialect))
+    }
+
+    fn named(
+        path: &Path,
+        mut own: Vec<Column>,
+        mut named: bool,
+        columns: &[String],
+        content: Content,
+    ) -> Result<Table, TableError> {
         if !columns.is_empty() {
             if columns.len() != own.len() {
                 return Err(TableError::Names {
@@ -128,7 +167,7 @@ impl Table {
             path: path.to_owned(),
             columns: own,
             named,
-            content: Content::Text(dialect),
+            content,
         })
     }
 
@@ -163,6 +202,10 @@ impl Table {
             Content::Text(dialect) => {
                 let bytes = self.path.metadata().map_or(0, |data| data.len());
                 (bytes as f64 / dialect.row_bytes.max(1.0)).ceil() as u64
+            }
+            Content::Arrays(arrays) => {
+                let longest = arrays.iter().map(|array| array.values.len()).max();
+                longest.unwrap_or(0) as u64
             }
         }
     }
@@ -220,10 +263,29 @@ impl Table {
     pub fn rows<E: From<TableError>>(
         &self,
         wanted: &[usize],
-        visit: impl FnMut(u64, &[Cell<'_>]) -> Result<(), E>,
+        mut visit: impl FnMut(u64, &[Cell<'_>]) -> Result<(), E>,
     ) -> Result<bool, E> {
         match &self.content {
             Content::Text(dialect) => text::rows(&self.path, dialect, wanted, visit),
+            Content::Arrays(arrays) => {
+                let empty: &[f64] = &[];
+                let asked: Vec<&[f64]> = wanted
+                    .iter()
+                    .map(|at| arrays.get(*at).map_or(empty, |array| &array.values))
+                    .collect();
+                let longest = asked.iter().map(|own| own.len()).max().unwrap_or(0);
+                let mut cells = vec![Cell::Missing; asked.len()];
+                for row in 0..longest {
+                    for (cell, values) in cells.iter_mut().zip(&asked) {
+                        *cell = match values.get(row) {
+                            Some(value) if value.is_finite() => Cell::Number(*value),
+                            _ => Cell::Missing,
+                        };
+                    }
+                    visit(row as u64 + 1, &cells)?;
+                }
+                Ok(false)
+            }
         }
     }
 
@@ -232,6 +294,7 @@ impl Table {
     pub fn place(&self, number: u64) -> String {
         match &self.content {
             Content::Text(_) => format!("line {number}"),
+            Content::Arrays(_) => format!("row {number}"),
         }
     }
 }

@@ -226,16 +226,10 @@ fn signals(
     );
     signals.extend([position, torque]);
     let others = [
-        (Role::Velocity, if linear { "m/s" } else { "rad/s" }),
         (Role::JointTorque, if linear { "N" } else { "Nm" }),
         (Role::Temperature, "degC"),
     ];
     for (role, usual) in others {
-        // A velocity is taken where it is said, and guessed by nobody.
-        let said = request.said(role).is_some();
-        if role == Role::Velocity && !said {
-            continue;
-        }
         let taken: Vec<String> = signals.iter().map(|own| own.column.clone()).collect();
         if let Some(mut signal) = find(request, sources, role)?
             && !taken.contains(&signal.column)

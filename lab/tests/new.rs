@@ -1,0 +1,315 @@
+//! Recordings as people bring them, made into experiments: the joint's parameters
+//! come out, or words that say what to do.
+
+#![allow(clippy::unwrap_used)]
+
+use std::{
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use ferntast_lab::{
+    guess::Role,
+    work::{self, Made, NewError, Request, Said, make},
+};
+
+/// The joint: τ_m = J q̈ + b₀ sign(q̇) + b₁ q̇.
+const INERTIA: f64 = 0.8;
+const COULOMB: f64 = 1.5;
+const VISCOUS: f64 = 2.0;
+
+/// Position \[rad\] and motor torque \[Nm\] at a time \[s\]: two sines, in closed form.
+fn joint(t: f64) -> (f64, f64) {
+    let parts = [(0.6, 2.1), (0.25, 5.3)];
+    let sum = |term: fn(f64, f64, f64) -> f64| -> f64 {
+        parts.iter().map(|(a, w)| term(*a, *w, t)).sum()
+    };
+    let position = sum(|a, w, t| a * (w * t).sin());
+    let velocity = sum(|a, w, t| a * w * (w * t).cos());
+    let acceleration = sum(|a, w, t| -a * w * w * (w * t).sin());
+    let friction = COULOMB * velocity.signum() + VISCOUS * velocity;
+    (position, INERTIA * acceleration + friction)
+}
+
+const COUNT: u32 = 15_000;
+
+/// Rows at 500 Hz, written by `row` from number, time, position and torque.
+fn rows(row: impl Fn(u32, f64, f64, f64) -> String) -> String {
+    let mut text = String::new();
+    for n in 0..COUNT {
+        let t = f64::from(n) * 0.002;
+        let (q, tau) = joint(t);
+        writeln!(text, "{}", row(n, t, q, tau)).unwrap();
+    }
+    text
+}
+
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Bench {
+        let folder = tempfile::tempdir().unwrap();
+        Bench { folder }
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    fn request(&self, files: &[&str], said: &[(Role, &str)]) -> Request {
+        let files = files.iter().map(|name| self.folder.path().join(name));
+        Request {
+            files: files.collect(),
+            said: said
+                .iter()
+                .map(|(role, text)| (*role, Said::parse(text)))
+                .collect(),
+            ..Request::default()
+        }
+    }
+}
+
+/// That the experiment has the joint's parameters, torques in `scale` of Nm and in `unit`.
+fn holds(experiment: &Path, scale: f64, unit: &str) {
+    let opened = work::open_file(experiment).unwrap();
+    assert_eq!(opened.torque_unit(), unit, "{experiment:?}");
+    let found = opened.compare().unwrap();
+    for (name, truth, own) in [
+        ("inertia", INERTIA, None),
+        ("b0", COULOMB, Some(unit.to_owned())),
+        ("b1", VISCOUS, Some(format!("{unit} s/rad"))),
+    ] {
+        let parameter = &found.parameters[name];
+        let value = parameter.value * scale;
+        assert!(
+            (value / truth - 1.0).abs() < 0.03,
+            "{experiment:?}: {name} {value}"
+        );
+        if let Some(own) = own {
+            assert_eq!(parameter.unit, own, "{experiment:?}: {name}");
+        }
+    }
+}
+
+#[test]
+fn awkward_files_are_read_as_they_are() {
+    let bench = Bench::new();
+    let made = |request: &Request, scale: f64, unit: &str| -> Made {
+        let made = make(request).unwrap_or_else(|error| panic!("{:?}: {error}", request.files));
+        assert!((made.rate_hz - 500.0).abs() < 0.5, "{made:?}");
+        holds(&made.experiment, scale, unit);
+        made
+    };
+    // Without names, comments in between, blanks.
+    bench.write(
+        "bare.txt",
+        rows(|n, t, q, tau| {
+            let comment = if n % 5000 == 9 {
+                "% still running\n"
+            } else {
+                ""
+            };
+            format!("{comment}  {t:.3}   {q:.9} {tau:.9}")
+        }),
+    );
+    let columns = ["t", "q", "tau"].map(str::to_owned).to_vec();
+    let bare = bench.request(&["bare.txt"], &[]);
+    made(&Request { columns, ..bare }, 1.0, "Nm");
+    // Milliseconds, by the name and by the steps.
+    let ms = rows(|n, _, q, tau| format!("{},{q:.9},{tau:.9}", 2 * n));
+    bench.write("named.csv", format!("t_ms,q,tau\n{ms}"));
+    made(&bench.request(&["named.csv"], &[]), 1.0, "Nm");
+    bench.write("ms.csv", format!("t,q,tau\n{ms}"));
+    let told = made(&bench.request(&["ms.csv"], &[]), 1.0, "Nm")
+        .warnings
+        .join("\n");
+    assert!(told.contains("taken for ms"), "{told}");
+    // Degrees by the name.
+    let degrees = rows(|_, t, q, tau| format!("{t:.3},{:.9},{tau:.9}", q.to_degrees()));
+    bench.write("degrees.csv", format!("t,q_deg,tau\n{degrees}"));
+    made(&bench.request(&["degrees.csv"], &[]), 1.0, "Nm");
+    // Semicolons, decimal commas, a line of units, a preamble.
+    let comma =
+        rows(|_, t, q, tau| format!("{t:.3};{:.9};{tau:.9}", q.to_degrees()).replace('.', ","));
+    bench.write(
+        "comma.csv",
+        format!("Bench;7\n\nt;q;tau\n[s];[deg];[Nm]\n{comma}"),
+    );
+    made(&bench.request(&["comma.csv"], &[]), 1.0, "Nm");
+    // Volts stay volts: 0.25 V for 1 Nm.
+    let volts = rows(|_, t, q, tau| format!("{t:.3}\t{q:.9}\t{:.9}", tau * 0.25));
+    bench.write("volts.tsv", format!("# t\tq\tu_V\n{volts}"));
+    made(&bench.request(&["volts.tsv"], &[]), 4.0, "V");
+    // No time, but a rate; milliamperes become amperes.
+    let rate = rows(|_, _, q, tau| format!("{q:.9},{:.9}", tau * 1000.0));
+    bench.write("rate.csv", format!("q,current_mA\n{rate}"));
+    let rate = bench.request(&["rate.csv"], &[]);
+    let rate_hz = Some(500.0);
+    made(&Request { rate_hz, ..rate }, 1.0, "A");
+    // NaN once in a while, a gap, and a short stretch between two gaps.
+    let holes = rows(|n, t, q, tau| match n {
+        6000..6500 | 6580..7000 => "# off".to_owned(),
+        n if n % 997 == 3 => format!("{t:.3},nan,{tau:.9}"),
+        _ => format!("{t:.3},{q:.9},{tau:.9}"),
+    });
+    bench.write("holes.csv", format!("t,q,tau\n{holes}"));
+    let told = made(&bench.request(&["holes.csv"], &[]), 1.0, "Nm");
+    let own = &told.recordings[0];
+    assert_eq!(
+        (own.samples, own.stretches),
+        (COUNT as usize - 920, 2),
+        "{told:?}"
+    );
+    assert_eq!(
+        (own.in_short_stretches, own.short_stretches),
+        (80, 1),
+        "{told:?}"
+    );
+    assert_eq!(
+        own.without_number,
+        (0..COUNT)
+            .filter(|n| n % 997 == 3 && !(6000..7000).contains(n))
+            .count()
+    );
+    assert!(
+        told.share_used > 0.99
+            && told
+                .warnings
+                .iter()
+                .any(|own| own.contains("without a number"))
+    );
+}
+
+/// NumPy's `.npy`: version 1.0, little end first.
+fn npy(columns: usize, values: impl Iterator<Item = f64>) -> Vec<u8> {
+    let values: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
+    let rows = values.len() / 8 / columns;
+    let header =
+        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}\n");
+    let length = (header.len() as u16).to_le_bytes();
+    [
+        &b"\x93NUMPY\x01\x00"[..],
+        &length,
+        header.as_bytes(),
+        &values,
+    ]
+    .concat()
+}
+
+#[test]
+fn an_array_is_a_table_too() {
+    let bench = Bench::new();
+    let values = (0..COUNT).flat_map(|n| {
+        let t = f64::from(n) * 0.002;
+        let (q, tau) = joint(t);
+        [t, q, tau]
+    });
+    bench.write("run.npy", npy(3, values));
+    let request = bench.request(
+        &["run.npy"],
+        &[(Role::Position, "q:rad"), (Role::MotorTorque, "tau:Nm")],
+    );
+    let columns = ["t", "q", "tau"].map(str::to_owned).to_vec();
+    let made = make(&Request { columns, ..request }).unwrap();
+    holds(&made.experiment, 1.0, "Nm");
+}
+
+#[test]
+fn files_of_one_run_are_joined_and_clocks_apart_are_told() {
+    let bench = Bench::new();
+    let position = rows(|_, t, q, _| format!("{t:.3},{q:.9}"));
+    bench.write("position.csv", format!("t,q\n{position}"));
+    // The current at twice the rate, from a little later on.
+    let mut current = "t,i\n".to_owned();
+    for n in 0..2 * COUNT {
+        let t = 0.1003 + f64::from(n) * 0.001;
+        writeln!(current, "{t:.4},{:.9}", joint(t).1).unwrap();
+    }
+    bench.write("current.csv", current);
+    let with = |other: &str, output: &str| {
+        let request = bench.request(&["position.csv", other], &[]);
+        let output = Some(bench.folder.path().join(output));
+        make(&Request { output, ..request })
+    };
+    let made = with("current.csv", "joined.toml").unwrap();
+    holds(&made.experiment, 1.0, "A");
+    let text = fs::read_to_string(&made.experiment).unwrap();
+    assert!(
+        text.contains("[[\"position.csv\", \"current.csv\"]]"),
+        "{text}"
+    );
+
+    let row = rows(|_, _, _, tau| format!("{tau:.9}"));
+    bench.write("row.csv", format!("i\n{row}"));
+    holds(&with("row.csv", "row.toml").unwrap().experiment, 1.0, "A");
+    bench.write("short.csv", "i\n1\n2\n3\n");
+    let told = with("short.csv", "x.toml").unwrap_err().to_string();
+    assert!(told.contains("short.csv has 3 rows"), "{told}");
+
+    let late = rows(|_, t, _, tau| format!("{:.3},{tau:.9}", t + 32.998));
+    bench.write("late.csv", format!("t,i\n{late}"));
+    let told = with("late.csv", "x.toml").unwrap_err().to_string();
+    assert!(
+        told.contains("never overlap") && told.contains("3.000 s apart"),
+        "{told}"
+    );
+}
+
+#[test]
+fn what_is_not_certain_is_refused_with_what_to_say() {
+    let bench = Bench::new();
+    let degrees = rows(|_, t, q, tau| format!("{t:.3},{:.9},{tau:.9}", q.to_degrees()));
+    bench.write("angle.csv", format!("t,q,tau\n{degrees}"));
+    bench.write("strange.csv", format!("a,b,c\n{degrees}"));
+    bench.write("untimed.csv", "q,tau\n0,1\n1,0\n0,1\n");
+    let refused = |file: &str, said: &[(Role, &str)], words: &[&str]| {
+        let told = make(&bench.request(&[file], said)).unwrap_err().to_string();
+        for word in words {
+            assert!(told.contains(word), "{told}");
+        }
+    };
+    refused(
+        "angle.csv",
+        &[],
+        &["may be in deg", "--position", "q:deg or "],
+    );
+    refused("strange.csv", &[], &["--motor-torque COLUMN", "a, b, c"]);
+    refused("untimed.csv", &[], &["--rate HZ"]);
+    // A force and an angle belong to no joint.
+    let force = [(Role::Position, "q:deg"), (Role::MotorTorque, "tau:N")];
+    refused("angle.csv", &force, &["revolute joint", "\"deg\""]);
+    assert!(!bench.folder.path().join("angle.toml").exists());
+
+    let said = [(Role::Position, "q:deg")];
+    let request = bench.request(&["angle.csv"], &said);
+    holds(&make(&request).unwrap().experiment, 1.0, "Nm");
+    refused("angle.csv", &said, &["exists already", "--force"]);
+    make(&Request {
+        force: true,
+        ..request
+    })
+    .unwrap();
+
+    let told = work::open(&bench.folder.path().join("angle.csv")).unwrap_err();
+    assert!(
+        told.to_string()
+            .contains("make one first: ferntast lab new"),
+        "{told}"
+    );
+    // An experiment that takes milliseconds for seconds is told so.
+    let ms = rows(|n, _, q, tau| format!("{},{q:.9},{tau:.9}", 2 * n));
+    bench.write("ms.csv", format!("t,q,tau\n{ms}"));
+    let old = bench.write(
+        "old.toml",
+        "recording = \"ms.csv\"\n[signals]\nposition = \"q\"\nmotor_torque = \"tau\"\n[model]\ninertia = { fit = true }\neffects = [\"coulomb\"]\n",
+    );
+    let notes = work::open_file(&old).unwrap().notes.join("\n");
+    assert!(notes.contains("unit = \"ms\""), "{notes}");
+    let none = make(&Request::default());
+    assert!(matches!(none, Err(NewError::NoFile)));
+}
