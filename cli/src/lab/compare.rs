@@ -20,7 +20,10 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             println!("{}", opened.experiment.title);
             table::comparison(&result, opened.torque_unit());
         }
-        results.push(result);
+        results.push(open::InUnit {
+            unit: opened.torque_unit(),
+            result,
+        });
     }
     if json {
         open::print_results(&results)?;

@@ -5,6 +5,7 @@ mod auto;
 mod compare;
 mod diagnose;
 mod history;
+mod new;
 mod open;
 mod report;
 mod serve;
@@ -25,9 +26,10 @@ use super::Failure;
     ferntast lab add E.toml stribeck -o E2.toml\n  \
     ferntast lab history E2.toml             # the error falling\n  \
     ferntast lab report E2.toml -o report.html\n\n  All of it in the browser: ferntast lab serve\n\n\
+    With recordings of your own begin with:  ferntast lab new my.csv\n\n\
     An experiment file names recording, signals and model:\n  \
-    recording = \"bench.mcap\"                 # or a rosbag2 directory, a .csv, a list\n  \
-    [signals]                                # message paths; in CSV names of columns\n  \
+    recording = \"bench.mcap\"                 # or a rosbag2 directory, a table (.csv, …), a list\n  \
+    [signals]                                # message paths; in tables columns: { column = \"q\", unit = \"deg\" }\n  \
     position     = \"/follower/measured_js.position[0]\"\n  \
     motor_torque = \"/follower/motor_js.effort[0]\"\n  \
     joint_torque = \"/follower/measured_js.effort[0]\"   # optional\n  \
@@ -50,6 +52,8 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Action {
+    /// Make an experiment file on recordings of your own.
+    New(new::Arguments),
     /// Fit the model on one part of the recordings, tell its error on the rest, and where it fails.
     Compare(compare::Arguments),
     /// Tell which effect is missing, if any.
@@ -71,6 +75,7 @@ enum Action {
 /// Runs it.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     match arguments.action {
+        Action::New(arguments) => new::run(arguments, json),
         Action::Compare(arguments) => compare::run(&arguments, json),
         Action::Diagnose(arguments) => diagnose::run(&arguments, json),
         Action::Add(arguments) => add::run(&arguments, json),

@@ -31,6 +31,16 @@ fn tell_notes(opened: &Opened) {
     }
 }
 
+/// A result with the unit of its torques.
+#[derive(Debug, Serialize)]
+pub struct InUnit<T> {
+    /// Unit of torques or forces, or of what stands for them.
+    pub unit: &'static str,
+    /// The result.
+    #[serde(flatten)]
+    pub result: T,
+}
+
 /// A bar for work whose share done is reported.
 pub fn bar(label: &str) -> ProgressBar {
     let bar = ProgressBar::new(1000);

@@ -6,6 +6,7 @@ mod experiments;
 mod faults;
 mod lab;
 mod lab_contact;
+mod lab_new;
 mod laws;
 mod lockstep;
 mod long;
