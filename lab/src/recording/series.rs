@@ -90,3 +90,31 @@ impl Series {
         super::align::median_interval(self) as f64 * 1e-9
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_counted_and_what_is_one_converted() {
+        let wanted = Wanted {
+            signal: "position".to_owned(),
+            path: "q".to_owned(),
+            unit: Unit::parse("mm"),
+            time: None,
+        };
+        let mut series = Series::new(&wanted, Path::new("a"));
+        for (at, value) in [1.0, f64::NAN, f64::INFINITY, 2.0].into_iter().enumerate() {
+            let place = || format!("line {at}");
+            series.push(at as i64, value, place).unwrap();
+        }
+        series.push(3, 5.0, String::new).unwrap();
+        assert_eq!((series.times.as_slice(), series.repeated), (&[0, 3][..], 1));
+        assert!((series.values[1] - 2e-3).abs() < 1e-12);
+        assert_eq!(
+            (series.missing, series.first_missing.as_deref()),
+            (2, Some("line 1"))
+        );
+        assert!(series.push(2, 1.0, String::new).is_err());
+    }
+}

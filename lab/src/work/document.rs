@@ -75,7 +75,12 @@ fn source(signal: &NewSignal) -> Item {
         return value(signal.column.as_str());
     };
     let mut table = InlineTable::new();
-    table.insert("column", signal.column.as_str().into());
+    let key = if signal.column.starts_with('/') {
+        "path"
+    } else {
+        "column"
+    };
+    table.insert(key, signal.column.as_str().into());
     table.insert("unit", unit.name().into());
     value(table)
 }
