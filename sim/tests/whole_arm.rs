@@ -257,7 +257,10 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
         assert!((0.0..=0.451).contains(&outcome.force_step), "{told}");
         assert!(outcome.drift < 1.2e-3, "{told}");
         let stiffness = environment.surface().0.min(3300.0);
-        (outcome.felt_stiffness.expect("it presses") / stiffness, told)
+        (
+            outcome.felt_stiffness.expect("it presses") / stiffness,
+            told,
+        )
     };
     for round_trip in ROUND_TRIPS {
         let (share, told) = felt(Environment::SoftSpring, round_trip);
@@ -284,7 +287,10 @@ fn two_layers_at_the_scale_of_a_session_feel_a_hard_wall_as_it_is() {
         let outcome = own.run().expect("a valid trial");
         let felt = outcome.felt_stiffness.expect("it presses");
         // 0.05 · 20 kN/m.
-        assert!((980.0..1020.0).contains(&felt), "{round_trip} s: {outcome:?}");
+        assert!(
+            (980.0..1020.0).contains(&felt),
+            "{round_trip} s: {outcome:?}"
+        );
         assert!(outcome.energy_margin > -1e-3, "{round_trip} s: {outcome:?}");
     }
 }

@@ -11,18 +11,22 @@ macro_rules! laws {
         $(#[$of_laws])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         #[serde(tag = "kind", rename_all = "snake_case")]
+        // In place: a switch of the law must not allocate.
+        #[allow(clippy::large_enum_variant)]
         pub enum $laws {
             $($(#[$doc])* $law($crate::delay::$law),)*
         }
 
         /// The leader's end of any of these laws.
         #[derive(Clone, Debug)]
+        #[allow(clippy::large_enum_variant)]
         pub enum $leaders {
             $($(#[$doc])* $law(<$crate::delay::$law as $crate::delay::Parameters>::Leader),)*
         }
 
         /// The follower's end of any of these laws.
         #[derive(Clone, Debug)]
+        #[allow(clippy::large_enum_variant)]
         pub enum $followers {
             $($(#[$doc])* $law(<$crate::delay::$law as $crate::delay::Parameters>::Follower),)*
         }

@@ -118,14 +118,13 @@ macro_rules! law_parameters {
 
             /// The same law between the scales of `mapping`.
             fn between(&self, mapping: &$crate::delay::Mapping) -> Self {
-                $name {
-                    position_scale: mapping.position_scale,
-                    force_scale: mapping.force_scale,
-                    workspace_offset: mapping.workspace_offset,
-                    deadline: mapping.deadline,
-                    force_ramp: mapping.force_ramp,
-                    ..self.clone()
-                }
+                let mut own = self.clone();
+                own.position_scale = mapping.position_scale;
+                own.force_scale = mapping.force_scale;
+                own.workspace_offset = mapping.workspace_offset;
+                own.deadline = mapping.deadline;
+                own.force_ramp = mapping.force_ramp;
+                own
             }
         }
     };

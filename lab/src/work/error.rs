@@ -8,6 +8,7 @@ use crate::{
     experiment::{ExperimentError, WriteError},
     guess::Role,
     recording::LoadError,
+    table::TableError,
 };
 
 /// Why work on an experiment does not go on.
@@ -18,10 +19,10 @@ pub enum WorkError {
     Experiment(#[from] ExperimentError),
     /// A recording cannot be used.
     #[error(transparent)]
-    Load(#[from] LoadError),
+    Load(Box<LoadError>),
     /// A table cannot be used.
     #[error(transparent)]
-    Table(#[from] crate::table::TableError),
+    Table(Box<TableError>),
     /// The data or the model lack something.
     #[error("{title}: {source}")]
     Prepare {
@@ -80,6 +81,18 @@ pub enum WorkError {
     /// A custom effect is not described as it has to be.
     #[error("{0}")]
     OwnEffect(String),
+}
+
+impl From<LoadError> for WorkError {
+    fn from(error: LoadError) -> WorkError {
+        WorkError::Load(Box::new(error))
+    }
+}
+
+impl From<TableError> for WorkError {
+    fn from(error: TableError) -> WorkError {
+        WorkError::Table(Box::new(error))
+    }
 }
 
 /// Why there is no new experiment file.

@@ -1,7 +1,7 @@
 //! Files that somebody brought: which are recordings of their own, which are parts
 //! of one, and what columns they have.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{NewError, WorkError, new::Request, offered};
 use crate::table::{ColumnSurvey, Format, Table};
@@ -40,13 +40,13 @@ impl Sources {
 }
 
 /// A folder that is no recording stands for the tables in it.
-fn tables_in(file: &PathBuf) -> Result<Vec<PathBuf>, NewError> {
+fn tables_in(file: &Path) -> Result<Vec<PathBuf>, NewError> {
     let error = |source| WorkError::File {
-        path: file.clone(),
+        path: file.to_owned(),
         source,
     };
     if !file.is_dir() {
-        return Ok(vec![file.clone()]);
+        return Ok(vec![file.to_owned()]);
     }
     let entries: Result<Vec<_>, _> = file.read_dir().map_err(error)?.collect();
     let paths = entries.map_err(error)?;
@@ -56,11 +56,13 @@ fn tables_in(file: &PathBuf) -> Result<Vec<PathBuf>, NewError> {
         .iter()
         .any(|path| path.extension().is_some_and(|end| end == "mcap"))
     {
-        return Ok(vec![file.clone()]);
+        return Ok(vec![file.to_owned()]);
     }
     paths.retain(|path| Format::of(path).is_some());
     match paths.is_empty() {
-        true => Err(NewError::EmptyFolder { path: file.clone() }),
+        true => Err(NewError::EmptyFolder {
+            path: file.to_owned(),
+        }),
         false => Ok(paths),
     }
 }

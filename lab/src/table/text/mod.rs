@@ -167,8 +167,11 @@ mod tests {
 
     use super::*;
 
-    /// Rows of columns 0 and 1: line and numbers, NaN for what is missing.
-    fn parse(bytes: &[u8]) -> Result<(Vec<(u64, f64, f64)>, bool), TableError> {
+    /// Line, and numbers of columns 0 and 1, NaN for what is missing.
+    type Row = (u64, f64, f64);
+
+    /// The rows, and whether the last one was cut off.
+    fn parse(bytes: &[u8]) -> Result<(Vec<Row>, bool), TableError> {
         let path = Path::new("a.csv");
         let dialect = look_at(&mut &bytes[..], path)?;
         let mut read = Vec::new();
