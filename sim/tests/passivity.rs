@@ -40,11 +40,7 @@ fn a_law_whose_books_say_so_gives_out_no_more_than_it_took_in() {
         .filter(|law| law.guarantee() == Guarantee::ByItsBooks)
         .map(Law::name)
         .collect();
-    assert!(
-        ["wave", "tdpa", "two_layer"]
-            .iter()
-            .all(|name| claiming.contains(name))
-    );
+    assert!(claiming.contains(&"wave") && claiming.contains(&"tdpa"));
     for name in claiming {
         report(&failures(CASES, |seed| {
             let mut draw = Draw::of(seed);

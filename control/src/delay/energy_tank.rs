@@ -9,7 +9,7 @@
 //! "Bilateral telemanipulation with time delays: a two-layer approach combining
 //! passivity and transparency", IEEE T-RO 27).
 
-use super::Energy;
+use super::{Energy, Packet};
 use nalgebra::Vector3;
 
 /// Energy in hand. In hand units.
@@ -83,6 +83,14 @@ impl EnergyTank {
         Energy {
             entered: self.promised,
             left: port.left,
+        }
+    }
+
+    /// `packet` with that.
+    pub fn told_in(&self, packet: Packet, port: Energy) -> Packet {
+        Packet {
+            energy: self.told(port).packet(),
+            ..packet
         }
     }
 

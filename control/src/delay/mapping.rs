@@ -106,7 +106,7 @@ macro_rules! law_parameters {
         }
 
         impl $name {
-            fn mapping(&self) -> $crate::delay::Mapping {
+            pub(in $crate::delay) fn mapping(&self) -> $crate::delay::Mapping {
                 $crate::delay::Mapping {
                     position_scale: self.position_scale,
                     force_scale: self.force_scale,
@@ -117,7 +117,10 @@ macro_rules! law_parameters {
             }
 
             /// The same law between the scales of `mapping`.
-            fn between(&self, mapping: &$crate::delay::Mapping) -> Self {
+            pub(in $crate::delay) fn between(
+                &self,
+                mapping: &$crate::delay::Mapping,
+            ) -> Self {
                 let mut own = self.clone();
                 own.position_scale = mapping.position_scale;
                 own.force_scale = mapping.force_scale;

@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use super::TIME_COLUMNS;
+use super::format::TIME_COLUMNS;
 use crate::message_path::MessagePathError;
 
 /// Why a table gives no signals.

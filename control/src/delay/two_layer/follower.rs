@@ -1,7 +1,7 @@
 //! The layers at the arm's end.
 
 use super::inside::InnerFollower;
-use super::{TwoLayer, packet};
+use super::parameters::TwoLayer;
 use crate::delay::contact::{LastCommand, Late, TouchingTip};
 use crate::delay::energy_tank::EnergyTank;
 use crate::delay::mapping::Mapping;
@@ -151,7 +151,7 @@ impl Follower for TwoLayerFollower {
         self.command.step(dt, given, input.connected, deadline);
         FollowerOutput {
             command: command.map(|(position, velocity)| self.mapping.command(position, velocity)),
-            packet: packet(wanted.packet, &self.tank, self.meter.energy()),
+            packet: self.tank.told_in(wanted.packet, self.meter.energy()),
         }
     }
 

@@ -1,5 +1,7 @@
 use super::*;
-use crate::delay::{Follower, FollowerInput, Motion, PositionForce, Received};
+use crate::delay::{
+    Energy, Follower, FollowerInput, Leader, LeaderInput, Motion, Packet, PositionForce, Received,
+};
 
 const DT: f64 = 1e-3;
 

@@ -8,7 +8,7 @@ mod npz;
 
 use std::path::Path;
 
-use super::{Format, error::TableError};
+use super::{error::TableError, format::Format};
 
 /// The largest file, and the most that may come out of a compressed part \[bytes\].
 const LARGEST: u64 = 1 << 28;

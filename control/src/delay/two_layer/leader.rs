@@ -1,0 +1,91 @@
+//! The layers at the operator's end.
+
+use super::inside::InnerLeader;
+use super::parameters::TwoLayer;
+use crate::delay::energy_tank::EnergyTank;
+use crate::delay::mapping::Mapping;
+use crate::delay::{Energy, Leader, LeaderInput, LeaderOutput};
+use nalgebra::Vector3;
+
+/// The tank pays for the force on the hand so long ahead [s].
+const FORESIGHT: f64 = 0.002;
+
+/// The leader's end: sends what the inner law says, and what it promises.
+#[derive(Clone, Debug)]
+pub struct TwoLayerLeader {
+    parameters: TwoLayer,
+    mapping: Mapping,
+    inner: InnerLeader,
+    tank: EnergyTank,
+    /// Of the hand at the last step [m].
+    position: Option<Vector3<f64>>,
+    /// Asked for at the last step [N].
+    force: Vector3<f64>,
+}
+
+impl TwoLayerLeader {
+    pub(super) fn new(law: &TwoLayer) -> Self {
+        TwoLayerLeader {
+            parameters: law.clone(),
+            mapping: law.mapping(),
+            inner: law.inside.between(&law.mapping()).bare_leader(),
+            tank: EnergyTank::default(),
+            position: None,
+            force: Vector3::zeros(),
+        }
+    }
+}
+
+impl TwoLayerLeader {
+    /// The force that the tank can let go of [N]: falling to zero at a rate r, f gives a hand of
+    /// mass m that lets go the impulse f²/2r, and the energy (f²/2r)²/2m ≤ E.
+    fn releasable(&self) -> f64 {
+        let own = &self.parameters;
+        let impulse = (2.0 * own.hand_mass * self.tank.level().max(0.0)).sqrt();
+        (2.0 * own.force_rate * impulse).sqrt()
+    }
+}
+
+impl Leader for TwoLayerLeader {
+    fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
+        let own = &self.parameters;
+        self.tank.port(energy, own.promised_share);
+        if let Some(received) = self.mapping.live(input.connected, input.received) {
+            self.tank.promise(f64::from(received.packet.energy[0]));
+        }
+        self.tank.give(dt / own.transfer_time, own.kept_at_hand);
+        self.tank.limit(own.reserve);
+        let wanted = self.inner.step(dt, input, energy);
+        let packet = self.tank.told_in(wanted.packet, energy);
+        let Some(hand) = input.hand else {
+            self.position = None;
+            self.force = Vector3::zeros();
+            return LeaderOutput {
+                force: [0.0; 3],
+                packet,
+            };
+        };
+        let here = Vector3::from(hand.position);
+        // Not the filtered velocity: one that lags would let the port give out.
+        let velocity = match self.position {
+            Some(before) if dt > 0.0 => (here - before) / dt,
+            _ => hand.velocity.into(),
+        };
+        self.position = Some(here);
+        let force = self
+            .tank
+            .pays_for(FORESIGHT, wanted.force.into(), velocity, own.hand_mass);
+        let force = force.cap_magnitude(self.releasable());
+        let lacking = 1.0 - (self.tank.level() / own.level.max(1e-9)).clamp(0.0, 1.0);
+        let damping = own.largest_damping * lacking * Vector3::from(hand.velocity);
+        self.force += (force - damping - self.force).cap_magnitude(own.force_rate * dt);
+        LeaderOutput {
+            force: self.force.into(),
+            packet,
+        }
+    }
+
+    fn dissipated(&self) -> f64 {
+        self.tank.dissipated() + self.inner.dissipated()
+    }
+}
