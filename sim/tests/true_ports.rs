@@ -1,7 +1,6 @@
-//! Every law that claims passivity, between seeded channels, hands, scales and things to touch,
-//! on the whole arm: servo, contact-force estimator and limiter of the hand's force as they ship.
-//! What leaves at hand and tip, by the simulated bodies themselves, is never more than what
-//! entered there.
+//! The two layers between seeded channels, hands, scales and things to touch, on the whole arm:
+//! servo, contact-force estimator and limiter of the hand's force as they ship. What leaves at
+//! hand and tip is held against what entered there, by the simulated bodies themselves.
 
 #[path = "common/random_cases.rs"]
 mod random_cases;
@@ -13,7 +12,7 @@ use ferntast_sim::arm::ArmConfig;
 use ferntast_sim::teleoperation::{ArmUnderTrial, Environment, FollowerModel, Task, Trial};
 use random_cases::{Draw, failures, report};
 
-/// Seeds tried for all laws together.
+/// Seeds tried.
 const CASES: u64 = 1000;
 
 fn arm() -> ArmUnderTrial {
@@ -60,12 +59,14 @@ fn stiff_arm() -> (ArmUnderTrial, f64) {
     (arm, stiffness)
 }
 
+/// Whoever claims passivity goes here too. These layers do not: of 5000 further seeds, from
+/// 50 000 on, 10 make more than the bound, 0.058 J the worst.
 #[test]
-fn a_law_that_claims_passivity_gives_out_no_more_than_it_took_in() {
-    let claiming = Law::all();
-    let claiming = claiming.iter().filter(|law| law.claims_passivity());
-    let names = claiming.map(Law::name);
-    assert!(names.eq(["two_layer"]), "a new one needs its own draw");
+fn two_layers_around_model_mediated_give_out_no_more_than_they_took_in() {
+    assert!(
+        !Law::all().iter().any(Law::claims_passivity),
+        "a law that claims passivity is to be tried here"
+    );
     let (arm, stiffness) = stiff_arm();
     report(&failures(CASES, |seed| {
         trial(&arm, seed, |draw| {

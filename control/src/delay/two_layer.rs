@@ -24,11 +24,11 @@
 //!
 //! The inner law goes on from the command that was given, not from the one that it wished for.
 //!
-//! **What it guarantees.** With `model_mediated` inside: at hand and tip no more energy leaves
-//! than entered, up to 0.02 J, with the arm, the servo and the estimator that ship
-//! (`sim/tests/true_ports.rs`). Around the others it takes nearly all of what they would make:
-//! a tip that bounces on a wall, which they let it do, is quicker than the estimate of its force,
-//! so that the books err.
+//! **What it guarantees.** Nothing strictly. With `model_mediated` inside, on the arm, the servo
+//! and the estimator that ship, of 6000 random cases 10 gave out more than 0.02 J at hand and tip,
+//! 0.058 J the worst (`sim/tests/true_ports.rs`). Around the others it takes nearly all of what they
+//! would make: a tip that bounces on a wall, which they let it do, is quicker than the estimate of
+//! its force, so that the books err.
 //!
 //! **On loss.** As the inner law. Nothing is spent that has not come in.
 
@@ -52,10 +52,7 @@ impl Parameters for TwoLayer {
     type Follower = TwoLayerFollower;
 
     fn guarantee(&self) -> Guarantee {
-        match self.inside {
-            InnerLaw::ModelMediated(_) => Guarantee::Passive,
-            _ => Guarantee::ByItsBooks,
-        }
+        Guarantee::Nothing
     }
 
     fn mapping(&self) -> Mapping {

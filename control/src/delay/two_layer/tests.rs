@@ -156,9 +156,3 @@ fn a_servo_that_does_not_take_over_finds_its_command_near_the_tip() {
     }
     assert!((2.9e-3..3.1e-3).contains(&tip.command), "{}", tip.command);
 }
-
-#[test]
-fn it_claims_what_is_tried_at_the_true_ports() {
-    assert_eq!(TwoLayer::default().guarantee(), Guarantee::Passive);
-    assert_eq!(law().guarantee(), Guarantee::ByItsBooks);
-}
