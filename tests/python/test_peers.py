@@ -42,10 +42,10 @@ def test_rclpy_operator_and_counter_meet(tmp_path, domain):
         sent = operator.report()
         counted = counter.report()
     assert sent["heard"] and sent["sent_bad"] == 0 and not sent["interrupted"]
-    assert 450 <= sent["sent"] <= 601
+    assert 300 <= sent["sent"] <= 601
     assert counted["received"] >= 300
     assert counted["zero_stamps"] == 0 and counted["stamps_back"] == 0
-    assert 100 < counted["stamp_rate_hz"] < 250
+    assert 50 < counted["stamp_rate_hz"] < 250
     assert counted["last"]["header"]["frame_id"] == "leader_base"
     # The hand ends at (0.1, -0.1), and stands still there.
     assert counted["last"]["pose"]["position"]["x"] == pytest.approx(0.1)

@@ -26,6 +26,9 @@ def add_operator(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rate", type=positive, default=500.0, help="messages a second")
     parser.add_argument("--duration", type=positive, help="seconds (default: the whole file)")
     parser.add_argument("--speed", type=positive, default=1.0, help="recorded seconds a second")
+    parser.add_argument(
+        "--until-felt", type=int, default=0, help="go back and there again until so many forces came"
+    )
     parser.add_argument("--spoil", choices=SPOILS, help="send bad commands")
     parser.add_argument(
         "--spoil-after", type=float, default=0.0, help="seconds of good commands before"

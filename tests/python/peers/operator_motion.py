@@ -10,26 +10,44 @@ from typing import TextIO
 from hand import Hand
 from stamps import Stamps
 
+# An arm that hears nothing for so long holds: a hand that was held up itself for
+# longer [s] goes on from where it was, as a person's does, rather than jump after the clock.
+HELD_UP = 0.015
+# A hand that shall feel something passes over its motion so often, there and back in turn.
+PASSES = 6
+
 # Commands that are wrong on purpose. `jump` is finite, but half a metre away
 # from the command before; `far` stays a kilometre away.
 SPOILS = ("nan", "infinite", "far", "jump", "zero_stamp")
 
 
 def ticks(rate: float, seconds: float, stop: threading.Event) -> Iterator[float]:
-    """Yields the time since the start [s], `rate` times a second for `seconds`, or until `stop`.
+    """Yields the time of the motion [s], `rate` times a second for `seconds`, or until `stop`.
 
-    A tick that comes late is yielded late, and those it overran are left out:
-    what is sent always belongs to the present.
+    A tick that comes late is yielded late, and those it overran are left out. Where this
+    process was held up (`HELD_UP`), the motion stood still meanwhile.
     """
     start = time.monotonic()
+    patience = max(HELD_UP, 2 / rate)
+    before = 0.0
     count = 0
     while (now := time.monotonic() - start) < seconds and not stop.is_set():
         due = count / rate
         if now < due:
             time.sleep(due - now)
             now = time.monotonic() - start
+        if now - before > patience:
+            start += now - before
+            now = before
+        before = now
         yield now
         count = max(count + 1, int(now * rate) + 1)
+
+
+def there_and_back(now: float, seconds: float) -> float:
+    """The moment [s] of a motion that runs forwards and backwards in turn, `now` after its begin."""
+    passed = now % (2 * seconds)
+    return min(passed, 2 * seconds - passed)
 
 
 class Felt:
@@ -106,6 +124,9 @@ def operate(
 ) -> dict[str, object]:
     """Moves the hand as recorded; `send(x, y, zero_stamp)` publishes one command.
 
+    With `until_felt`, it goes back and there again until so many forces came: an arm
+    that is held while the hand touches feels it the next time.
+
     Returns the report for JSON. `stop` ends the motion early, which is told in
     `interrupted`.
     """
@@ -116,14 +137,18 @@ def operate(
     max_silence = 0.0
     before: tuple[float, float, float] | None = None
     felt.start = time.monotonic()
-    for now in ticks(arguments.rate, seconds, stop):
-        x, y = hand.at(now * arguments.speed)
+    passes = PASSES if arguments.until_felt else 1
+    for moment in ticks(arguments.rate, passes * seconds, stop):
+        if moment >= seconds and felt.nonzero >= arguments.until_felt:
+            break
+        x, y = hand.at(there_and_back(moment, seconds) * arguments.speed)
         felt.position = (x, y)
+        now = time.monotonic()
         if before is not None:
             max_step = max(max_step, math.hypot(x - before[1], y - before[2]))
             max_silence = max(max_silence, now - before[0])
         before = (now, x, y)
-        if arguments.spoil and now >= arguments.spoil_after:
+        if arguments.spoil and moment >= arguments.spoil_after:
             send(*spoiled(arguments.spoil, x, y, sent))
             sent_bad += 1
         else:

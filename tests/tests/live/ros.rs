@@ -81,18 +81,13 @@ fn a_gateway_that_was_stopped_is_seen_again() {
 /// The motion of a hand, sent by rclpy at 500 Hz for so many seconds, moves the
 /// arm; the force comes back to the same client.
 fn drives_the_arm(seconds: &str, hand: impl Fn(&Session) -> String) {
-    // A hand that touches the contour for half a second misses it if the machine holds the
-    // arm up just then.
-    let touched = (1..=3).any(|_| operate(seconds, &hand));
-    assert!(touched, "the arm was held up each time");
-}
-
-/// Whether the contour was touched; where the arm was not held it is.
-fn operate(seconds: &str, hand: impl Fn(&Session) -> String) -> bool {
     let session = Session::new();
     let mut process = start(&session, &["--hand", "crtk"]);
     await_enabled(&session, &mut process);
-    let arguments = ["--duration", seconds, "--hand", &hand(&session)];
+    // A hand that touches the contour for half a second misses it if the machine holds the
+    // arm up just then: it goes there again.
+    let hand = hand(&session);
+    let arguments = ["--duration", seconds, "--hand", &hand, "--until-felt", "50"];
     let mut operator = Process::spawn(session.peer("ros_operator.py", &arguments));
     operator.await_stderr("ready", PATIENCE);
     let sent = operated(&session, operator).success().json();
@@ -100,21 +95,19 @@ fn operate(seconds: &str, hand: impl Fn(&Session) -> String) -> bool {
     let summary = process.wait(PATIENCE).success().json();
 
     assert_eq!(sent["interrupted"], false);
-    assert!(number(&sent, "rate_hz") > 150.0, "{sent:#}");
+    // Python on a busy machine sends and takes what it can of 500 Hz; how fast the
+    // streams are, the timing tests say.
     let force = &sent["force"];
+    assert!(number(&sent, "rate_hz") > 50.0, "{sent:#}");
+    assert!(number(force, "rate_hz") > 50.0, "{sent:#}");
     assert_eq!(number(force, "not_finite"), 0.0);
-    // Python on a busy machine takes what it can of 500 Hz.
-    assert!(number(force, "rate_hz") > 150.0, "{force:#}");
-    let holds = holds_have_a_reason(&recording(&session));
+    holds_have_a_reason(&recording(&session));
     // Every one of the recordings reaches the contour.
+    assert!(number(force, "nonzero") >= 50.0, "{sent:#} {summary:#}");
+    assert!(number(force, "peak_force_N") > 0.5, "{sent:#} {summary:#}");
     let pressed = number(&summary, "contact.peak_normal_force_N");
-    let (peak, felt) = (number(force, "peak_force_N"), number(force, "nonzero"));
-    let touched = peak > 0.5 && felt > 50.0 && pressed > 10.0;
-    assert!(touched || holds > 0, "{force:#} {summary:#}");
-    if touched {
-        follows(&recording(&session));
-    }
-    touched
+    assert!(pressed > 10.0, "{sent:#} {summary:#}");
+    follows(&recording(&session));
 }
 
 /// The tip covers most of what the hand covers; the contour is in the way of the rest.
@@ -142,17 +135,15 @@ fn follows(path: &Path) {
     }
 }
 
-/// Before every hold the commands were silent: no hold without a reason. Gives their number.
-fn holds_have_a_reason(path: &Path) -> usize {
+/// Before every hold the commands were silent: no hold without a reason.
+fn holds_have_a_reason(path: &Path) {
     let states = messages(path, topics::FOLLOWER_OPERATING_STATE);
     let commands = messages(path, topics::FOLLOWER_SERVO_CP);
-    let mut holds = 0;
     for pair in states.windows(2) {
         let [before, now] = [&pair[0].message, &pair[1].message];
         if now.state != OperatingState::PAUSED || before.state == OperatingState::PAUSED {
             continue;
         }
-        holds += 1;
         // What was published in the servo's own step came too late for it.
         let silent = commands
             .iter()
@@ -160,10 +151,10 @@ fn holds_have_a_reason(path: &Path) -> usize {
             .find(|command| now.stamp.seconds_since(command.received) > 0.002)
             .map(|command| now.stamp.seconds_since(command.message.stamp))
             .expect("a command before the hold");
-        // Longer where the whole machine was held up.
-        assert!((0.015..0.2).contains(&silent), "{silent} s before {now:?}");
+        // Longer where the whole machine was held up; how soon the arm holds, the timing
+        // tests say.
+        assert!((0.015..0.5).contains(&silent), "{silent} s before {now:?}");
     }
-    holds
 }
 
 #[test]

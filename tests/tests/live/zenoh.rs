@@ -50,14 +50,22 @@ fn it_drives_the_arm_and_feels_the_contour() {
     let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
     await_enabled(&session, &mut process);
     let file = &hand_of_strokes(&session);
-    let arguments = ["operator", "--hand", file, "--duration", "15"];
+    let arguments = [
+        "operator",
+        "--hand",
+        file,
+        "--duration",
+        "15",
+        "--until-felt",
+        "50",
+    ];
     let operator = peer(&session, &arguments);
     let sent = operated(&session, operator).success().json();
     process.interrupt();
     let summary = process.wait(PATIENCE).success().json();
-    assert!(number(&sent["force"], "rate_hz") > 300.0, "{sent:#}");
+    assert!(number(&sent["force"], "rate_hz") > 50.0, "{sent:#}");
     assert_eq!(number(&sent["force"], "not_finite"), 0.0);
-    assert!(number(&sent["force"], "nonzero") > 50.0, "{sent:#}");
+    assert!(number(&sent["force"], "nonzero") >= 50.0, "{sent:#}");
     assert!(
         number(&summary, "contact.peak_normal_force_N") > 5.0,
         "{summary:#}"
