@@ -26,6 +26,7 @@ mod mapping;
 mod model_mediated;
 mod position_force;
 mod position_position;
+mod step_velocity;
 mod tdpa;
 mod two_layer;
 mod wave;

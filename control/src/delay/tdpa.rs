@@ -38,6 +38,7 @@
 use super::contact::{CommandForce, LastCommand, TouchingTip};
 use super::energy_tank::EnergyTank;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
+use super::step_velocity::StepVelocity;
 use super::{
     Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
     LeaderOutput, Packet, vector,
@@ -85,8 +86,7 @@ pub struct TdpaLeader {
     fade: ForceRamp,
     /// The newest force received, hand units [N].
     force: Vector3<f64>,
-    /// Of the hand at the last step [m].
-    position: Option<Vector3<f64>>,
+    velocity: StepVelocity,
 }
 
 impl TdpaLeader {
@@ -97,7 +97,7 @@ impl TdpaLeader {
             tank: EnergyTank::default(),
             fade: ForceRamp::default(),
             force: Vector3::zeros(),
-            position: None,
+            velocity: StepVelocity::default(),
         }
     }
 }
@@ -114,19 +114,13 @@ impl Leader for TdpaLeader {
         self.tank.limit(own.reserve);
         let share = self.fade.step(dt, own.force_ramp, live.is_some());
         let Some(hand) = input.hand else {
-            self.position = None;
+            self.velocity.forget();
             return LeaderOutput {
                 force: [0.0; 3],
                 packet: Packet::empty(self.tank.told(energy)),
             };
         };
-        let here = Vector3::from(hand.position);
-        // Not the filtered velocity: one that lags would let the port give out.
-        let velocity = match self.position {
-            Some(before) if dt > 0.0 => (here - before) / dt,
-            _ => hand.velocity.into(),
-        };
-        self.position = Some(here);
+        let velocity = self.velocity.step(dt, &hand);
         let level = self.tank.level();
         let mut force = self
             .tank

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::Joints;
 
-use super::chain::Chain;
+use super::{chain::Chain, motion::LinkMotion};
 
 impl Chain {
     /// Joint torques τ \[Nm\] or \[N\] that the motion q, q̇, q̈ takes in `gravity`
@@ -28,25 +28,15 @@ impl Chain {
         let mut forces = [Vector3::zeros(); crate::MAX_JOINTS];
         let mut moments = [Vector3::zeros(); crate::MAX_JOINTS];
 
-        // Velocity and acceleration, from the base on. The base accelerates against gravity,
-        // which stands for the weight of all links.
-        let (mut turning, mut turning_rate) = (Vector3::zeros(), Vector3::zeros());
-        let mut acceleration = -gravity;
+        let mut motion = LinkMotion::of_base(gravity);
         for (joint, link) in self.links.iter().enumerate() {
             let placement = link.placement(q[joint]);
-            let (rotation, shift) = (&placement.rotation, &placement.translation);
-            acceleration = rotation.tr_mul(
-                &(acceleration + turning_rate.cross(shift) + turning.cross(&turning.cross(shift))),
-            );
-            turning = rotation.tr_mul(&turning);
-            turning_rate = rotation.tr_mul(&turning_rate);
-            let (rate, rate_change) = (link.axis * qd[joint], link.axis * qdd[joint]);
-            if link.is_revolute() {
-                turning_rate += rate_change + turning.cross(&rate);
-                turning += rate;
-            } else {
-                acceleration += rate_change + turning.cross(&rate) * 2.0;
-            }
+            motion = motion.next(link, &placement, qd[joint], qdd[joint]);
+            let LinkMotion {
+                turning,
+                turning_rate,
+                acceleration,
+            } = motion;
             let inertia = &link.inertia;
             let (lever, rotational) = (&inertia.first_moment, &inertia.rotational);
             forces[joint] = acceleration * inertia.mass

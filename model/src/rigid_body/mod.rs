@@ -27,6 +27,7 @@ mod inverse_dynamics;
 pub mod inverse_kinematics;
 mod jacobian;
 mod mass_matrix;
+mod motion;
 mod placement;
 mod regressor;
 #[cfg(test)]

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use crate::{Joints, MAX_JOINTS};
 
-use super::{chain::Chain, inertia::LINK_PARAMETERS};
+use super::{chain::Chain, inertia::LINK_PARAMETERS, motion::LinkMotion};
 
 /// Columns of a [`Regressor`].
 pub const REGRESSOR_COLUMNS: usize = MAX_JOINTS * LINK_PARAMETERS;
@@ -32,8 +32,7 @@ impl Chain {
         self.expect_joints(qd);
         self.expect_joints(qdd);
         let mut regressor = Regressor::zeros();
-        let (mut turning, mut turning_rate) = (Vector3::zeros(), Vector3::zeros());
-        let mut acceleration = -gravity;
+        let mut motion = LinkMotion::of_base(gravity);
         // How this link's origin moves, and how it turns, with each joint before it.
         let mut velocities = [Vector3::zeros(); MAX_JOINTS];
         let mut turns = [Vector3::zeros(); MAX_JOINTS];
@@ -45,21 +44,12 @@ impl Chain {
                 velocities[before] = rotation.tr_mul(&moved);
                 turns[before] = rotation.tr_mul(&turns[before]);
             }
-            acceleration = rotation.tr_mul(
-                &(acceleration + turning_rate.cross(shift) + turning.cross(&turning.cross(shift))),
-            );
-            turning = rotation.tr_mul(&turning);
-            turning_rate = rotation.tr_mul(&turning_rate);
-            let (rate, rate_change) = (link.axis * qd[joint], link.axis * qdd[joint]);
-            if link.is_revolute() {
-                turning_rate += rate_change + turning.cross(&rate);
-                turning += rate;
-                turns[joint] = link.axis;
-            } else {
-                acceleration += rate_change + turning.cross(&rate) * 2.0;
-                velocities[joint] = link.axis;
+            motion = motion.next(link, &placement, qd[joint], qdd[joint]);
+            match link.is_revolute() {
+                true => turns[joint] = link.axis,
+                false => velocities[joint] = link.axis,
             }
-            let columns = link_columns(&acceleration, &turning, &turning_rate);
+            let columns = link_columns(&motion);
             for before in 0..=joint {
                 let (velocity, turn) = (&velocities[before], &turns[before]);
                 for (column, (force, moment)) in columns.iter().enumerate() {
@@ -86,11 +76,12 @@ impl Chain {
 
 /// Force \[N\] and moment \[Nm\] about its origin that a link needs for a unit of each
 /// of its parameters, in its frame, moving with these.
-fn link_columns(
-    acceleration: &Vector3<f64>,
-    turning: &Vector3<f64>,
-    turning_rate: &Vector3<f64>,
-) -> [(Vector3<f64>, Vector3<f64>); LINK_PARAMETERS] {
+fn link_columns(motion: &LinkMotion) -> [(Vector3<f64>, Vector3<f64>); LINK_PARAMETERS] {
+    let LinkMotion {
+        turning,
+        turning_rate,
+        acceleration,
+    } = motion;
     let none = Vector3::zeros();
     let spin = turning.cross_matrix();
     // What a unit of first moment along each axis takes: the columns of ω̇× + ω× ω×.

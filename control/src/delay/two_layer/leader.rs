@@ -4,6 +4,7 @@ use super::inside::InnerLeader;
 use super::parameters::TwoLayer;
 use crate::delay::energy_tank::EnergyTank;
 use crate::delay::mapping::Mapping;
+use crate::delay::step_velocity::StepVelocity;
 use crate::delay::{Energy, Leader, LeaderInput, LeaderOutput};
 use nalgebra::Vector3;
 
@@ -17,8 +18,7 @@ pub struct TwoLayerLeader {
     mapping: Mapping,
     inner: InnerLeader,
     tank: EnergyTank,
-    /// Of the hand at the last step [m].
-    position: Option<Vector3<f64>>,
+    velocity: StepVelocity,
     /// Asked for at the last step [N].
     force: Vector3<f64>,
 }
@@ -30,7 +30,7 @@ impl TwoLayerLeader {
             mapping: law.mapping(),
             inner: law.inside.between(&law.mapping()).bare_leader(),
             tank: EnergyTank::default(),
-            position: None,
+            velocity: StepVelocity::default(),
             force: Vector3::zeros(),
         }
     }
@@ -58,20 +58,14 @@ impl Leader for TwoLayerLeader {
         let wanted = self.inner.step(dt, input, energy);
         let packet = self.tank.told_in(wanted.packet, energy);
         let Some(hand) = input.hand else {
-            self.position = None;
+            self.velocity.forget();
             self.force = Vector3::zeros();
             return LeaderOutput {
                 force: [0.0; 3],
                 packet,
             };
         };
-        let here = Vector3::from(hand.position);
-        // Not the filtered velocity: one that lags would let the port give out.
-        let velocity = match self.position {
-            Some(before) if dt > 0.0 => (here - before) / dt,
-            _ => hand.velocity.into(),
-        };
-        self.position = Some(here);
+        let velocity = self.velocity.step(dt, &hand);
         let force = self
             .tank
             .pays_for(FORESIGHT, wanted.force.into(), velocity, own.hand_mass);
