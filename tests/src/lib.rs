@@ -33,8 +33,9 @@ pub use domain::Domain;
 pub use hosts::{Host, LINK_KEYS, TwoHosts};
 pub use laws::{force_steps, laws, switches};
 pub use live::{
-    await_armed, await_enabled, hand_of_strokes, hand_through, human_hand, keep_enabled, node,
-    operated, rearm, rearmed, recording, set_parameter, signal, start, state, state_of_follower,
+    arm_state, await_armed, await_enabled, hand_of_strokes, hand_through, human_hand, keep_enabled,
+    node, operated, rearm, rearmed, recording, set_parameter, signal, start, state,
+    state_of_follower,
 };
 pub use machine::{Machine, Window, now};
 pub use memory::{MemoryLog, own_memory};

@@ -128,9 +128,26 @@ pub fn keep_enabled(session: &Session, mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// Keeps the arm enabled until `operator` ends; gives how that ended.
+/// Path of the file in which [`operated`] tells the arm's state: `--arm-state` of an operator,
+/// who waits while it stands.
+pub fn arm_state(session: &Session) -> String {
+    text(&session.folder().join("arm_state"))
+}
+
+/// Keeps the arm enabled until `operator` ends, who is told its state; gives how that ended.
+///
+/// # Panics
+///
+/// The state cannot be written.
 pub fn operated(session: &Session, mut operator: Process) -> Ended {
-    keep_enabled(session, || operator.is_running());
+    let path = arm_state(session);
+    let new = format!("{path}.new");
+    while operator.is_running() {
+        // Whole or not at all.
+        fs::write(&new, rearm(session)).expect("the session's folder");
+        fs::rename(&new, &path).expect("the session's folder");
+        thread::sleep(Duration::from_millis(300));
+    }
     operator.wait(PATIENCE)
 }
 

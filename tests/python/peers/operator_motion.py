@@ -10,8 +10,7 @@ from typing import TextIO
 from hand import Hand
 from stamps import Stamps
 
-# An arm that hears nothing for so long holds: a hand that was held up itself for
-# longer [s] goes on from where it was, as a person's does, rather than jump after the clock.
+# An arm that hears nothing for so long holds [s].
 HELD_UP = 0.015
 # A hand that shall feel something passes over its motion so often, there and back in turn.
 PASSES = 6
@@ -21,27 +20,47 @@ PASSES = 6
 SPOILS = ("nan", "infinite", "far", "jump", "zero_stamp")
 
 
-def ticks(rate: float, seconds: float, stop: threading.Event) -> Iterator[float]:
-    """Yields the time of the motion [s], `rate` times a second for `seconds`, or until `stop`.
+def ticks(
+    rate: float, seconds: float, stop: threading.Event, arm: "Arm"
+) -> Iterator[tuple[float, float]]:
+    """Yields the time since the start and that of the motion [s], `rate` times a second for
+    `seconds`, or until `stop`.
 
-    A tick that comes late is yielded late, and those it overran are left out. Where this
-    process was held up (`HELD_UP`), the motion stood still meanwhile.
+    A tick that comes late is yielded late, and those it overran are left out. The motion
+    stands still while the arm does.
     """
     start = time.monotonic()
     patience = max(HELD_UP, 2 / rate)
-    before = 0.0
+    moment = before = 0.0
     count = 0
     while (now := time.monotonic() - start) < seconds and not stop.is_set():
         due = count / rate
         if now < due:
             time.sleep(due - now)
             now = time.monotonic() - start
-        if now - before > patience:
-            start += now - before
-            now = before
+        # A person does not jump after the clock where this process was held up.
+        if now - before <= patience and arm.obeys():
+            moment += now - before
         before = now
-        yield now
+        yield now, moment
         count = max(count + 1, int(now * rate) + 1)
+
+
+class Arm:
+    """What is known of the arm: a person sees that it stands, and waits for it."""
+
+    def __init__(self, state: Path | None) -> None:
+        self._state = state
+        self._looked = -math.inf
+        self._obeys = True
+
+    def obeys(self) -> bool:
+        """Whether it does, as told in the file of its state, if there is one."""
+        now = time.monotonic()
+        if self._state is not None and now - self._looked > 0.1:
+            self._looked = now
+            self._obeys = not self._state.exists() or self._state.read_text() == "ENABLED"
+        return self._obeys
 
 
 def there_and_back(now: float, seconds: float) -> float:
@@ -124,8 +143,8 @@ def operate(
 ) -> dict[str, object]:
     """Moves the hand as recorded; `send(x, y, zero_stamp)` publishes one command.
 
-    With `until_felt`, it goes back and there again until so many forces came: an arm
-    that is held while the hand touches feels it the next time.
+    It waits while the arm stands. With `until_felt`, it goes back and there again until so
+    many forces came.
 
     Returns the report for JSON. `stop` ends the motion early, which is told in
     `interrupted`.
@@ -138,12 +157,13 @@ def operate(
     before: tuple[float, float, float] | None = None
     felt.start = time.monotonic()
     passes = PASSES if arguments.until_felt else 1
-    for moment in ticks(arguments.rate, passes * seconds, stop):
-        if moment >= seconds and felt.nonzero >= arguments.until_felt:
+    arm = Arm(arguments.arm_state)
+    for now, moment in ticks(arguments.rate, PASSES * seconds, stop, arm):
+        done = moment >= seconds and felt.nonzero >= arguments.until_felt
+        if done or moment >= passes * seconds:
             break
         x, y = hand.at(there_and_back(moment, seconds) * arguments.speed)
         felt.position = (x, y)
-        now = time.monotonic()
         if before is not None:
             max_step = max(max_step, math.hypot(x - before[1], y - before[2]))
             max_silence = max(max_silence, now - before[0])

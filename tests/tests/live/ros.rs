@@ -7,8 +7,8 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_tests::{
-    PATIENCE, Process, Session, await_enabled, hand_of_strokes, human_hand, messages, node, number,
-    operated, recording, run, signal, start,
+    PATIENCE, Process, Session, arm_state, await_enabled, hand_of_strokes, human_hand, messages,
+    node, number, operated, recording, run, signal, start,
 };
 
 #[test]
@@ -84,10 +84,19 @@ fn drives_the_arm(seconds: &str, hand: impl Fn(&Session) -> String) {
     let session = Session::new();
     let mut process = start(&session, &["--hand", "crtk"]);
     await_enabled(&session, &mut process);
-    // A hand that touches the contour for half a second misses it if the machine holds the
-    // arm up just then: it goes there again.
+    // A machine that stalls holds the arm: the hand waits until it obeys again, and goes back to
+    // a contour that it missed.
     let hand = hand(&session);
-    let arguments = ["--duration", seconds, "--hand", &hand, "--until-felt", "50"];
+    let arguments = [
+        "--duration",
+        seconds,
+        "--hand",
+        &hand,
+        "--until-felt",
+        "50",
+        "--arm-state",
+        &arm_state(&session),
+    ];
     let mut operator = Process::spawn(session.peer("ros_operator.py", &arguments));
     operator.await_stderr("ready", PATIENCE);
     let sent = operated(&session, operator).success().json();

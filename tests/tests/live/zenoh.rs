@@ -2,8 +2,8 @@
 
 use ferntast_msgs::topics;
 use ferntast_tests::{
-    PATIENCE, Process, Session, await_enabled, hand_of_strokes, messages, number, operated,
-    recording, run, start, state_of_follower,
+    PATIENCE, Process, Session, arm_state, await_enabled, hand_of_strokes, messages, number,
+    operated, recording, run, start, state_of_follower,
 };
 
 const MIDDLEWARE: [&str; 2] = ["--middleware", "zenoh"];
@@ -58,6 +58,8 @@ fn it_drives_the_arm_and_feels_the_contour() {
         "15",
         "--until-felt",
         "50",
+        "--arm-state",
+        &arm_state(&session),
     ];
     let operator = peer(&session, &arguments);
     let sent = operated(&session, operator).success().json();
