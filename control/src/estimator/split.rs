@@ -13,6 +13,9 @@ const UNKNOWN_SURFACE: f64 = 3.0;
 /// when it lasts so long [s]: of an arm that is jerked the estimate is off for as long as its
 /// filters take.
 const UNKNOWN_TIME: f64 = 0.05;
+/// A contact there ends when less than a contact's force lasts so long [s]: what the tip goes
+/// along with may push less for a while.
+const FAINT_TIME: f64 = 0.2;
 
 /// How many times the filter's delay a turn of the tip is seen in the forces.
 const TURN_DELAYS: f64 = 5.0;
@@ -47,6 +50,8 @@ pub(super) struct Split {
     direction: f64,
     /// For how long something that is not in the contour has pushed \[s\].
     unknown_for: f64,
+    /// For how long that has pushed less than a contact does [s].
+    faint_for: f64,
 }
 
 impl Split {
@@ -58,6 +63,7 @@ impl Split {
             sliding_for: 0.0,
             direction: 1.0,
             unknown_for: 0.0,
+            faint_for: 0.0,
         }
     }
 
@@ -90,9 +96,11 @@ impl Split {
         });
         let unknown = near.is_none() && force.norm() > UNKNOWN_SURFACE * parameters.contact_on;
         self.unknown_for = if unknown { self.unknown_for + dt } else { 0.0 };
+        let faint = force.norm() <= parameters.contact_on;
+        self.faint_for = if faint { self.faint_for + dt } else { 0.0 };
         estimate.touches = match near {
             Some(_) => touched.is_some(),
-            None if last.touches => force.norm() > parameters.contact_on,
+            None if last.touches => self.faint_for < FAINT_TIME,
             None => self.unknown_for >= UNKNOWN_TIME,
         };
         let Some((index, feature)) = touched else {

@@ -210,9 +210,15 @@ impl SetpointGenerator {
             .clamp(-limits.velocity, limits.velocity)
             + self.closing_speed(distance, limits.acceleration);
         let bounded = wanted.clamp(-top, top);
+        let speed = self.setpoint.velocity;
+        if bounded * speed < 0.0 {
+            // Called back, from what is in its way perhaps: it stops as soon as it can.
+            let stop = (speed.abs() / dt).min(self.limits.acceleration);
+            limits.acceleration = limits.acceleration.max(stop);
+        }
         let step = limits.acceleration * dt;
-        let change = bounded - self.setpoint.velocity;
-        let velocity = self.setpoint.velocity + change.clamp(-step, step);
+        let change = bounded - speed;
+        let velocity = speed + change.clamp(-step, step);
         let before = self.setpoint.position;
         let position =
             (before + velocity * dt).clamp(limits.lower.min(before), limits.upper.max(before));
@@ -305,6 +311,31 @@ mod tests {
         }
         // 0.4 rad at 0.2 rad/s, and 0.1 rad at a little more.
         assert!((2300..2600).contains(&steps), "{steps}");
+    }
+
+    #[test]
+    fn an_approach_that_is_called_back_stops_at_once() {
+        let mut generator = SetpointGenerator::new(80.0, LIMITS);
+        generator.start(0.0);
+        generator.set_target(1.0);
+        for _ in 0..1000 {
+            generator.step(DT);
+        }
+        let (from, speed) = (generator.setpoint().position, generator.setpoint().velocity);
+        assert!(speed > 0.19, "{speed}");
+        generator.set_target(0.0);
+        let mut furthest = from;
+        for _ in 0..500 {
+            generator.step(DT);
+            furthest = furthest.max(generator.setpoint().position);
+        }
+        // v²/2a, but for a step; by the acceleration of the approach twenty times as much.
+        let way = 0.5 * speed * speed / LIMITS.acceleration;
+        let went_on = furthest - from;
+        assert!((0.7 * way..1.5 * way).contains(&went_on), "{went_on} rad");
+        // Back it goes slowly again.
+        assert!(generator.setpoint().velocity < 0.0);
+        assert!(generator.is_approaching());
     }
 
     #[test]

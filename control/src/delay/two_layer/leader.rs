@@ -37,12 +37,17 @@ impl TwoLayerLeader {
 }
 
 impl TwoLayerLeader {
-    /// The force that the tank can let go of [N]: falling to zero at a rate r, f gives a hand of
-    /// mass m that lets go the impulse f²/2r, and the energy (f²/2r)²/2m ≤ E.
-    fn releasable(&self) -> f64 {
+    /// The force along `force` that the tank can let go of [N]: falling to zero at a rate r, f
+    /// gives a hand of mass m that lets go the impulse p = f²/2r, and where that moves along with
+    /// the force at v already the energy p v + p²/2m ≤ E.
+    fn releasable(&self, force: &Vector3<f64>, velocity: &Vector3<f64>) -> f64 {
         let own = &self.parameters;
-        let impulse = (2.0 * own.hand_mass * self.tank.level().max(0.0)).sqrt();
-        (2.0 * own.force_rate * impulse).sqrt()
+        let speed = force
+            .try_normalize(1e-9)
+            .map_or(0.0, |along| velocity.dot(&along));
+        let energy = self.tank.level().max(0.0);
+        let fastest = (speed * speed + 2.0 * energy / own.hand_mass).sqrt();
+        (2.0 * own.force_rate * own.hand_mass * (fastest - speed)).sqrt()
     }
 }
 
@@ -69,7 +74,7 @@ impl Leader for TwoLayerLeader {
         let force = self
             .tank
             .pays_for(FORESIGHT, wanted.force.into(), velocity, own.hand_mass);
-        let force = force.cap_magnitude(self.releasable());
+        let force = force.cap_magnitude(self.releasable(&force, &velocity));
         let lacking = 1.0 - (self.tank.level() / own.level.max(1e-9)).clamp(0.0, 1.0);
         let damping = own.largest_damping * lacking * Vector3::from(hand.velocity);
         self.force += (force - damping - self.force).cap_magnitude(own.force_rate * dt);

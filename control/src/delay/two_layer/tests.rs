@@ -73,6 +73,50 @@ fn a_hand_gets_what_was_promised_and_no_more() {
     assert!((0.001..=0.02).contains(&some), "{some}");
 }
 
+/// A hand of the lightest mass that was held against 10 N, with so much promised \[J\], is let
+/// go: what it gets \[J\].
+fn let_go(promised: f64) -> f64 {
+    let mut leader = law().leader();
+    let (mut position, mut speed, mut given, mut force) = (0.0, 0.0, 0.0, 0.0);
+    let mut energy = Energy::default();
+    for k in 0..1000 {
+        if k > 500 {
+            let pushed = speed + force / law().hand_mass * DT;
+            let work = force * 0.5 * (speed + pushed) * DT;
+            position += 0.5 * (speed + pushed) * DT;
+            speed = pushed;
+            energy.left += f64::max(work, 0.0);
+            energy.entered += f64::max(-work, 0.0);
+            given += work;
+        }
+        let promised = if k < 10 { 0.0 } else { promised };
+        let step = leader.step(
+            DT,
+            &LeaderInput {
+                hand: moving(position, speed),
+                received: received(0.0, 10.0, promised),
+                connected: true,
+            },
+            energy,
+        );
+        force = step.force[0];
+        assert!(k != 500 || force > 5.0 || promised < 0.01, "{force} N");
+    }
+    given
+}
+
+#[test]
+fn a_hand_that_lets_go_is_pushed_no_further_than_the_tank_pays_for() {
+    for promised in [0.005, 0.02, 0.04] {
+        let given = let_go(promised);
+        // A step's delay overdraws a little: at most f v Δt, 10 N at 0.6 m/s.
+        assert!(
+            (0.3 * promised..promised + 0.006).contains(&given),
+            "{given} J of {promised} J"
+        );
+    }
+}
+
 struct Tip {
     follower: TwoLayerFollower,
     command: f64,
