@@ -66,3 +66,14 @@ pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     serde_json::to_writer_pretty(&mut stdout, value).map_err(Failure::failed)?;
     writeln!(stdout).map_err(Failure::failed)
 }
+
+/// Prints `value` as one line of JSON on stdout: one of many.
+///
+/// # Errors
+///
+/// As [`print_json`].
+pub fn print_json_line(value: &impl Serialize) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    serde_json::to_writer(&mut stdout, value).map_err(Failure::failed)?;
+    writeln!(stdout).map_err(Failure::failed)
+}

@@ -62,6 +62,12 @@ pub struct Arguments {
     /// Do not arm at the start: wait for `ferntast state follower enable` or a CRTK client.
     #[arg(long)]
     no_enable: bool,
+
+    /// Where the hand is a script or a recorded motion: after a silence that paused the arm, wait
+    /// for `ferntast state follower resume`. Without this the script's operator says so itself,
+    /// after a second, as long as nobody else stopped the arm or took the master and no node died.
+    #[arg(long)]
+    no_rearm: bool,
 }
 
 /// Runs it.
@@ -86,6 +92,7 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
     let options = SessionOptions {
         duration: arguments.duration,
         enable: !arguments.no_enable,
+        rearm: !arguments.no_rearm,
     };
     let (summary, outcome) =
         session::run(graph, context, &options, &stop).map_err(Failure::of_session)?;

@@ -1,6 +1,6 @@
 //! `ferntast state`.
 
-use std::{process::ExitCode, thread, time::Duration};
+use std::{process::ExitCode, sync::atomic::Ordering, thread, time::Duration};
 
 use clap::ValueEnum;
 use ferntast_bus::{Bus, Depth};
@@ -8,22 +8,35 @@ use ferntast_msgs::sample::{
     OperatingState, OperatingStateSample, StateCommand, StateCommandSample,
 };
 use ferntast_msgs::topics::{self, Topic};
-use ferntast_nodes::{process::Clock, session::Visit};
+use ferntast_nodes::{
+    events::Event,
+    process::{Clock, stop_on_signals},
+    session::Visit,
+};
 use serde_json::json;
 
-use super::{Failure, output::print_json};
+use super::{
+    Failure,
+    output::{print_json, print_json_line},
+};
 
 /// Tell the operating state of a running session, or change it.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "After a hold (the master or the link fell silent) the arm stays where it is until it is re-armed:\n  \
     ferntast state follower          # tells the state\n  \
-    ferntast state follower resume"
+    ferntast state follower resume\n  \
+    ferntast state --follow          # what happens, with times and reasons, until Ctrl-C"
 )]
 pub struct Arguments {
     /// Who is to obey.
-    #[arg(value_enum)]
-    device: Device,
+    #[arg(value_enum, required_unless_present = "follow")]
+    device: Option<Device>,
+
+    /// Tell what happens in the session as it happens: states, crashes, hands, the link, recordings.
+    /// With --json, one JSON object a line.
+    #[arg(long, conflicts_with_all = ["device", "command"])]
+    follow: bool,
 
     /// What to do; without it the state is only told.
     #[arg(value_enum)]
@@ -60,7 +73,14 @@ const PATIENCE: Duration = Duration::from_millis(1500);
 /// Gives the command and waits for the state that follows.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let visit = Visit::open(&arguments.session).map_err(Failure::refused)?;
-    let (command_topic, state_topic) = match arguments.device {
+    let Some(device) = arguments.device else {
+        return follow(
+            visit.as_ref().and_then(Visit::bus),
+            &arguments.session,
+            json,
+        );
+    };
+    let (command_topic, state_topic) = match device {
         Device::Follower => (
             topics::FOLLOWER_STATE_COMMAND,
             topics::FOLLOWER_OPERATING_STATE,
@@ -97,6 +117,67 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             "the command was not followed: {name}, {reason}"
         )))
     }
+}
+
+/// How long a session may say nothing until it counts as ended: it says its newest event
+/// again every second.
+const ENDED: f64 = 5.0;
+
+/// Tells the session's events until Ctrl-C, or until it ends.
+fn follow(bus: Option<&Bus>, session: &str, json: bool) -> Result<ExitCode, Failure> {
+    let nobody = || {
+        Failure::failed(format!(
+            "nothing is heard of session {session:?}: is it running? (ferntast session, or --session NAME)"
+        ))
+    };
+    let mut told = bus
+        .ok_or_else(nobody)?
+        .subscriber(topics::DIAGNOSTICS, Depth::Queue(topics::EVENT_QUEUE))
+        .map_err(Failure::failed)?;
+    let stop = stop_on_signals().map_err(Failure::failed)?;
+    let clock = Clock::start();
+    let (mut heard, mut newest) = (clock.now(), None);
+    while !stop.load(Ordering::Relaxed) {
+        while let Some(received) = told.next(clock.now()) {
+            let Some(event) = Event::of(&received.message) else {
+                continue;
+            };
+            heard = clock.now();
+            if newest.is_none_or(|newest| event.at > newest) {
+                newest = Some(event.at);
+                tell(&event, json)?;
+            }
+        }
+        if clock.now().seconds_since(heard) > ENDED {
+            return newest.map(|_| ExitCode::SUCCESS).ok_or_else(nobody);
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn tell(event: &Event, json: bool) -> Result<(), Failure> {
+    let seconds = event.at.nanos() as f64 * 1e-9;
+    let level = event.level.name().unwrap_or("error");
+    if json {
+        return print_json_line(
+            &json!({"time": seconds, "level": level, "event": event.text.as_str()}),
+        );
+    }
+    let of_day = event
+        .at
+        .nanos()
+        .div_euclid(1_000_000)
+        .rem_euclid(86_400_000);
+    println!(
+        "{:02}:{:02}:{:02}.{:03} UTC  {level:7}  {}",
+        of_day / 3_600_000,
+        of_day / 60_000 % 60,
+        of_day / 1000 % 60,
+        of_day % 1000,
+        event.text
+    );
+    Ok(())
 }
 
 /// Gives the command, if there is one, and waits for the state that it leads

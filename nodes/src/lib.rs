@@ -4,6 +4,7 @@ pub mod bridge;
 pub mod config;
 mod console;
 pub mod estimator;
+pub mod events;
 pub mod graph;
 pub mod limits;
 pub mod link;

@@ -11,9 +11,11 @@ use serde_json::Value;
 
 use crate::{Ended, PATIENCE, Process, Session, data, run, wait_for, wait_until};
 
-/// `ferntast session` in its own session, recording into `run`, with these arguments.
+/// `ferntast session` in its own session, recording into `run`, with these arguments. Nobody
+/// arms its arm again but the test.
 pub fn start(session: &Session, arguments: &[&str]) -> Process {
-    let mut command = session.ferntast_here(&["session", "--json", "--record", "run"]);
+    let mut command =
+        session.ferntast_here(&["session", "--json", "--record", "run", "--no-rearm"]);
     command.args(arguments);
     Process::spawn(command)
 }

@@ -15,6 +15,8 @@ export const session = {
   past: [],
   connected: false,
   nodes: [],
+  /** What happened, the oldest first. */
+  events: [],
 };
 
 const listeners = { hello: [], snapshot: [], refused: [], connection: [] };
@@ -43,6 +45,7 @@ export function send(request) {
 function take(message) {
   if (message.type === "snapshot") {
     if (message.nodes) session.nodes = message.nodes;
+    if (message.events) session.events = message.events;
     message.at = performance.now();
     session.now = message;
     session.past.push(message);

@@ -32,7 +32,7 @@ function legend() {
   fill(byId("scene-legend"),
     key("disc", "background:var(--model)", "tip"), key("", "border-color:var(--measured)", "arm"),
     key("ring", "border-color:var(--hand)", "hand, its force and spring"), key("", "border-color:var(--force)", "contact force"),
-    key("ring dash", "border-color:var(--second)", "as the operator sees it"));
+    key("ring dash", "border-color:var(--second)", "delayed image: the arm (dashed) as the operator sees it"));
 }
 
 function frame(time) {
@@ -71,7 +71,7 @@ function hint() {
   canvas.classList.toggle("holding", Boolean(hand.wanted()));
   canvas.dataset.drawn = counted;
   const text = !mine ? "Take the controls to move the hand." : hand.wanted()
-    ? "Space lets the hand go." : "Drag, or arrow keys, to take the hand.";
+    ? "Release, or Space, lets the hand go." : "Drag, or arrow keys, to take the hand.";
   if (byId("scene-hint").textContent !== text) byId("scene-hint").textContent = text;
 }
 

@@ -21,10 +21,15 @@ function move(point) {
   target = point.map((value) => Math.min(REACH, Math.max(-REACH, value)));
 }
 
-/** Takes the hand where it is, if nobody else's is on the master: an arm that nobody moves pauses again at once. */
+/** Where a hand would begin [m]: where the one is that is there, else where the tip is. */
+function begin() {
+  return session.now?.begin || [0, 0];
+}
+
+/** Takes the hand where the tip is, if nobody else's is on the master: an arm that nobody moves pauses again at once. */
 export function takeHere() {
   const { holder } = session.now.authority;
-  if (!target && (holder === "nobody" || holder === "page")) move(session.now.hand || [0, 0]);
+  if (!target && (holder === "nobody" || holder === "page")) move(begin());
 }
 
 /** Lets the hand go. */
@@ -52,7 +57,7 @@ export function listen(canvas, refuse) {
     }
     canvas.setPointerCapture(event.pointerId);
     canvas.focus({ preventScroll: true });
-    const start = target || session.now?.hand || [0, 0];
+    const start = target || begin();
     const at = point(event);
     // The hand is gripped where it is, not moved to the pointer.
     grip = { id: event.pointerId, from: [start[0] - at[0], start[1] - at[1]] };
@@ -64,11 +69,13 @@ export function listen(canvas, refuse) {
     const at = point(event);
     move([at[0] + grip.from[0], at[1] + grip.from[1]]);
   });
+  // Who releases the pointer lets go, whatever the arm is doing: nothing goes on pulling.
   const up = (event) => {
-    if (grip?.id === event.pointerId) grip = null;
+    if (grip?.id === event.pointerId) letGo();
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);
+  canvas.addEventListener("lostpointercapture", up);
   canvas.addEventListener("keydown", (event) => {
     const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     if (event.key === " ") {
@@ -82,7 +89,7 @@ export function listen(canvas, refuse) {
       return;
     }
     const step = KEY_STEP * (event.shiftKey ? 5 : 1);
-    const from = target || session.now?.hand || [0, 0];
+    const from = target || begin();
     move([from[0] + way[0] * step, from[1] + way[1] * step]);
     touched = true;
   });

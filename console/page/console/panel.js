@@ -2,9 +2,12 @@
 
 import { byId, fill, make, toast, write } from "../common/dom.js";
 import { fixed, percent } from "../common/numbers.js";
+import * as banner from "./banner.js";
+import * as channel from "./channel.js";
 import { operates, send, session } from "./connection.js";
 import * as feel from "./feel.js";
 import { letGo, takeHere } from "./hand.js";
+import * as log from "./log.js";
 
 const parts = {};
 let rumble = false;
@@ -18,38 +21,20 @@ function button(id, text, onclick, more = {}) {
   return parts[id];
 }
 
-function slider(id, text, { max, step, value, unit, decimals }) {
-  const output = make("output", { for: id });
-  const input = make("input", { id, type: "range", min: 0, max, step, value, "aria-describedby": "measured" });
-  const tell = () => write(output, `${fixed(Number(input.value), decimals)} ${unit}`);
-  input.addEventListener("input", tell);
-  input.addEventListener("input", sendLink);
-  tell();
-  parts[id] = input;
-  return make("div", { className: "slider" }, make("label", { for: id, textContent: text }), output, input);
-}
-
-let linkTimer = 0;
-let lawAsked = 0;
-
-function sendLink() {
-  clearTimeout(linkTimer);
-  // While the slider moves, a few times a second is enough.
-  linkTimer = setTimeout(() => {
-    send({
-      type: "link",
-      round_trip: Number(parts["link-delay"].value) * 1e-3,
-      jitter: Number(parts["link-jitter"].value) * 1e-3,
-      loss: Number(parts["link-loss"].value) * 1e-2,
-    });
-  }, 120);
-}
-
 function rearm() {
-  takeHere();
-  // The hand has to be on its way before the arm listens to it again.
-  setTimeout(() => send({ type: "state", word: "rearm" }), 150);
+  // A hand that was left somewhere begins anew, where the tip is.
+  letGo();
+  setTimeout(takeHere, 60);
+  // It has to be on its way before the arm listens to it again.
+  setTimeout(() => send({ type: "state", word: "rearm" }), 250);
 }
+
+function arm() {
+  letGo();
+  send({ type: "state", word: "arm" });
+}
+
+const ACTS = { reset: stop, arm, rearm, operate: () => send({ type: "operate" }) };
 
 /** Stops: drives off. Anybody may. */
 export function stop() {
@@ -70,17 +55,14 @@ export function build() {
   parts.meter = make("i", { id: "force-bar" });
   parts.nodes = make("table", { className: "nodes" });
   parts.label = make("input", { id: "mark-label", type: "text", placeholder: "what to note", maxLength: 90, "aria-label": "Label of the mark" });
-  parts.law = make("select", { id: "law", "aria-label": "Delay law" },
-    about.laws.map((law) => make("option", { textContent: law.replaceAll("_", "–"), value: law, selected: law === about.law })));
-  parts.law.addEventListener("change", () => { lawAsked = Date.now(); send({ type: "law", law: parts.law.value }); });
   fill(byId("panel"),
     section("Control",
       make("div", { className: "row" }, button("operate", "Take the controls", () => send({ type: operates() ? "watch" : "operate" }), { className: "primary" })),
       make("div", { className: "row" },
-        button("arm", "Arm", () => send({ type: "state", word: "arm" })),
+        button("arm", "Arm", arm),
         button("hold", "Hold", () => { letGo(); send({ type: "state", word: "hold" }); }),
         button("rearm", "Re-arm", rearm)),
-      make("p", { id: "why", className: "quiet small", style: "margin:8px 0 6px" }),
+      make("div", { className: "row", style: "margin-bottom:8px" }, button("disable", "Disable", stop, { title: "Drives off; out of a fault, too. Anybody may." })),
       pairs(["holder", "authority"], ["pages", "pages open"])),
     section("Force on the hand",
       make("div", { className: "row", style: "margin-bottom:6px" },
@@ -90,21 +72,27 @@ export function build() {
         button("sound", "Sound", () => toggle("sound", (on) => feel.sound(on)), { "aria-pressed": "false" }),
         button("rumble", "Rumble", () => toggle("rumble", (on) => { rumble = on; }), { "aria-pressed": "false" }))),
     section("Link",
-      slider("link-delay", "round trip", { max: 1000, step: 5, value: Math.round(about.link.round_trip * 1e3), unit: "ms", decimals: 0 }),
-      slider("link-jitter", "jitter, ±", { max: 20, step: 0.5, value: about.link.jitter * 1e3, unit: "ms", decimals: 1 }),
-      slider("link-loss", "loss each way", { max: 30, step: 0.1, value: about.link.loss * 100, unit: "%", decimals: 1 }),
-      make("div", { className: "row", style: "margin-top:8px" }, make("label", { className: "quiet small", for: "law", textContent: "law" }), make("div", { className: "grow" }, parts.law)),
-      about.link.rearm_after_gap > 0
-        ? make("p", { id: "rearms", className: "quiet small", style: "margin-top:8px", textContent: `After gaps of up to ${fixed(about.link.rearm_after_gap, 1)} s in the link the arm goes on by itself, slowly: this scenario says so.` })
+      channel.build(about),
+      about.rearm_after_gap > 0
+        ? make("p", { id: "rearms", className: "quiet small", style: "margin-top:8px", textContent: `After gaps of up to ${fixed(about.rearm_after_gap, 1)} s in the link the arm goes on by itself, slowly: this scenario says so.` })
         : null,
       make("p", { id: "measured", className: "quiet small number", style: "margin-top:8px" }),
       make("p", { id: "told", className: "small told", role: "status" })),
     section("Recording",
-      make("div", { className: "row" }, button("record", "Record", () => send(session.now?.recorder.on ? { type: "end_record" } : { type: "record", folder: "" }))),
+      make("div", { className: "row" }, button("record", "Record", record)),
       make("div", { className: "row" }, make("div", { className: "grow" }, parts.label), button("mark", "Mark", mark, { style: "flex:none" })),
       make("p", { id: "recording", className: "quiet small", style: "margin-top:8px;overflow-wrap:anywhere" })),
     make("section", { className: "panel" }, make("details", {}, make("summary", { textContent: "Nodes" }), parts.nodes)));
   parts.label.addEventListener("keydown", (event) => { if (event.key === "Enter") mark(); });
+}
+
+/** This page began the recording that runs: who watches may end no other. */
+let begun = false;
+
+function record() {
+  const on = session.now?.recorder.on;
+  begun = !on;
+  send(on ? { type: "end_record" } : { type: "record", folder: "" });
 }
 
 function mark() {
@@ -126,20 +114,6 @@ function holder({ authority }) {
   return "nobody";
 }
 
-const LET_GO = {
-  silent: "The hand was let go: the page was hidden or stood still.",
-  idle: "The hand was let go: nobody touched the page for 20 s.",
-};
-
-function why(snapshot) {
-  const [state, reason] = snapshot.states.follower || ["?", ""];
-  if (!session.connected) return "No connection to the session.";
-  if (state === "DISABLED") return "The drives are off. Arm to go on.";
-  if (state === "FAULT") return `Fault: ${reason}. Arm to go on.`;
-  if (state === "PAUSED") return `${LET_GO[snapshot.seat.let_go] || "The arm holds:"} ${LET_GO[snapshot.seat.let_go] ? "" : `${reason}.`} Re-arm to go on.`;
-  return operates() ? "Drag in the picture to move the hand." : "This page watches.";
-}
-
 const TONE = { ENABLED: "good", PAUSED: "warn", FAULT: "bad", DISABLED: "" };
 
 function chip(tone, name, value) {
@@ -153,7 +127,7 @@ const told = new Map();
 /** What link, gateway and hand have to say: who was refused, and why there is nothing to hear. */
 function words() {
   for (const node of session.nodes) {
-    if (node.message && ["link_leader", "link_follower", "gateway", "master"].includes(node.name)) {
+    if (node.message && !node.faults.includes(node.message) && ["link_leader", "link_follower", "gateway", "master"].includes(node.name)) {
       const what = node.faults.find((fault) => fault.startsWith("stranger")) || "";
       told.set(node.name, { text: `${node.name}: ${what}${what && " – "}${node.message}`, until: Date.now() + TOLD_FOR });
     }
@@ -171,13 +145,18 @@ export function slow(snapshot) {
   write(parts.operate, mine ? "Give up the controls" : other ? `Page ${snapshot.seat.operator} has the controls` : "Take the controls");
   parts.operate.classList.toggle("primary", !mine && !other);
   parts.operate.disabled = Boolean(other);
-  for (const id of ["arm", "hold", "rearm", "record", "mark", "link-delay", "link-jitter", "link-loss", "law"]) parts[id].disabled = !mine;
-  const [state] = snapshot.states.follower || ["?"];
-  const [leader] = snapshot.states.leader || ["?"];
-  parts.rearm.disabled ||= state !== "PAUSED" && leader !== "PAUSED";
+  for (const id of ["arm", "hold", "rearm"]) parts[id].disabled = !mine;
+  for (const control of Object.values(channel.controls)) control.disabled = !mine;
+  const state = snapshot.states.follower?.state || "?";
+  const leader = snapshot.states.leader?.state || "?";
+  const word = banner.word(snapshot);
+  parts.rearm.disabled ||= word !== "rearm";
   parts.hold.disabled ||= state !== "ENABLED";
-  parts.arm.disabled ||= state === "ENABLED" && leader === "ENABLED";
-  write(byId("why"), why(snapshot));
+  parts.arm.disabled ||= word !== "arm";
+  parts.disable.disabled = state === "DISABLED" && leader === "DISABLED";
+  write(parts.disable, state === "FAULT" || leader === "FAULT" ? "Reset the fault" : "Disable");
+  for (const [id, own] of [["arm", "arm"], ["rearm", "rearm"], ["disable", "reset"]]) parts[id].classList.toggle("primary", mine && word === own);
+  banner.show(banner.advice(snapshot, session.about, { connected: session.connected, mine, events: session.events }), (own) => ACTS[own]());
   write(parts.holder, holder(snapshot));
   write(parts.pages, String(snapshot.seat.pages));
   const { link } = snapshot;
@@ -185,9 +164,9 @@ export function slow(snapshot) {
     ? `measured: ${fixed(link.round_trip && link.round_trip * 1e3, 1)} ms, ±${fixed(link.jitter * 1e3, 1)} ms, ${percent(link.loss)} lost`
     : "measured: –");
   write(byId("told"), words());
-  // A change takes a round trip; until then the choice stands.
-  if (link?.law && link.law !== parts.law.value && Date.now() - lawAsked > 5000) parts.law.value = link.law;
+  channel.show(snapshot);
   const { recorder } = snapshot;
+  parts.record.disabled = recorder.on && !mine && !begun;
   write(parts.record, recorder.on ? "End the recording" : "Record");
   parts.record.setAttribute("aria-pressed", String(recorder.on));
   write(byId("recording"), recorder.on ? `${recorder.messages} messages in ${recorder.folder}` : recorder.folder ? `last: ${recorder.folder}` : "Nothing is being recorded.");
@@ -202,6 +181,7 @@ export function slow(snapshot) {
       chip("", "hand", holder(snapshot)),
       recorder.on ? chip("bad", "rec", "on") : null);
   }
+  log.show(session.events);
   if (parts.nodes.parentElement.open) {
     fill(parts.nodes, session.nodes.map((node) => {
       const tone = { ok: "good", warning: "warn" }[node.level] || "bad";

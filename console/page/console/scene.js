@@ -29,6 +29,19 @@ export function view(canvas, about) {
   };
 }
 
+/** How far apart hand and tip are, where the tip is [m]; null where nobody's hand is there. */
+export function apart(about, snapshot) {
+  if (!snapshot.hand || !snapshot.tip) return null;
+  const [x, y] = atTip(about, snapshot.hand);
+  return Math.hypot(x - snapshot.tip[0], y - snapshot.tip[1]);
+}
+
+/** Where the arm brings its tip when the hand is there: from the leader's base frame to the follower's. */
+function atTip(about, [x, y]) {
+  const offset = about.workspace_offset;
+  return [x * about.position_scale + offset[0], y * about.position_scale + offset[1]];
+}
+
 function line(context, points, colour, width, dash = []) {
   context.beginPath();
   points.forEach(([x, y], index) => (index ? context.lineTo(x, y) : context.moveTo(x, y)));
@@ -207,8 +220,7 @@ export function draw(canvas, about, snapshot, delayed, target) {
   springs(v, about, snapshot.tip);
   labels(v, about);
 
-  const offset = about.workspace_offset;
-  const place = (point) => [point[0] * about.position_scale + offset[0], point[1] * about.position_scale + offset[1]];
+  const place = (point) => atTip(about, point);
   const hand = snapshot.hand && place(snapshot.hand);
   const drawnTip = snapshot.q && limb(v, about, snapshot.q, colours.measured, 0.22);
   const tip = snapshot.tip || drawnTip;

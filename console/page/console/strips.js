@@ -2,19 +2,22 @@
 // live curves at a cost that a page beside a haptic session cannot pay.
 
 import { fill, make, write } from "../common/dom.js";
-import { fixed, ticks } from "../common/numbers.js";
-import { colours, fitted } from "../common/theme.js";
+import { fixed } from "../common/numbers.js";
+import { drawChart, frame } from "./chart.js";
+import { session } from "./connection.js";
 
 /** Seconds shown. */
 const SPAN = 20;
+/** An event is told where the pointer is as near [s]. */
+const NEAR = 0.4;
 
 const length = (pair) => (pair ? Math.hypot(pair[0], pair[1]) : null);
 const milli = (value) => (value === null || value === undefined ? null : value * 1e3);
 
-/** What the charts show: title, unit, least span, curves (name, colour, value of a snapshot). */
+/** What the charts show: title, unit, least span of each axis, curves (name, colour, value of a snapshot, axis). */
 const CHARTS = [
   {
-    id: "position", title: "Position", unit: "mm", least: 10,
+    id: "position", title: "Position", unit: "mm", least: 10, decimals: 1, dashed: ["x", "y"],
     curves: [
       { name: "hand x", colour: "hand", value: (s) => milli(s.hand?.[0]) },
       { name: "tip x", colour: "model", value: (s, a) => (s.tip ? milli((s.tip[0] - a.workspace_offset[0]) / a.position_scale) : null) },
@@ -23,21 +26,21 @@ const CHARTS = [
     ],
   },
   {
-    id: "force", title: "Force", unit: "N", least: 5, zero: true,
+    id: "force", title: "Force", unit: "N", least: 5, leastRight: 1, zero: true, decimals: 1,
     curves: [
       { name: "contact", colour: "force", value: (s) => (s.contact.on ? length(s.force) : 0) },
-      { name: "hand", colour: "hand", value: (s) => length(s.hand_force) },
+      { name: "hand", colour: "hand", axis: "right", value: (s) => length(s.hand_force) },
     ],
   },
   {
-    id: "delay", title: "Delay", unit: "ms", least: 10, zero: true,
+    id: "delay", title: "Delay", unit: "ms", least: 10, zero: true, decimals: 1,
     curves: [
       { name: "round trip", colour: "measured", value: (s) => milli(s.link?.round_trip) },
       { name: "jitter", colour: "second", value: (s) => milli(s.link?.jitter) },
     ],
   },
   {
-    id: "energy", title: "Energy in − out", unit: "J", least: 0.1,
+    id: "energy", title: "Energy in − out", unit: "J", least: 0.1, decimals: 3,
     curves: [
       { name: "operator's port", colour: "hand", value: (s) => s.link && s.link.energy_in - s.link.energy_out },
       { name: "arm's port", colour: "force", value: (s) => s.follower_link && s.follower_link.energy_in - s.follower_link.energy_out },
@@ -46,92 +49,104 @@ const CHARTS = [
 ];
 
 let charts = [];
+/** What was there when the charts were paused; null while they run. */
+let paused = null;
+/** Where the pointer is: chart, and share of the time shown; null where it is on none. */
+let pointer = null;
+let last = null;
+
+function legend(chart) {
+  const line = (style, text) => make("span", {}, make("i", { style }), text);
+  const solid = chart.curves.filter((curve) => !curve.dash);
+  const keys = solid.map((curve) => line(`border-color:var(--${curve.colour})`,
+    (chart.dashed ? curve.name.replace(` ${chart.dashed[0]}`, "") : curve.name) + (curve.axis === "right" ? " (right)" : "")));
+  if (!chart.dashed) return keys;
+  return [...keys, line("border-color:var(--quiet)", chart.dashed[0]), line("border-color:var(--quiet);border-top:2px dashed;width:17px", chart.dashed[1])];
+}
+
+function pause() {
+  paused = paused ? null : session.past.slice();
+  show();
+  if (session.about) draw(session.past, session.about);
+}
+
+function show() {
+  const button = document.querySelector("#pause");
+  write(button, paused ? "Go on" : "Pause");
+  button.setAttribute("aria-pressed", String(Boolean(paused)));
+}
+
+function follow(chart) {
+  const move = (event) => {
+    const box = chart.canvas.getBoundingClientRect();
+    const { left, right } = frame(chart, box.width, box.height);
+    const share = (event.clientX - box.left - left) / (right - left);
+    pointer = share >= 0 && share <= 1 ? { chart, share } : null;
+    if (last) draw(session.past, last);
+  };
+  chart.canvas.addEventListener("pointermove", move);
+  chart.canvas.addEventListener("pointerdown", move);
+  chart.canvas.addEventListener("pointerleave", () => {
+    pointer = null;
+    if (last) draw(session.past, last);
+  });
+}
 
 /** Makes the charts in `parent`. */
 export function build(parent) {
+  paused = pointer = null;
   charts = CHARTS.map((chart) => {
     const canvas = make("canvas", { role: "img", "aria-label": `${chart.title} of the last ${SPAN} seconds in ${chart.unit}` });
     const value = make("span", { className: "number" });
-    const keys = make("span", { className: "keys" }, chart.curves.filter((c) => !c.dash).map((curve) =>
-      make("span", {}, make("i", { style: `border-color:var(--${curve.colour})` }), curve.name.replace(" x", ""))));
+    const keys = make("span", { className: "keys" }, legend(chart));
+    const tip = make("div", { className: "tip", hidden: true });
     const box = make("div", { className: "strip panel", id: `strip-${chart.id}` },
-      make("header", {}, make("span", {}, make("b", { textContent: chart.title }), ` [${chart.unit}]`), value, keys), canvas);
-    return { ...chart, canvas, value, box };
+      make("header", {}, make("span", {}, make("b", { textContent: chart.title }), ` [${chart.unit}]`), value, keys), canvas, tip);
+    const own = { ...chart, canvas, value, box, tip };
+    follow(own);
+    return own;
   });
-  fill(parent, charts.map((chart) => chart.box));
+  const button = make("button", { id: "pause", type: "button", className: "bare", textContent: "Pause", "aria-pressed": "false", onclick: pause });
+  fill(parent, make("div", { className: "strips-head" },
+    make("span", { className: "quiet small", textContent: `The last ${SPAN} s; point at a chart to read it. Dotted lines with a mark are events.` }), button),
+  charts.map((chart) => chart.box));
 }
 
 /** Draws the charts from snapshots, the oldest first. */
 export function draw(past, about) {
-  const last = past[past.length - 1];
-  if (!last) return;
-  const from = last.t - SPAN;
-  const begin = Math.max(0, past.findIndex((snapshot) => snapshot.t >= from));
-  for (const chart of charts) drawOne(chart, past, begin, from, about);
+  const seen = paused || past;
+  const newest = seen[seen.length - 1];
+  if (!newest) return;
+  last = about;
+  const from = newest.t - SPAN;
+  const begin = Math.max(0, seen.findIndex((snapshot) => snapshot.t >= from));
+  const shown = seen.slice(begin);
+  const times = shown.map((snapshot) => snapshot.t);
+  const cursor = pointer ? from + pointer.share * SPAN : null;
+  for (const chart of charts) {
+    const columns = chart.curves.map((curve) => shown.map((snapshot) => curve.value(snapshot, about)));
+    drawChart(chart, { times, columns, from, span: SPAN, events: session.events, cursor });
+    read(chart, { times, columns, cursor, now: newest.t });
+  }
 }
 
-function drawOne(chart, past, begin, from, about) {
-  const { context: c, width, height } = fitted(chart.canvas);
-  if (width < 10) return;
-  const columns = chart.curves.map((curve) => {
-    const values = [];
-    for (let n = begin; n < past.length; n++) values.push(curve.value(past[n], about));
-    return values;
-  });
-  let [low, high] = [chart.zero ? 0 : Infinity, chart.zero ? 0 : -Infinity];
-  for (const values of columns) {
-    for (const value of values) {
-      if (value === null || value === undefined) continue;
-      if (value < low) low = value;
-      if (value > high) high = value;
-    }
-  }
-  if (!(high >= low)) [low, high] = [0, chart.least];
-  if (high - low < chart.least) {
-    const middle = (low + high) / 2;
-    [low, high] = chart.zero ? [0, chart.least] : [middle - chart.least / 2, middle + chart.least / 2];
-  }
-  const room = (high - low) * 0.06;
-  [low, high] = [chart.zero ? 0 : low - room, high + room];
-  const [left, right, top, bottom] = [38, width - 2, 4, height - 15];
-  const x = (t) => left + ((t - from) / SPAN) * (right - left);
-  const y = (value) => bottom - ((value - low) / (high - low)) * (bottom - top);
-  c.clearRect(0, 0, width, height);
-  c.font = '10.5px system-ui, "DejaVu Sans", sans-serif';
-  c.lineWidth = 1;
-  c.textAlign = "right";
-  const marks = ticks(low, high, 4);
-  const decimals = Math.max(0, Math.ceil(-Math.log10(marks.step) - 1e-9));
-  for (const value of marks.values) {
-    c.strokeStyle = colours.grid;
-    c.beginPath();
-    c.moveTo(left, y(value));
-    c.lineTo(right, y(value));
-    c.stroke();
-    c.fillStyle = colours.quiet;
-    c.fillText(fixed(value, decimals), left - 5, y(value) + 3.5);
-  }
-  c.textAlign = "left";
-  c.fillText(`−${SPAN} s`, left, height - 3);
-  c.textAlign = "right";
-  c.fillText("now", right, height - 3);
-  chart.curves.forEach((curve, number) => {
-    c.strokeStyle = colours[curve.colour];
-    c.lineWidth = 1.6;
-    c.setLineDash(curve.dash || []);
-    c.beginPath();
-    let drawing = false;
-    columns[number].forEach((value, n) => {
-      if (value === null || value === undefined) { drawing = false; return; }
-      const at = [x(past[begin + n].t), y(value)];
-      if (drawing) c.lineTo(...at); else c.moveTo(...at);
-      drawing = true;
-    });
-    c.stroke();
-  });
-  c.setLineDash([]);
-  const newest = columns[0][columns[0].length - 1];
+/** What is read at the right, and where the pointer is. */
+function read(chart, { times, columns, cursor, now }) {
+  const [first] = columns;
+  const newest = first[first.length - 1];
   write(chart.value, fixed(newest, chart.unit === "J" ? 2 : 1));
   chart.canvas.dataset.newest = newest ?? "";
-  chart.canvas.dataset.largest = Math.max(0, ...columns[0].filter((value) => value !== null && value !== undefined));
+  chart.canvas.dataset.largest = Math.max(0, ...first.filter((value) => value !== null && value !== undefined));
+  chart.tip.hidden = pointer?.chart !== chart;
+  if (chart.tip.hidden) return;
+  let nearest = 0;
+  for (let n = 1; n < times.length; n++) if (Math.abs(times[n] - cursor) < Math.abs(times[nearest] - cursor)) nearest = n;
+  const there = Math.abs(times[nearest] - cursor) < NEAR;
+  const values = chart.curves.map((curve, number) => make("div", {}, make("i", { style: `border-color:var(--${curve.colour})${curve.dash ? ";border-top-style:dashed" : ""}` }),
+    `${curve.name} `, make("b", { textContent: `${there ? fixed(columns[number][nearest], chart.decimals) : "–"} ${chart.unit}` })));
+  const events = session.events.filter((event) => Math.abs(event.t - cursor) < NEAR);
+  fill(chart.tip, make("div", { className: "quiet", textContent: `${fixed(cursor - now, 1)} s` }), values,
+    events.map((event) => make("div", { className: "event", textContent: event.text })));
+  chart.tip.style.left = pointer.share > 0.5 ? "8px" : "auto";
+  chart.tip.style.right = pointer.share > 0.5 ? "auto" : "8px";
 }

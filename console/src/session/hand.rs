@@ -15,6 +15,23 @@ pub trait GripModel: Send {
     fn step(&mut self, dt: f64, target: [f64; 2], force: [f64; 2]) -> [f64; 2];
 }
 
+/// Where the arm brings its tip for a hand, in the plane: x_tip = x_0 + s x_hand, from the
+/// leader's base frame to the follower's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandMapping {
+    /// x_0: the tip when the hand is in the middle \[m\].
+    pub offset: [f64; 2],
+    /// s: motion of the tip by motion of the hand \[-\].
+    pub scale: f64,
+}
+
+impl HandMapping {
+    /// The hand that belongs to a tip \[m\].
+    pub fn at_hand(&self, tip: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| (tip[axis] - self.offset[axis]) / self.scale)
+    }
+}
+
 /// Longest step of the model; after a longer pause it goes on from there \[s\].
 const LONGEST_STEP: f64 = 0.02;
 
@@ -88,6 +105,16 @@ mod tests {
         fn step(&mut self, _: f64, target: [f64; 2], force: [f64; 2]) -> [f64; 2] {
             [target[0] + 1e-3 * force[0], target[1] + 1e-3 * force[1]]
         }
+    }
+
+    #[test]
+    fn a_tip_has_its_hand() {
+        let mapping = HandMapping {
+            offset: [0.35, 0.0],
+            scale: 2.0,
+        };
+        let [x, y] = mapping.at_hand([0.38, -0.02]);
+        assert!((x - 0.015).abs() < 1e-15 && (y + 0.01).abs() < 1e-15);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use ferntast_msgs::sample::{OperatingState, StateCommand};
 use serde::{Deserialize, Serialize};
 
 use super::operator_lock::Release;
@@ -70,8 +71,32 @@ pub enum StateRequest {
     Hold,
     /// Follow again after a hold.
     Rearm,
-    /// Drives off, at once.
+    /// Drives off, at once; out of a fault, too.
     Stop,
+}
+
+impl StateRequest {
+    /// What a device in `state` is told; `None` where that is no word for it. A device of
+    /// which no state is known, as one beyond the link, is told what was asked for.
+    ///
+    /// A fault is left by a stop and then by arming: two words, of which a person says
+    /// each.
+    pub fn command(self, state: Option<OperatingState>) -> Option<StateCommand> {
+        let not_in = |those: &[OperatingState]| state.is_none_or(|own| !those.contains(&own));
+        let (command, meant) = match self {
+            StateRequest::Stop => (StateCommand::DISABLE, true),
+            StateRequest::Hold => (StateCommand::PAUSE, true),
+            StateRequest::Arm => (
+                StateCommand::ENABLE,
+                not_in(&[OperatingState::PAUSED, OperatingState::FAULT]),
+            ),
+            StateRequest::Rearm => (
+                StateCommand::RESUME,
+                not_in(&[OperatingState::DISABLED, OperatingState::FAULT]),
+            ),
+        };
+        meant.then_some(command)
+    }
 }
 
 /// What the server says, beside snapshots.
@@ -111,16 +136,20 @@ pub struct Snapshot {
     pub force: [f32; 2],
     /// The contact.
     pub contact: ContactView,
-    /// The hand, leader base frame.
+    /// The hand that is there, accepted or not, leader base frame.
     pub hand: Option<[f32; 2]>,
+    /// Where a page's hand would begin, leader base frame.
+    pub begin: [f32; 2],
     /// The force on the hand.
     pub hand_force: [f32; 2],
     /// The operator's end of the link.
     pub link: Option<LinkView>,
     /// The arm's end of the link.
     pub follower_link: Option<LinkView>,
-    /// Operating states by device: state and reason.
-    pub states: BTreeMap<&'static str, (String, String)>,
+    /// What the emulated channel is set to; `None` where one end is not heard of.
+    pub channel: Option<ChannelView>,
+    /// Operating states by device.
+    pub states: BTreeMap<&'static str, StateView>,
     /// Who holds the authority.
     pub authority: AuthorityView,
     /// Who operates.
@@ -132,6 +161,33 @@ pub struct Snapshot {
     /// The nodes, a few times a second.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nodes: Option<Vec<NodeView>>,
+    /// What happened, the oldest first; with the nodes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub events: Option<Vec<EventView>>,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct EventView {
+    /// When: seconds since the console was started.
+    pub t: f64,
+    /// When: seconds since the UNIX epoch.
+    pub unix: f64,
+    /// ok, warning, error.
+    pub level: &'static str,
+    /// What, and why.
+    pub text: String,
+}
+
+/// The operating state of a device.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StateView {
+    /// The state.
+    pub state: &'static str,
+    /// Why it is in that state.
+    pub reason: String,
+    /// It does not tell it any more.
+    pub silent: bool,
 }
 
 /// The contact.
@@ -171,6 +227,17 @@ pub struct LinkView {
     pub dissipated: f32,
     /// The law.
     pub law: String,
+}
+
+/// What the emulated channel is set to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ChannelView {
+    /// Both ways together \[s\].
+    pub round_trip: f32,
+    /// Largest deviation of a frame's delay, or one like it; of the worse way \[s\].
+    pub jitter: f32,
+    /// Share of frames lost on the worse way \[0 … 1\].
+    pub loss: f32,
 }
 
 /// Who holds the authority.
@@ -247,6 +314,21 @@ pub struct NodeView {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_word_goes_to_those_that_it_is_for_and_a_stop_to_all() {
+        use OperatingState as State;
+        let states = [State::DISABLED, State::ENABLED, State::PAUSED, State::FAULT];
+        let told = |word: StateRequest| states.map(|state| word.command(Some(state)));
+        let (enable, resume) = (Some(StateCommand::ENABLE), Some(StateCommand::RESUME));
+        assert_eq!(told(StateRequest::Stop), [Some(StateCommand::DISABLE); 4]);
+        assert_eq!(told(StateRequest::Hold), [Some(StateCommand::PAUSE); 4]);
+        assert_eq!(told(StateRequest::Arm), [enable, enable, None, None]);
+        // The master's is also the word for an arm beyond the link.
+        assert_eq!(told(StateRequest::Rearm), [None, resume, resume, None]);
+        assert_eq!(StateRequest::Arm.command(None), enable);
+        assert_eq!(StateRequest::Rearm.command(None), resume);
+    }
 
     #[test]
     fn requests_are_read_and_others_refused() {

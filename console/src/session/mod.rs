@@ -5,6 +5,7 @@
 //! * [`link`](SessionPorts): the loop's side, topics of the bus,
 //! * [`message`]: what is said between page and server.
 
+mod event_log;
 pub mod hand;
 pub mod message;
 pub mod operator_lock;
@@ -23,8 +24,8 @@ use axum::{
     routing::get,
 };
 
-pub use hand::{GripModel, PageHand};
-pub use ports::SessionPorts;
+pub use hand::{GripModel, HandMapping, PageHand};
+pub use ports::{SessionPorts, page_of};
 pub use shared_session::SharedSession;
 
 use crate::connections::Connection;

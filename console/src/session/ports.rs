@@ -7,18 +7,19 @@ use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         AuthoritySample, ContactStateSample, Frame, HealthSample, JointNames, JointSample,
-        LawCommandSample, LinkCommandSample, LinkStatusSample, OperatingState,
-        OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
-        RecorderStatusSample, StateCommand, StateCommandSample, TemperatureSample, WrenchSample,
+        LawCommandSample, LinkCommandSample, LinkStatusSample, OperatingStateSample, PoseSample,
+        RecorderAction, RecorderCommandSample, RecorderStatusSample, StateCommandSample,
+        TemperatureSample, WrenchSample,
     },
     topics,
 };
 
 use super::{
-    PageHand, SharedSession,
+    HandMapping, PageHand, SharedSession,
+    event_log::EventLog,
     message::{
-        AuthorityView, ContactView, Holder, LinkView, NodeView, OperatorView, RecorderView,
-        Request, Snapshot, StateRequest,
+        AuthorityView, ChannelView, ContactView, Holder, LinkView, NodeView, OperatorView,
+        RecorderView, Request, Snapshot, StateRequest, StateView,
     },
 };
 
@@ -28,8 +29,17 @@ const SNAPSHOT_NANOS: i64 = 20_000_000;
 const NODES_NANOS: i64 = 500_000_000;
 /// A node that was not heard of for this long is stale \[s\].
 const NODE_LIFE: f64 = 1.0;
+/// Operating states are told every 0.1 s; one that was not for this long is not known \[s\].
+const STATE_LIFE: f64 = 1.0;
+/// A hand that was not measured for this long is not there \[s\].
+const HAND_LIFE: f64 = 0.1;
 /// Hands of pages are told from others by these bits of their source.
 const PAGE_SOURCE: u64 = 0x7061_6765_0000_0000;
+
+/// The number of the page whose hand has that source; `None` of another's.
+pub fn page_of(source: u64) -> Option<u64> {
+    (source & 0xFFFF_FFFF_0000_0000 == PAGE_SOURCE).then_some(source & 0xFFFF_FFFF)
+}
 
 /// The newest message of a topic.
 struct Newest<M: Message> {
@@ -58,12 +68,16 @@ impl<M: Message> Newest<M> {
 pub struct SessionPorts {
     shared: Arc<SharedSession>,
     hand: PageHand,
+    /// Where the page's hand is, while it is held.
+    held: Option<[f64; 2]>,
+    mapping: HandMapping,
     joints: Newest<JointSample>,
     tip: Newest<PoseSample>,
     wanted: Newest<PoseSample>,
     force: Newest<WrenchSample>,
     contact: Newest<ContactStateSample>,
     leader: Newest<PoseSample>,
+    any_hand: Newest<PoseSample>,
     hand_force: Newest<WrenchSample>,
     links: [Newest<LinkStatusSample>; 2],
     states: [(&'static str, Newest<OperatingStateSample>); 2],
@@ -72,6 +86,7 @@ pub struct SessionPorts {
     recorder: Newest<RecorderStatusSample>,
     diagnostics: Subscriber<HealthSample>,
     nodes: Vec<HealthSample>,
+    events: EventLog,
     measured_cp: Publisher<PoseSample>,
     state_commands: [Publisher<StateCommandSample>; 2],
     link_command: Publisher<LinkCommandSample>,
@@ -85,7 +100,8 @@ pub struct SessionPorts {
 }
 
 impl SessionPorts {
-    /// Opens the topics on `bus`, of an arm of those joints.
+    /// Opens the topics on `bus`, of an arm of those joints. `teller` is whose status on
+    /// `/diagnostics` says what happens.
     ///
     /// # Errors
     ///
@@ -95,16 +111,21 @@ impl SessionPorts {
         joints: &JointNames,
         shared: Arc<SharedSession>,
         hand: PageHand,
+        mapping: HandMapping,
+        teller: &'static str,
     ) -> Result<Self, CreateError> {
         Ok(SessionPorts {
             shared,
             hand,
+            held: None,
+            mapping,
             joints: Newest::open(bus, topics::FOLLOWER_MEASURED_JS)?,
             tip: Newest::open(bus, topics::FOLLOWER_MEASURED_CP)?,
             wanted: Newest::open(bus, topics::FOLLOWER_SERVO_CP)?,
             force: Newest::open(bus, topics::FOLLOWER_MEASURED_CF)?,
             contact: Newest::open(bus, topics::FOLLOWER_CONTACT_STATE)?,
             leader: Newest::open(bus, topics::LEADER_SETPOINT_CP)?,
+            any_hand: Newest::open(bus, topics::LEADER_MEASURED_CP)?,
             hand_force: Newest::open(bus, topics::LEADER_SERVO_CF)?,
             links: [
                 Newest::open(bus, topics::LINK_STATUS)?,
@@ -126,6 +147,7 @@ impl SessionPorts {
             recorder: Newest::open(bus, topics::RECORDER_STATUS)?,
             diagnostics: bus.subscriber(topics::DIAGNOSTICS, Depth::Queue(topics::EVENT_QUEUE))?,
             nodes: Vec::new(),
+            events: EventLog::new(teller),
             measured_cp: bus.publisher(topics::LEADER_MEASURED_CP)?,
             state_commands: [
                 bus.publisher(topics::FOLLOWER_STATE_COMMAND)?,
@@ -203,36 +225,57 @@ impl SessionPorts {
     }
 
     fn command(&mut self, now: Time, word: StateRequest) {
-        let command = match word {
-            StateRequest::Stop => StateCommand::DISABLE,
-            StateRequest::Hold => StateCommand::PAUSE,
-            StateRequest::Rearm => StateCommand::RESUME,
-            StateRequest::Arm => StateCommand::ENABLE,
-        };
         for (publisher, (_, state)) in self.state_commands.iter_mut().zip(&mut self.states) {
             let state = state.take(now).map(|sample| sample.state);
-            // A fault is left by way of disabled.
-            let way_out = word == StateRequest::Arm && state == Some(OperatingState::FAULT);
-            let first = way_out.then_some(StateCommand::DISABLE);
-            for command in first.into_iter().chain([command]) {
+            if let Some(command) = word.command(state) {
                 let sample = StateCommandSample::new(now, command);
                 self.failed += u64::from(publisher.publish(now, &sample).is_err());
             }
         }
     }
 
+    /// A hand that is on the master and no page's: a script's, a client's.
+    fn other_hand(&mut self, now: Time) -> Option<[f64; 2]> {
+        let pose = self.any_hand.take(now)?;
+        let there = page_of(pose.source).is_none() && now.seconds_since(pose.stamp) < HAND_LIFE;
+        there.then_some([pose.position[0], pose.position[1]])
+    }
+
+    /// Where a page's hand begins: where the one is that it takes the master from, else
+    /// where the tip is, so that nothing moves because it is there.
+    fn begin(&mut self, now: Time) -> [f64; 2] {
+        let tip = |own: &mut Self| {
+            let tip = own.tip.take(now)?;
+            Some(own.mapping.at_hand([tip.position[0], tip.position[1]]))
+        };
+        let last = |own: &mut Self| own.leader.take(now).map(|pose| pose.position);
+        self.other_hand(now)
+            .or_else(|| tip(self))
+            .or_else(|| last(self).map(|[x, y, _]| [x, y]))
+            .unwrap_or_default()
+    }
+
+    /// What the channel is set to, as both of its ends tell.
+    fn channel(&mut self, now: Time) -> Option<ChannelView> {
+        let [leader, follower] = &mut self.links;
+        let (down, up) = (leader.take(now)?, follower.take(now)?);
+        Some(ChannelView {
+            round_trip: (down.channel_delay + up.channel_delay) as f32,
+            jitter: down.channel_jitter.max(up.channel_jitter) as f32,
+            loss: down.channel_loss.max(up.channel_loss) as f32,
+        })
+    }
+
     fn move_hand(&mut self, now: Time) {
         let lock = self.shared.look();
         let dt = self.last.map_or(0.0, |last| now.seconds_since(last));
         self.last = Some(now);
-        let at = self.leader.take(now).map_or([0.0; 3], |pose| pose.position);
+        let at = self.begin(now);
         let force = self.hand_force.take(now);
         let force = force.filter(|force| now.seconds_since(force.stamp) < 0.05);
         let force = force.map_or([0.0; 3], |wrench| wrench.force);
-        let hand = self
-            .hand
-            .step(dt, lock.target(), [at[0], at[1]], [force[0], force[1]]);
-        if let (Some([x, y]), Some(page)) = (hand, lock.operator()) {
+        self.held = self.hand.step(dt, lock.target(), at, [force[0], force[1]]);
+        if let (Some([x, y]), Some(page)) = (self.held, lock.operator()) {
             let pose = PoseSample {
                 source: PAGE_SOURCE | page,
                 ..PoseSample::at(now, Frame::LEADER_BASE, [x, y, 0.0])
@@ -242,8 +285,14 @@ impl SessionPorts {
     }
 
     fn listen(&mut self, now: Time) {
+        let recorder = self.recorder.take(now);
+        self.shared
+            .note_recording(recorder.is_some_and(|own| own.recording == 1));
         while let Some(received) = self.diagnostics.next(now) {
             let health = received.message;
+            if self.events.note(&health) {
+                continue;
+            }
             match self
                 .nodes
                 .iter_mut()
@@ -257,10 +306,11 @@ impl SessionPorts {
 
     fn show(&mut self, now: Time) {
         let began = *self.began.get_or_insert(now);
-        let nodes = (now >= self.nodes_due).then(|| {
+        let slow = now >= self.nodes_due;
+        if slow {
             self.nodes_due = now.plus_nanos(NODES_NANOS);
-            self.nodes.iter().map(|health| node(now, health)).collect()
-        });
+        }
+        let nodes = slow.then(|| self.nodes.iter().map(|health| node(now, health)).collect());
         let lock = self.shared.look();
         let joints = self.joints.take(now);
         let snapshot = Snapshot {
@@ -275,20 +325,26 @@ impl SessionPorts {
                 .take(now)
                 .map_or([0.0; 2], |wrench| plane(wrench.force)),
             contact: self.contact.take(now).map(contact).unwrap_or_default(),
-            hand: self.leader.take(now).map(|pose| plane(pose.position)),
+            hand: self.held.or_else(|| self.other_hand(now)).map(short),
+            begin: short(self.begin(now)),
             hand_force: self
                 .hand_force
                 .take(now)
                 .map_or([0.0; 2], |wrench| plane(wrench.force)),
             link: self.links[0].take(now).map(|status| link(&status)),
             follower_link: self.links[1].take(now).map(|status| link(&status)),
+            channel: self.channel(now),
             states: self
                 .states
                 .iter_mut()
                 .filter_map(|(device, state)| {
                     let sample = state.take(now)?;
-                    let name = sample.state.name().unwrap_or("UNKNOWN").to_owned();
-                    Some((*device, (name, sample.reason.to_string())))
+                    let view = StateView {
+                        state: sample.state.name().unwrap_or("UNKNOWN"),
+                        reason: sample.reason.to_string(),
+                        silent: now.seconds_since(sample.stamp) > STATE_LIFE,
+                    };
+                    Some((*device, view))
                 })
                 .collect(),
             authority: self.authority.take(now).map(authority).unwrap_or_default(),
@@ -305,6 +361,7 @@ impl SessionPorts {
                 .collect(),
             recorder: self.recorder.take(now).map(recorder).unwrap_or_default(),
             nodes,
+            events: slow.then(|| self.events.views(began)),
         };
         if let Ok(text) = serde_json::to_string(&snapshot) {
             self.shared.show(text);
@@ -346,13 +403,11 @@ fn link(status: &LinkStatusSample) -> LinkView {
 }
 
 fn authority(sample: AuthoritySample) -> AuthorityView {
-    let (holder, identity) = match sample.holder {
-        0 => (Holder::Nobody, String::new()),
-        1 => (Holder::Own, String::new()),
-        page if page & 0xFFFF_FFFF_0000_0000 == PAGE_SOURCE => {
-            (Holder::Page, (page & 0xFFFF_FFFF).to_string())
-        }
-        client => (Holder::Client, format!("{client:016x}")),
+    let (holder, identity) = match (sample.holder, page_of(sample.holder)) {
+        (0, _) => (Holder::Nobody, String::new()),
+        (1, _) => (Holder::Own, String::new()),
+        (_, Some(page)) => (Holder::Page, page.to_string()),
+        (client, None) => (Holder::Client, format!("{client:016x}")),
     };
     AuthorityView {
         holder,

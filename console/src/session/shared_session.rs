@@ -4,7 +4,7 @@ use std::{
     collections::{BTreeMap, VecDeque},
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
 
@@ -36,6 +36,12 @@ pub enum RequestRefusal {
     /// This page only watches.
     #[error("this page watches; take the controls first")]
     Watcher,
+    /// One recording at a time.
+    #[error("the session is being recorded already")]
+    Recording,
+    /// Somebody else's recording.
+    #[error("who began this recording ends it, or the page that has the controls")]
+    NotYours,
     /// Too much is asked at once.
     #[error("too many requests wait: try again")]
     Full,
@@ -49,6 +55,10 @@ pub struct SharedSession {
     snapshot: watch::Sender<Utf8Bytes>,
     /// The pages that are open, and how each is told that it has to go.
     pages: Mutex<BTreeMap<u64, Arc<Notify>>>,
+    /// The page that asked for the recording.
+    recording_of: AtomicU64,
+    /// The session is being recorded.
+    recording: AtomicBool,
     next_page: AtomicU64,
     /// What the session is made of, for the page.
     pub about: serde_json::Value,
@@ -63,6 +73,8 @@ impl SharedSession {
             wishes: Mutex::default(),
             snapshot: watch::Sender::new(Utf8Bytes::default()),
             pages: Mutex::default(),
+            recording_of: AtomicU64::new(0),
+            recording: AtomicBool::new(false),
             next_page: AtomicU64::new(1),
             about,
         }
@@ -109,6 +121,11 @@ impl SharedSession {
         self.snapshot.subscribe()
     }
 
+    /// Whether the session is being recorded, as the recorder tells.
+    pub fn note_recording(&self, on: bool) {
+        self.recording.store(on, Ordering::Relaxed);
+    }
+
     /// Shows a snapshot to all pages.
     pub fn show(&self, snapshot: String) {
         self.snapshot.send_replace(snapshot.into());
@@ -142,14 +159,11 @@ impl SharedSession {
             Request::Hand { x, y } => lock.hold(page, now, [x, y]),
             Request::LetGo => lock.let_go(page),
             wish => {
-                // Whoever sees danger may stop.
                 let stop = wish
                     == Request::State {
                         word: StateRequest::Stop,
                     };
-                if !stop && !lock.is(page) {
-                    return Err(RequestRefusal::Watcher);
-                }
+                self.may(page, lock.is(page), &wish)?;
                 if stop {
                     if let Some(page) = lock.operator() {
                         lock.let_go(page);
@@ -166,6 +180,28 @@ impl SharedSession {
         }
         Ok(())
     }
+
+    /// Whether page `page`, which `operates` or not, may have that wish. Whoever sees
+    /// danger may stop, and whoever watches may record what is seen and note it.
+    fn may(&self, page: u64, operates: bool, wish: &Request) -> Result<(), RequestRefusal> {
+        match wish {
+            Request::State {
+                word: StateRequest::Stop,
+            }
+            | Request::Mark { .. } => Ok(()),
+            Request::Record { .. } if self.recording.load(Ordering::Relaxed) => {
+                Err(RequestRefusal::Recording)
+            }
+            Request::Record { .. } => {
+                self.recording_of.store(page, Ordering::Relaxed);
+                Ok(())
+            }
+            _ if operates => Ok(()),
+            Request::EndRecord if self.recording_of.load(Ordering::Relaxed) == page => Ok(()),
+            Request::EndRecord => Err(RequestRefusal::NotYours),
+            _ => Err(RequestRefusal::Watcher),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -180,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn watchers_may_stop_and_nothing_else() {
+    fn watchers_may_stop_and_record_and_nothing_else() {
         let shared = shared();
         let (operator, watcher) = (shared.enter().0, shared.enter().0);
         shared.ask(operator, Request::Operate).unwrap();
@@ -189,8 +225,30 @@ mod tests {
             let refused = shared.ask(watcher, Request::State { word });
             assert_eq!(refused, Err(RequestRefusal::Watcher));
         }
+        let link = Request::Link {
+            round_trip: 0.1,
+            jitter: 0.0,
+            loss: 0.0,
+        };
+        assert_eq!(shared.ask(watcher, link), Err(RequestRefusal::Watcher));
+        // A recording is ended by who began it, or by who operates.
+        let end = || Request::EndRecord;
+        assert_eq!(shared.ask(watcher, end()), Err(RequestRefusal::NotYours));
+        let record = Request::Record {
+            folder: String::new(),
+        };
+        shared.ask(watcher, record.clone()).unwrap();
+        shared.note_recording(true);
+        assert_eq!(
+            shared.ask(operator, record.clone()),
+            Err(RequestRefusal::Recording)
+        );
         let mark = Request::Mark { label: "x".into() };
-        assert_eq!(shared.ask(watcher, mark), Err(RequestRefusal::Watcher));
+        shared.ask(watcher, mark.clone()).unwrap();
+        shared.ask(watcher, end()).unwrap();
+        shared.ask(operator, end()).unwrap();
+        let wishes = [record, mark, Request::EndRecord, Request::EndRecord];
+        assert_eq!(shared.wishes(), wishes);
         shared
             .ask(operator, Request::Hand { x: 0.01, y: 0.0 })
             .unwrap();

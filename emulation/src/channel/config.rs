@@ -221,6 +221,17 @@ impl ChannelConfig {
         self.delay + transmission
     }
 
+    /// Largest deviation of a frame's delay from the mean, or one like it: two standard
+    /// deviations, the mean of what is added \[s\].
+    pub fn largest_deviation(&self) -> f64 {
+        match self.jitter {
+            None => 0.0,
+            Some(Jitter::Uniform { half_width }) => half_width,
+            Some(Jitter::Normal { deviation }) => 2.0 * deviation,
+            Some(Jitter::Exponential { mean }) => mean,
+        }
+    }
+
     /// Share of frames lost in the long run, blackouts and queue apart \[-\].
     pub fn mean_loss(&self) -> f64 {
         self.loss.map_or(0.0, |loss| loss.mean())

@@ -142,6 +142,11 @@ impl Channel {
         Ok(())
     }
 
+    /// What it does to frames now.
+    pub fn config(&self) -> &ChannelConfig {
+        &self.config
+    }
+
     /// Sends `frame` at `now_ns`.
     pub fn push(&mut self, now_ns: i64, frame: &[u8]) -> Pushed {
         self.counts.pushed += 1;

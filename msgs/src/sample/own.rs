@@ -168,8 +168,8 @@ codes! {
     }
 }
 
-/// What one end of the link measures of it, never what was configured.
-/// Counts and energies run since the start of the session.
+/// What one end of the link measures of it; only what the emulated channel is set to
+/// is not measured. Counts and energies run since the start of the session.
 #[message(LinkStatus, comment_column = 28)]
 pub struct LinkStatusSample {
     /// when it was measured
@@ -194,6 +194,13 @@ pub struct LinkStatusSample {
     pub loss: f64,
     /// \[s\] age of the content in use
     pub age: f64,
+    /// \[s\] how long a frame is on its way to this end
+    #[field(section = "What the emulated channel to this end is set to.")]
+    pub channel_delay: f64,
+    /// \[s\] by how much that varies at most, or about so
+    pub channel_jitter: f64,
+    /// share of the frames that it loses on average, 0 to 1
+    pub channel_loss: f64,
     /// \[J\] energy that entered
     #[field(section = "The two-port of the delay law, at this end.")]
     pub energy_in: f64,

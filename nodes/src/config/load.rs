@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use ferntast_control::servo::ServoConfig;
+use ferntast_control::{frame::WIRE_LENGTH, servo::ServoConfig};
 use ferntast_emulation::{
     channel::{ChannelConfig, LinkConfig},
     hand::{Hand, RecordedHand, RecordedMotion, ScriptedHand},
@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     ArmFile, ConfigError, HandSource, LoadArm, Scenario,
     file::{FileKind, load, load_with_path},
+    shipped,
 };
 
 /// A scenario with all that it names.
@@ -38,6 +39,19 @@ const SCENARIO: FileKind = FileKind {
     name: "scenario",
     folder: "scenarios",
 };
+
+/// The links that come along, by name, the quickest first: those of these names on disk
+/// where there are any. One that cannot be read is left out; who asks for it is told why.
+pub fn known_links() -> Vec<(&'static str, LinkConfig)> {
+    let links = shipped::names(LINK.folder).into_iter();
+    let links = links.filter_map(|name| Some((name, load(LINK, name, LinkConfig::validate).ok()?)));
+    let mut links: Vec<(&str, LinkConfig)> = links.collect();
+    links.sort_by(|(_, a), (_, b)| {
+        let [a, b] = [a, b].map(|link| link.nominal_round_trip(WIRE_LENGTH));
+        a.total_cmp(&b)
+    });
+    links
+}
 
 /// Loads the scenario `name`, shipped or a file, with the arm and the link that it names.
 ///

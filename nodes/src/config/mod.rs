@@ -17,7 +17,7 @@ pub use arm::{ArmFile, LoadArm};
 pub use error::ConfigError;
 pub use file::{ARM, FileKind, load};
 pub use laws::{UnknownLaw, stiff_enough};
-pub use load::{Loaded, load_scenario, read_hand_recording};
+pub use load::{Loaded, known_links, load_scenario, read_hand_recording};
 pub use scenario::*;
 
 // What a law has room for fits a message, and the other way round.

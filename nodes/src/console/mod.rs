@@ -8,11 +8,11 @@ use std::{path::PathBuf, sync::Arc};
 use ferntast_console::{
     Listen, Server,
     server::Content,
-    session::{GripModel, PageHand, SessionPorts, SharedSession},
+    session::{GripModel, HandMapping, PageHand, SessionPorts, SharedSession},
 };
-use ferntast_control::delay::Law;
+use ferntast_control::{delay::Law, frame::WIRE_LENGTH};
 use ferntast_emulation::{
-    channel::{ChannelConfig, Jitter},
+    channel::LinkConfig,
     hand::{HandImpedance, ImpedanceParameters},
 };
 use ferntast_msgs::{
@@ -22,7 +22,8 @@ use ferntast_msgs::{
 use serde_json::{Value, json};
 
 use crate::{
-    config::{HandSource, Loaded},
+    config::{HandSource, Loaded, known_links},
+    events::TELLER,
     node::{InputWatch, NodeHealth},
     process::{NodeError, Priority, ProcessContext},
 };
@@ -65,11 +66,19 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let shared = Arc::new(SharedSession::new(about, Box::new(move || clock.now())));
     let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 2]));
     let hand = PageHand::new(Box::new(grip), REACH, LEASH);
+    let mapping = process.session.loaded.scenario.law.mapping();
+    let [x, y, _] = mapping.workspace_offset;
+    let mapping = HandMapping {
+        offset: [x, y],
+        scale: mapping.position_scale,
+    };
     let mut ports = SessionPorts::connect(
         &process.bus,
         &process.session.joints(),
         shared.clone(),
         hand,
+        mapping,
+        TELLER,
     )?;
     let mut diagnostics = process.bus.publisher(topics::DIAGNOSTICS)?;
     let listen = Listen {
@@ -118,16 +127,15 @@ fn about(session: &str, loaded: &Loaded) -> Value {
     let scenario = &loaded.scenario;
     let json = |value: Result<Value, serde_json::Error>| value.unwrap_or_default();
     let arm = json(serde_json::to_value(&loaded.arm));
-    let law = json(serde_json::to_value(&scenario.law));
+    let mapping = scenario.law.mapping();
     let lengths: Vec<Value> = (0..2)
         .map(|link| arm["arm"]["link"][link]["length"].clone())
         .collect();
-    let (up, down) = (&loaded.link.up, &loaded.link.down);
-    let bytes = ferntast_control::frame::WIRE_LENGTH;
-    let or = |value: &Value, default: Value| match value.is_null() {
-        true => default,
-        false => value.clone(),
-    };
+    let presets = known_links();
+    let presets: Vec<Value> = presets
+        .iter()
+        .map(|(name, link)| preset(name, link))
+        .collect();
     json!({
         "session": session,
         "scenario": scenario.name,
@@ -140,28 +148,26 @@ fn about(session: &str, loaded: &Loaded) -> Value {
         "nominal_tip": arm["contour"]["nominal_tip"],
         "edges": arm["contour"]["edge"],
         "springs": arm["contour"]["spring"],
-        "workspace_offset": or(&law["workspace_offset"], arm["contour"]["nominal_tip"].clone()),
-        "position_scale": or(&law["position_scale"], json!(1.0)),
+        "workspace_offset": mapping.workspace_offset,
+        "position_scale": mapping.position_scale,
         "law": scenario.law.name(),
         "laws": Law::NAMES,
-        "link": {
-            "round_trip": loaded.link.nominal_round_trip(bytes),
-            "jitter": deviation(up).max(deviation(down)),
-            "loss": up.mean_loss().max(down.mean_loss()),
-            "rearm_after_gap": scenario.link.rearm_after_gap,
-        },
+        "presets": presets,
+        "rearm_after_gap": scenario.link.rearm_after_gap,
         "force_limit": scenario.master.force_limit,
         // The hand's force is drawn as long as the contact's that it stands for.
-        "hand_arrow": 1.0 / law["force_scale"].as_f64().filter(|scale| *scale > 0.0).unwrap_or(1.0),
+        "hand_arrow": 1.0 / Some(mapping.force_scale).filter(|scale| *scale > 0.0).unwrap_or(1.0),
     })
 }
 
-/// Largest deviation of a frame's delay, or one like it \[s\].
-fn deviation(channel: &ChannelConfig) -> f64 {
-    match channel.jitter {
-        None => 0.0,
-        Some(Jitter::Uniform { half_width }) => half_width,
-        Some(Jitter::Normal { deviation }) => 2.0 * deviation,
-        Some(Jitter::Exponential { mean }) => mean,
-    }
+/// A channel to choose: what the sliders are set to. Times \[s\].
+fn preset(name: &str, link: &LinkConfig) -> Value {
+    let (up, down) = (&link.up, &link.down);
+    json!({
+        "name": name,
+        "description": link.description,
+        "round_trip": link.nominal_round_trip(WIRE_LENGTH),
+        "jitter": up.largest_deviation().max(down.largest_deviation()),
+        "loss": up.mean_loss().max(down.mean_loss()),
+    })
 }

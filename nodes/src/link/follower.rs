@@ -125,7 +125,7 @@ impl Node for FollowerLinkNode {
         });
         output.frame.frame = step.frame;
         let state = self.link.state(now.nanos());
-        output.status = self.status.step(now, &state, peer);
+        output.status = self.status.step(now, &state, &input.frames);
         output.peer = self.status.peer(now, &state, peer);
         self.peers
             .report(&state, peer, "the operator's end", &mut output.health);

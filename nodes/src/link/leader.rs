@@ -111,7 +111,7 @@ impl Node for LeaderLinkNode {
         output.reflected_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
         output.frame.frame = step.frame;
         let state = self.link.state(now.nanos());
-        output.status = self.status.step(now, &state, peer);
+        output.status = self.status.step(now, &state, &input.frames);
         output.peer = self.status.peer(now, &state, peer);
         if let Some(law) = &self.unknown_law {
             output.health.raise(Fault::CommandInvalid, Level::WARN);

@@ -7,7 +7,7 @@ use ferntast_msgs::{
 };
 use ferntast_seal::Established;
 
-use super::transport::Peer;
+use super::transport::{FrameInput, Peer};
 use crate::node::NodeHealth;
 
 /// How often the status is published \[ns\].
@@ -38,13 +38,18 @@ impl Status {
     }
 
     /// The status, when one is due.
-    pub fn step(&mut self, now: Time, state: &LinkState, peer: &Peer) -> Option<LinkStatusSample> {
+    pub fn step(
+        &mut self,
+        now: Time,
+        state: &LinkState,
+        frames: &FrameInput,
+    ) -> Option<LinkStatusSample> {
         if now < self.due {
             return None;
         }
         self.due = now.plus_nanos(PERIOD_NANOS);
         let measured = &state.measured;
-        let (refused, sealed) = (measured.refused, peer.refused);
+        let (refused, sealed) = (measured.refused, frames.peer.refused);
         let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         Some(LinkStatusSample {
             round_trip: measured.round_trip,
@@ -52,6 +57,9 @@ impl Status {
             jitter: finite(measured.jitter),
             loss: finite(measured.loss),
             age: finite(measured.age),
+            channel_delay: frames.channel.delay,
+            channel_jitter: frames.channel.jitter,
+            channel_loss: frames.channel.loss,
             energy_in: state.energy.entered,
             energy_out: state.energy.left,
             energy_dissipated: state.dissipated,

@@ -54,6 +54,17 @@ pub struct Peer {
     pub at_the_door: Option<Reason>,
 }
 
+/// What the emulated channel to this end is set to, for a frame of this length.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Emulated {
+    /// How long a frame is on its way \[s\].
+    pub delay: f64,
+    /// Largest deviation of that, or one like it \[s\].
+    pub jitter: f64,
+    /// Share of frames that it loses \[-\].
+    pub loss: f64,
+}
+
 /// Frames that arrived since the last step, oldest first.
 #[derive(Debug)]
 pub struct FrameInput {
@@ -61,6 +72,8 @@ pub struct FrameInput {
     count: usize,
     /// Whom they come from.
     pub peer: Peer,
+    /// What they came through.
+    pub channel: Emulated,
 }
 
 impl Default for FrameInput {
@@ -69,6 +82,7 @@ impl Default for FrameInput {
             frames: [([0; FRAME_LENGTH], Time::INVALID); BATCH],
             count: 0,
             peer: Peer::default(),
+            channel: Emulated::default(),
         }
     }
 }
@@ -135,8 +149,23 @@ impl LinkTransport {
 
     /// Sets the channel again; what is out of bounds changes nothing.
     fn obey(&mut self, command: &LinkCommandSample) {
-        let way = command.round_trip / 2.0;
+        let config = self.channel.config();
+        // What sending a frame takes is part of its way.
+        let sending = config.nominal_delay(WIRE_LENGTH) - config.delay;
+        let way = match command.round_trip / 2.0 {
+            way if way >= 0.0 => (way - sending).max(0.0),
+            out_of_bounds => out_of_bounds,
+        };
         let _ = self.channel.retune(way, command.jitter, command.loss);
+    }
+
+    fn emulated(&self) -> Emulated {
+        let config = self.channel.config();
+        Emulated {
+            delay: config.nominal_delay(WIRE_LENGTH),
+            jitter: config.largest_deviation(),
+            loss: config.mean_loss(),
+        }
     }
 
     /// Which handshake frames are under, as the channel carries it.
@@ -170,6 +199,7 @@ impl LinkTransport {
                 input.count += 1;
             }
         }
+        input.channel = self.emulated();
         let door = &self.wire.door;
         input.peer = Peer {
             turned_away: door.turned_away(),

@@ -25,8 +25,8 @@ use crate::{
 const FORCE_LIFE: f64 = 0.025;
 /// How often the authority is published though it did not change \[ns\].
 const AUTHORITY_PERIOD_NANOS: i64 = 500_000_000;
-/// How sources on this host are told from nobody.
-const THIS_HOST: u64 = 1;
+/// How sources on this host, the master's own hand among them, are told from nobody.
+pub const THIS_HOST: u64 = 1;
 
 ports! {
     /// The master's topics.

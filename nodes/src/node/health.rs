@@ -132,7 +132,14 @@ impl HealthMeter {
             lost: health.lost,
             faults: self.faults,
             node: self.node,
-            message: health.message,
+            message: match health.message.is_empty() {
+                // Who reads a warning reads of what.
+                true => {
+                    let fault = self.faults.iter().next();
+                    fault.map_or(Text::EMPTY, |fault| Text::new(fault.name()))
+                }
+                false => health.message,
+            },
             process: self.process,
             level: self.level,
             reserved: [0; 3],
@@ -203,6 +210,7 @@ mod tests {
                 && sample.faults.has(Fault::CommandInvalid)
             {
                 assert_eq!(sample.level, Level::WARN);
+                assert_eq!(sample.message.as_str(), Fault::CommandInvalid.name());
                 reported += 1;
             }
         }

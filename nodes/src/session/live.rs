@@ -9,6 +9,7 @@ use ferntast_msgs::{
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Monitor, Supervisor};
+use crate::events::Event;
 
 /// One line on stderr that follows the session. On a terminal it is redrawn
 /// in place; elsewhere a line appears every [`QUIET_PERIOD`].
@@ -53,6 +54,11 @@ impl LiveLine {
         } else {
             eprintln!("{text}");
         }
+    }
+
+    /// An event, `elapsed` \[s\] after arming: it stays.
+    pub fn tell(&self, elapsed: f64, event: &Event) {
+        self.note(&format!("{elapsed:7.1} s  {}", event.text));
     }
 
     /// Shows where the session stands, `elapsed` \[s\] after arming.

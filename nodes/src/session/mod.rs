@@ -9,6 +9,8 @@ mod preflight;
 mod private_folder;
 mod recording;
 mod run;
+mod scripted_operator;
+mod state_times;
 mod summary;
 mod supervisor;
 mod thinned;

@@ -11,17 +11,19 @@ use ferntast_msgs::{
     Message, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, Faults, FrictionStatusSample, HealthSample,
-        JointNames, LinkStatusSample, OperatingState, OperatingStateSample, RecorderStatusSample,
-        WrenchSample,
+        JointNames, LinkStatusSample, OperatingState, OperatingStateSample, RecorderCommandSample,
+        RecorderStatusSample, StateCommand, StateCommandSample, WrenchSample,
     },
     topics::{self, Topic},
 };
 
 use crate::{
+    events::{EventWatch, TELLER},
     servo::FrictionSummary,
     twin::{LastWords, TwinSummary},
 };
 
+use super::state_times::StateTimes;
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
 };
@@ -79,8 +81,16 @@ pub struct Monitor {
     contact: Subscriber<ContactStateSample>,
     leader_force: Subscriber<WrenchSample>,
     states: [(&'static str, Subscriber<OperatingStateSample>); 2],
+    state_commands: [Subscriber<StateCommandSample>; 2],
+    /// When somebody told the arm or the master to stop, since this was looked at last.
+    pub stops: Vec<Time>,
     authority: Subscriber<AuthoritySample>,
+    /// Whose hand holds the authority; 0 while nobody's does.
+    pub holder: u64,
     recorder: Subscriber<RecorderStatusSample>,
+    recorder_commands: Subscriber<RecorderCommandSample>,
+    /// What happens, in words.
+    pub events: EventWatch,
     /// The folders that the recorder told of.
     pub recordings: BTreeSet<PathBuf>,
     twins: LastWords,
@@ -107,6 +117,7 @@ pub struct Monitor {
     peak_hand_force: f64,
     refused_masters: u64,
     servo_rates: (f64, u64),
+    updated: Time,
 }
 
 /// The operating states of one device.
@@ -115,6 +126,7 @@ pub struct StateView {
     /// The last one.
     pub last: Option<OperatingStateSample>,
     visited: Vec<String>,
+    times: StateTimes,
 }
 
 impl StateView {
@@ -152,8 +164,16 @@ impl Monitor {
                 ("follower", watch(bus, topics::FOLLOWER_OPERATING_STATE)?),
                 ("leader", watch(bus, topics::LEADER_OPERATING_STATE)?),
             ],
+            state_commands: [
+                watch(bus, topics::FOLLOWER_STATE_COMMAND)?,
+                watch(bus, topics::LEADER_STATE_COMMAND)?,
+            ],
+            stops: Vec::new(),
             authority: watch(bus, topics::LEADER_AUTHORITY)?,
+            holder: 0,
             recorder: watch(bus, topics::RECORDER_STATUS)?,
+            recorder_commands: watch(bus, topics::RECORDER_COMMAND)?,
+            events: EventWatch::default(),
             recordings: BTreeSet::new(),
             twins: LastWords::new(bus)?,
             friction: friction.collect::<Result<_, CreateError>>()?,
@@ -170,6 +190,7 @@ impl Monitor {
             peak_hand_force: 0.0,
             refused_masters: 0,
             servo_rates: (0.0, 0),
+            updated: Time::INVALID,
         })
     }
 
@@ -180,8 +201,13 @@ impl Monitor {
 
     /// Takes in what arrived until `now`.
     pub fn update(&mut self, now: Time) {
+        self.updated = now;
         while let Some(received) = self.diagnostics.next(now) {
             let health = received.message;
+            if health.node.as_str() == TELLER {
+                continue;
+            }
+            self.events.health(&health);
             if health.node.as_str() == "servo" {
                 self.servo_rates.0 += health.rate;
                 self.servo_rates.1 += 1;
@@ -196,6 +222,7 @@ impl Monitor {
             if status.round_trip.is_finite() {
                 self.round_trips.push(status.round_trip);
             }
+            self.events.link(&status);
             self.link_status = Some(status);
         }
         while let Some(received) = self.contact.next(now) {
@@ -213,17 +240,33 @@ impl Monitor {
                 if view.visited.last().is_none_or(|last| last != name) {
                     view.visited.push(name.to_owned());
                 }
+                view.times.note(&received.message);
+                self.events.state(device, &received.message);
                 view.last = Some(received.message);
             }
         }
+        for commands in &mut self.state_commands {
+            while let Some(received) = commands.next(now) {
+                let told = received.message;
+                if [StateCommand::PAUSE, StateCommand::DISABLE].contains(&told.command) {
+                    self.stops.push(told.stamp);
+                }
+            }
+        }
         while let Some(received) = self.authority.next(now) {
+            self.events.authority(&received.message);
+            self.holder = received.message.holder;
             self.refused_masters = received.message.refused_count;
         }
         while let Some(received) = self.recorder.next(now) {
+            self.events.recorder(&received.message);
             let folder = received.message.folder;
             if !folder.is_empty() {
                 self.recordings.insert(PathBuf::from(folder.as_str()));
             }
+        }
+        while let Some(received) = self.recorder_commands.next(now) {
+            self.events.recorder_command(&received.message);
         }
         self.twins.update(now);
         for (joint, told) in &mut self.friction {
@@ -253,8 +296,12 @@ impl Monitor {
         self.contact_state = Some(state);
     }
 
-    /// Forgets peaks and times: what counts begins now.
-    pub fn begin(&mut self) {
+    /// Forgets peaks and times: what counts begins at `now`.
+    pub fn begin(&mut self, now: Time) {
+        self.operating
+            .values_mut()
+            .for_each(|view| view.times.begin(now));
+        self.stops.clear();
         self.round_trips.clear();
         self.peak_normal_force = 0.0;
         self.contact_time = 0.0;
@@ -322,21 +369,30 @@ impl Monitor {
         told.map(FrictionSummary::of).collect()
     }
 
-    /// The operating states.
-    pub fn states(&self) -> BTreeMap<String, StateSummary> {
+    /// The operating states until the last update.
+    pub fn states(&mut self) -> BTreeMap<String, StateSummary> {
+        let now = self.updated;
         self.operating
-            .iter()
+            .iter_mut()
             .map(|(device, view)| {
+                view.times.end(now);
                 let summary = StateSummary {
                     last: view.visited.last().cloned().unwrap_or_default(),
                     visited: view.visited.clone(),
                     reason: view
                         .last
                         .map_or_else(String::new, |last| last.reason.to_string()),
+                    spent: view.times.spent(),
                 };
                 ((*device).to_owned(), summary)
             })
             .collect()
+    }
+
+    /// How long the arm was ENABLED, as far as [`Monitor::states`] counted \[s\].
+    pub fn armed(&self) -> f64 {
+        let arm = self.operating.get("follower");
+        arm.map_or(0.0, |view| view.times.seconds_in("ENABLED"))
     }
 
     /// Every node that was heard of.

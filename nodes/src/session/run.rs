@@ -8,25 +8,38 @@ use std::{
 use ferntast_bus::{Bus, Publisher, SharedMemoryBus, SharedMemoryConfig};
 use ferntast_msgs::{
     Time,
-    sample::{OperatingState, StateCommand, StateCommandSample},
+    sample::{HealthSample, Level, OperatingState, StateCommand, StateCommandSample},
     topics,
 };
 
 use super::{
-    Monitor, SessionError, Summary, Supervisor, host_resources::HostResources, live::LiveLine,
-    preflight, recording, supervisor::Unclean,
+    Monitor, SessionError, Summary, Supervisor,
+    host_resources::HostResources,
+    live::LiveLine,
+    preflight, recording,
+    scripted_operator::{HandsOff, ScriptedOperator, Seen},
+    supervisor::Unclean,
 };
 use crate::{
     bridge::recorder,
+    config::HandSource,
+    events::{Event, EventWatch},
     graph::Graph,
+    master::THIS_HOST,
     process::{Clock, Priority, SessionContext},
 };
 
 /// How often the supervisor looks \[ns\].
 const ROUND_NANOS: i64 = 20_000_000;
+/// How often the newest event is said again \[ns\].
+const REPETITION_NANOS: i64 = 1_000_000_000;
 /// How long nothing may change until all nodes are alive and the arm is armed
 /// \[s\]: on a computer that is busy they come one after the other.
 const START_PATIENCE: f64 = 20.0;
+
+/// What the operator of a script says when it does not arm the arm again.
+const LEFT_TO_YOU: &str =
+    "from now on it is yours to arm the arm again, not the script's operator's";
 
 /// What can be chosen about a session beside its scenario.
 #[derive(Clone, Debug)]
@@ -35,6 +48,9 @@ pub struct SessionOptions {
     pub duration: Option<f64>,
     /// Arm at the start.
     pub enable: bool,
+    /// Where the hand is a script or a recorded motion, its operator arms the arm again
+    /// after a silence.
+    pub rearm: bool,
 }
 
 /// Runs a session of the nodes of `graph` until `stop` is set, its duration is over, or it fails.
@@ -65,6 +81,12 @@ pub fn run(
         armed_at: None,
         commanded_at: None,
         died: Vec::new(),
+        operator: (options.enable
+            && options.rearm
+            && context.loaded.scenario.hand.source != HandSource::Crtk)
+            .then(ScriptedOperator::default),
+        own_stop: None,
+        rearmed: 0,
         context,
     };
     let clock = session.context.clock();
@@ -76,10 +98,19 @@ pub fn run(
         follower: bus.publisher(topics::FOLLOWER_STATE_COMMAND)?,
         leader: bus.publisher(topics::LEADER_STATE_COMMAND)?,
     };
+    let mut teller = Teller {
+        diagnostics: bus.publisher(topics::DIAGNOSTICS)?,
+        newest: None,
+        due: Time::INVALID,
+    };
     session.supervisor.start()?;
-    let mut outcome = session.supervise(clock, &mut monitor, &mut arming, options, stop);
+    let mut outcome =
+        session.supervise(clock, &mut monitor, &mut arming, &mut teller, options, stop);
     let ended = clock.now();
     monitor.update(ended);
+    // As they were before the nodes were told to stop.
+    let states = monitor.states();
+    let armed_s = monitor.armed();
     let mut node_summaries = monitor.node_summaries(ended);
     for (node, process, restarts) in session.supervisor.nodes() {
         let summary = node_summaries.entry(node.to_string()).or_default();
@@ -115,6 +146,8 @@ pub fn run(
         duration_s: session
             .armed_at
             .map_or(0.0, |armed| ended.seconds_since(armed)),
+        armed_s,
+        rearmed: session.rearmed,
         servo: monitor.servo(),
         link: monitor.link(),
         contact: monitor.contact(),
@@ -126,10 +159,10 @@ pub fn run(
             .as_ref()
             .map(|bag| bag.display().to_string()),
         recorder,
-        states: monitor.states(),
+        states,
         nodes: node_summaries,
     };
-    drop((monitor, arming, bus));
+    drop((monitor, arming, teller, bus));
     let freed = resources.release();
     if outcome.is_ok() {
         outcome = match recording_faults {
@@ -147,6 +180,12 @@ struct Running {
     armed_at: Option<Time>,
     commanded_at: Option<Time>,
     died: Vec<&'static str>,
+    /// Whose hand is the script, where there is one.
+    operator: Option<ScriptedOperator>,
+    /// The stamp of the operator's own last word that takes the drives off.
+    own_stop: Option<Time>,
+    /// How often the operator armed the arm again.
+    rearmed: u32,
 }
 
 struct Arming {
@@ -162,10 +201,44 @@ impl Arming {
             true => StateCommand::DISABLE,
             false => StateCommand::ENABLE,
         };
-        let command = StateCommandSample::new(now, command);
         // If a command is not sent the arm is not armed, which is noticed.
-        let _ = self.follower.publish(now, &command);
-        let _ = self.leader.publish(now, &command);
+        self.tell_arm(now, command);
+        let _ = self
+            .leader
+            .publish(now, &StateCommandSample::new(now, command));
+    }
+
+    /// Tells the arm alone.
+    fn tell_arm(&mut self, now: Time, command: StateCommand) {
+        // What is not sent is not obeyed, and said again.
+        let _ = self
+            .follower
+            .publish(now, &StateCommandSample::new(now, command));
+    }
+}
+
+/// Says events on `/diagnostics`.
+struct Teller {
+    diagnostics: Publisher<HealthSample>,
+    newest: Option<Event>,
+    due: Time,
+}
+
+impl Teller {
+    fn tell(&mut self, now: Time, event: &Event) {
+        // What cannot be said now is said with the next repetition, if it is the newest.
+        let _ = self.diagnostics.publish(now, &event.sample());
+        self.newest = Some(*event);
+        self.due = now.plus_nanos(REPETITION_NANOS);
+    }
+
+    /// Says the newest event again now and then, for those who came later.
+    fn repeat(&mut self, now: Time) {
+        if let Some(event) = self.newest
+            && now >= self.due
+        {
+            self.tell(now, &event);
+        }
     }
 }
 
@@ -175,6 +248,7 @@ impl Running {
         clock: Clock,
         monitor: &mut Monitor,
         arming: &mut Arming,
+        teller: &mut Teller,
         options: &SessionOptions,
         stop: &AtomicBool,
     ) -> Result<(), SessionError> {
@@ -186,7 +260,7 @@ impl Running {
             clock.sleep_until(due);
             let now = clock.now();
             for (node, status) in self.supervisor.watch()? {
-                self.note_death(node, status);
+                self.note_death(now, node, status, &mut monitor.events);
             }
             monitor.update(now);
             if self.armed_at.is_none() {
@@ -204,10 +278,17 @@ impl Running {
                     });
                 }
                 if self.armed_at.is_some() {
-                    monitor.begin();
+                    monitor.begin(now);
                 }
+            } else {
+                self.operate(now, monitor, arming);
             }
             let elapsed = self.armed_at.map_or(0.0, |armed| now.seconds_since(armed));
+            for event in monitor.events.take() {
+                self.live.tell(elapsed, &event);
+                teller.tell(now, &event);
+            }
+            teller.repeat(now);
             self.live.show(now, elapsed, monitor, &self.supervisor);
             if options.duration.is_some_and(|duration| elapsed >= duration) {
                 break;
@@ -243,6 +324,48 @@ impl Running {
         }
     }
 
+    /// What the operator does whose hand is the script.
+    fn operate(&mut self, now: Time, monitor: &mut Monitor, arming: &mut Arming) {
+        let stops = std::mem::take(&mut monitor.stops);
+        let Some(operator) = &mut self.operator else {
+            return;
+        };
+        let foreign = stops.into_iter().any(|stamp| Some(stamp) != self.own_stop);
+        let left = (foreign && operator.leave(HandsOff::Stopped))
+            || (monitor.holder > THIS_HOST && operator.leave(HandsOff::Taken));
+        if left {
+            monitor.events.note(now, Level::OK, LEFT_TO_YOU);
+        }
+        let mut nodes = self.supervisor.nodes();
+        let alive =
+            nodes.all(|(node, process, _)| process.is_some() && monitor.is_alive(node, now));
+        let connected = monitor.link_status.is_some_and(|link| link.connected == 1);
+        let seen = Seen {
+            arm: monitor.operating.get("follower").and_then(|view| view.last),
+            well: alive && connected,
+        };
+        let Some((word, arm)) = operator.step(now, &seen) else {
+            return;
+        };
+        self.own_stop = (word == StateCommand::DISABLE)
+            .then_some(now)
+            .or(self.own_stop);
+        self.rearmed += u32::from(word != StateCommand::DISABLE);
+        arming.tell_arm(now, word);
+        let cause = arm
+            .reason
+            .as_str()
+            .split([';', ','])
+            .next()
+            .unwrap_or_default();
+        let told = format_args!(
+            "the script's operator: {} (the arm was {}: {cause})",
+            word.name().unwrap_or("?"),
+            arm.state.name().unwrap_or("?"),
+        );
+        monitor.events.note(now, Level::OK, told);
+    }
+
     /// How far the session has come on its way to an armed arm: the nodes that
     /// were heard of lately, and the operating states that were told.
     fn reached(&self, now: Time, monitor: &Monitor) -> usize {
@@ -271,9 +394,22 @@ impl Running {
         }
     }
 
-    fn note_death(&mut self, node: &'static str, status: ExitStatus) {
-        self.live
-            .note(&format!("node {node} died ({status}); it is started again"));
+    fn note_death(
+        &mut self,
+        now: Time,
+        node: &'static str,
+        status: ExitStatus,
+        events: &mut EventWatch,
+    ) {
+        let left = self
+            .operator
+            .as_mut()
+            .is_some_and(|own| own.leave(HandsOff::Died));
+        let told = format_args!("node {node} died ({status}); it is started again");
+        events.note(now, Level::ERROR, told);
+        if left {
+            events.note(now, Level::OK, LEFT_TO_YOU);
+        }
         if node == recorder::NAME
             && !self.died.contains(&node)
             && let Some(bag) = &self.context.bag

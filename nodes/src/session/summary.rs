@@ -4,6 +4,7 @@ use std::{collections::BTreeMap, fmt};
 
 use serde::Serialize;
 
+use super::state_times::StateTime;
 use crate::twin::TwinSummary;
 
 /// The result of a session. Quantities that were never measured are `null`.
@@ -13,8 +14,12 @@ pub struct Summary {
     pub scenario: String,
     /// The session's name.
     pub session: String,
-    /// Time from armed to stop \[s\].
+    /// Time from when the arm was armed first to the stop \[s\].
     pub duration_s: f64,
+    /// How long of that the arm was ENABLED \[s\].
+    pub armed_s: f64,
+    /// How often the scripted operator armed the arm again.
+    pub rearmed: u32,
     /// The servo loop.
     pub servo: ServoSummary,
     /// The link as the operator's end measured it.
@@ -108,6 +113,8 @@ pub struct StateSummary {
     pub visited: Vec<String>,
     /// Why it is in the last one.
     pub reason: String,
+    /// How long it was in each, and why: the longest first.
+    pub spent: Vec<StateTime>,
 }
 
 /// One node.
@@ -137,8 +144,8 @@ impl fmt::Display for Summary {
         };
         writeln!(
             f,
-            "scenario {}, {:.1} s armed",
-            self.scenario, self.duration_s
+            "scenario {}, {:.1} s, of which the arm was armed for {:.1} s",
+            self.scenario, self.duration_s, self.armed_s
         )?;
         writeln!(
             f,
@@ -170,11 +177,20 @@ impl fmt::Display for Summary {
             writeln!(f, "{twin}")?;
         }
         for (device, state) in &self.states {
+            let spent = state.spent.iter().map(|own| {
+                let times = match own.times {
+                    1 => String::new(),
+                    times => format!(" in {times} times"),
+                };
+                format!("{} {:.1} s{times} ({})", own.state, own.seconds, own.reason)
+            });
+            writeln!(f, "{device:9} {}", spent.collect::<Vec<_>>().join(", "))?;
+        }
+        if self.rearmed > 0 {
             writeln!(
                 f,
-                "{device:9} {} ({})",
-                state.visited.join(" → "),
-                state.reason
+                "operator  the script's armed the arm again {} times",
+                self.rearmed
             )?;
         }
         for (name, node) in self

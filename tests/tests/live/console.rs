@@ -17,7 +17,7 @@ use ferntast_tests::{
 };
 
 /// A session with its console, and where that is.
-fn session_with_page(session: &Session, more: &[&str]) -> (Process, String) {
+pub fn session_with_page(session: &Session, more: &[&str]) -> (Process, String) {
     let address = format!("127.0.0.1:{}", free_tcp_port());
     let mut arguments = vec!["--listen", &address];
     arguments.extend(more);
@@ -48,6 +48,36 @@ fn status(address: &str, request: &str, headers: &[(&str, &str)]) -> u16 {
     code.unwrap_or_else(|| panic!("no status in {answer:?}"))
 }
 
+/// Clicks on the banner's button, each time the one that is there, until arm and master are
+/// enabled; gives what it said each time.
+pub fn led_back(browser: &Browser) -> Vec<String> {
+    let mut words = Vec::new();
+    let look = "const status = document.querySelector('#status').textContent;
+        if (status.includes('arm ENABLED') && status.includes('master ENABLED')) return 'enabled';
+        const act = document.querySelector('#act');
+        return document.querySelector('#banner').hidden || act.hidden ? '' : act.dataset.word";
+    let led = wait_for(PATIENCE, || {
+        match browser.run(look, Vec::new()).as_str().unwrap_or_default() {
+            "enabled" => return Some(()),
+            "" => {}
+            word => {
+                words.push(word.to_owned());
+                browser.run("document.querySelector('#act').click()", Vec::new());
+                // As long as a person takes to see what came of it.
+                thread::sleep(Duration::from_millis(700));
+            }
+        }
+        None
+    });
+    assert!(
+        led.is_some(),
+        "after {words:?} it is not enabled; the page:\n{}",
+        browser.text("body")
+    );
+    words.dedup();
+    words
+}
+
 /// The page's hand, drawn along a path.
 struct Stroke<'a> {
     browser: &'a Browser,
@@ -70,13 +100,12 @@ impl Stroke<'_> {
                 Vec::new(),
             );
             let status = status.as_str().unwrap_or_default();
-            let words = [("arm PAUSED", "#rearm"), ("arm FAULT", "#arm")];
-            if let Some((_, word)) = words.iter().find(|(state, _)| status.contains(state)) {
+            if ["arm PAUSED", "arm FAULT"]
+                .iter()
+                .any(|state| status.contains(state))
+            {
                 browser.release();
-                browser.click(word);
-                let enabled =
-                    "return document.querySelector('#status').textContent.includes('arm ENABLED')";
-                browser.until("the arm is armed again", PATIENCE, enabled);
+                led_back(browser);
                 self.draw();
             }
             (browser.run(look, Vec::new()) == true).then_some(())

@@ -5,6 +5,7 @@
 
 mod bad_frames;
 mod console;
+mod console_trouble;
 mod crashes;
 mod dynamics;
 mod lab_page;

@@ -4,8 +4,8 @@ use std::{fs, time::Duration};
 
 use ferntast_msgs::{sample::OperatingState, topics};
 use ferntast_tests::{
-    PATIENCE, Process, Session, await_enabled, messages, recording, refused, run, start, state,
-    wait_for,
+    PATIENCE, Process, Session, await_enabled, messages, node, recording, refused, run, signal,
+    start, state, state_of_follower, wait_for,
 };
 
 #[test]
@@ -87,11 +87,55 @@ fn ctrl_c_closes_the_recording_and_sums_up() {
     assert!([OperatingState::ENABLED, OperatingState::PAUSED].contains(&last));
 }
 
+/// What a machine that stalls does to a newcomer's first session.
+#[test]
+fn after_a_silence_the_scripts_operator_goes_on_and_the_summary_tells() {
+    let session = Session::new();
+    let mut process = Process::spawn(session.ferntast_here(&["session", "--no-console"]));
+    process.await_stderr("nodes alive", PATIENCE);
+    let told = "script's operator: resume (the arm was PAUSED: commands fell silent)";
+    let went_on = (0..5).any(|_| {
+        // A stall that takes the arm along, too, makes a fault of it: then once more.
+        let master = node(&session, "master");
+        signal(master, libc::SIGSTOP);
+        std::thread::sleep(Duration::from_millis(300));
+        signal(master, libc::SIGCONT);
+        let enabled = || (state_of_follower(&session) == "ENABLED").then_some(());
+        std::thread::sleep(Duration::from_millis(500));
+        assert!(wait_for(PATIENCE, enabled).is_some(), "it does not go on");
+        process.stderr().contains(told)
+    });
+    assert!(went_on, "{}", process.stderr());
+    // Who stops the arm has it: no script arms it again.
+    state(&session, "follower", "pause");
+    std::thread::sleep(Duration::from_secs(3));
+    assert_eq!(state_of_follower(&session), "PAUSED");
+    process.interrupt();
+    let ended = process.wait(PATIENCE).success();
+    let line = |begin: &str| {
+        let line = ended.stdout.lines().find(|line| line.starts_with(begin));
+        line.unwrap_or_else(|| panic!("no {begin:?}:\n{}", ended.stdout))
+    };
+    let arm = line("follower");
+    assert!(
+        arm.contains("PAUSED") && arm.contains("(commands fell silent; send resume)"),
+        "{arm}"
+    );
+    assert!(arm.contains("(pause was asked for)"), "{arm}");
+    assert!(
+        line("operator").contains("armed the arm again"),
+        "{}",
+        ended.stdout
+    );
+    // As it was before the nodes were stopped.
+    assert!(!line("leader").contains("PAUSED"), "{}", ended.stdout);
+}
+
 #[test]
 fn every_node_runs_alone() {
     // Arm, servo and estimator started by hand make an arm that takes commands.
     let session = Session::new();
-    let node = |name: &str| Process::spawn(session.ferntast_here(&["node", name]));
+    let alone = |name: &str| Process::spawn(session.ferntast_here(&["node", name]));
     let mut nodes: Vec<_> = [
         "arm",
         "servo",
@@ -101,7 +145,7 @@ fn every_node_runs_alone() {
         "master",
         "gateway",
     ]
-    .map(node)
+    .map(alone)
     .into();
     let enabled = wait_for(PATIENCE, || {
         let ended = state(&session, "follower", "enable");
