@@ -48,7 +48,7 @@ fn flooded(
     let endpoint = format!("quic/{}", address());
     let mut command = session.ferntast(&["--json", "session", "--session", session.name()]);
     command.args(["--link-endpoint", &endpoint, "--record", "recording"]);
-    command.args(["--no-console", "--rtt", "0"]);
+    command.args(["--no-console", "--no-rearm", "--rtt", "0"]);
     command.env("XDG_RUNTIME_DIR", session.folder());
     let process = hosts.start(Host::Arm, &command);
     let enabled = || {
