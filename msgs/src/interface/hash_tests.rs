@@ -113,7 +113,7 @@ const OWN: &[(&str, &str)] = &[
     ),
     (
         "ferntast_msgs/msg/LinkStatus",
-        "RIHS01_ac971d8551c4f3ebe841c402a06a8280b788ef79eedc48d9c05e13923ac2d245",
+        "RIHS01_04ce8b69ea2a7a41a6c9252a003d72a4a40eede9b74c7d3c4dd7f54d63d780d2",
     ),
     (
         "ferntast_msgs/msg/RecorderCommand",
