@@ -15,6 +15,7 @@ use crate::design::{Design, PreparedModel, SessionDesign};
 use crate::fit::{Parameter, Rms, fit};
 use crate::preparation::prepare;
 use crate::signals::Signals;
+use crate::validation::left_out::LeftOut;
 use extrapolation::Extrapolation;
 use noise_floor::NoiseFloor;
 use residual_map::{Residual, ResidualMap, Window};
@@ -162,16 +163,12 @@ pub(crate) fn compare_prepared(
         relative_error_held_out: fitted.held_out / torque_rms(shown),
         held_out_by: if !prepared.held_out.is_empty() {
             HeldOutBy::Recordings
-        } else if design.folds.len() == prepared.sessions.len() {
+        } else if design.leaves_sessions_out() {
             HeldOutBy::Sessions
         } else {
             HeldOutBy::Blocks
         },
-        noise: noise_floor::find(
-            prepared,
-            &design,
-            crate::validation::left_out(&design, &design.own()),
-        ),
+        noise: noise_floor::find(prepared, &design, LeftOut::of_folds(&design).rms()),
         residual_maps: residual_map::maps(&residuals, &prepared.facts),
         worst: residual_map::worst(&residuals),
         extrapolated: extrapolation::find(prepared),

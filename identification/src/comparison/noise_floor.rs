@@ -25,9 +25,10 @@ pub struct NoiseFloor {
 }
 
 /// Compares the residual (each session with its own parameters) of rows in the
-/// same cell of position, direction, speed, load and acceleration.
+/// same cell of position, direction, speed, load and acceleration, where rows count
+/// for errors. `held_out` is the error \[Nm\] on rows left out.
 #[must_use]
-pub fn find(prepared: &PreparedModel, design: &Design, left_out: f64) -> NoiseFloor {
+pub fn find(prepared: &PreparedModel, design: &Design, held_out: f64) -> NoiseFloor {
     let travel = prepared.facts.travel().max(1e-300);
     let speed = prepared.facts.speed[1].max(1e-300);
     let mut loads: Vec<f64> = Vec::new();
@@ -44,10 +45,11 @@ pub fn find(prepared: &PreparedModel, design: &Design, left_out: f64) -> NoiseFl
     let (mut sum, mut pairs, mut square, mut rows) = (0.0, 0_usize, 0.0, 0_usize);
     for (session, signals) in design.sessions.iter().zip(&prepared.sessions) {
         let residual = session.own_residual();
-        square += residual.iter().map(|r| r * r).sum::<f64>();
-        rows += residual.len();
         let mut last: HashMap<[i32; 5], (f64, f64)> = HashMap::new();
-        for (r, at) in residual.iter().zip(&signals.rows) {
+        let each = residual.iter().zip(&signals.rows).zip(&session.judged);
+        for ((r, at), _) in each.filter(|(_, judged)| **judged) {
+            square += r * r;
+            rows += 1;
             let point = &signals.points[*at];
             let bin = |x: f64, scale: f64, count: f64| {
                 (x / scale * count).floor().clamp(-1e6, 1e6) as i32
@@ -77,6 +79,7 @@ pub fn find(prepared: &PreparedModel, design: &Design, left_out: f64) -> NoiseFl
     NoiseFloor {
         repeats: (pairs >= MIN_PAIRS).then(|| (sum / pairs as f64).sqrt()),
         pairs,
-        sessions: (design.sessions.len() > 1).then(|| (left_out - within).max(0.0).sqrt()),
+        sessions: (design.sessions.len() > 1)
+            .then(|| (held_out * held_out - within).max(0.0).sqrt()),
     }
 }

@@ -15,6 +15,13 @@ pub use prepared_model::PreparedModel;
 /// Blocks of time in all, at least; a session is one or more of them.
 const MIN_BLOCKS: usize = 12;
 
+/// Sessions from which standard errors are by sessions left out: two tell nothing
+/// of their variation.
+const MIN_SESSIONS_FOR_ERRORS: usize = 3;
+/// Smallest share of the rows in the shorter of two sessions that is left out as
+/// a whole, and predicts the other.
+const MIN_SHARE_OF_TWO: f64 = 0.2;
+
 /// Rows of one session: measured side and columns of the model.
 #[derive(Clone, Debug)]
 pub struct SessionDesign {
@@ -22,6 +29,8 @@ pub struct SessionDesign {
     pub measured: Vec<f64>,
     /// Columns of the model's effects, filtered, in the order of its terms.
     pub base: Vec<Vec<f64>>,
+    /// Whether a row counts for errors.
+    pub judged: Vec<bool>,
     /// First row and the row past the last, of each block of time.
     pub blocks: Vec<(usize, usize)>,
     /// Gram of each block: base columns and y.
@@ -41,9 +50,12 @@ pub struct Design {
     pub sessions: Vec<SessionDesign>,
     /// Number of base columns.
     pub base: usize,
-    /// Which (session, block) are left out together: whole sessions where there are
-    /// three or more, else single blocks.
+    /// Which (session, block) are left out together for standard errors and tests:
+    /// whole sessions where there are three or more, else single blocks.
     pub folds: Vec<Vec<(usize, usize)>>,
+    /// Which are left out together for the error that is reported: whole sessions
+    /// where there are two or more, else single blocks.
+    pub left_out: Vec<Vec<(usize, usize)>>,
     /// Parameters of all sessions together.
     pub shared: DVector<f64>,
     /// Their covariance, by folds left out.
@@ -62,36 +74,55 @@ impl Design {
     /// Computes rows and Gram matrices of the model on the sessions that are fitted.
     #[must_use]
     pub fn new(prepared: &PreparedModel) -> Self {
-        let per_session = MIN_BLOCKS.div_ceil(prepared.sessions.len().max(1));
+        let per_session = Self::blocks_per_session(prepared.sessions.len());
         let sessions: Vec<SessionDesign> = prepared
             .sessions
             .iter()
             .map(|signals| SessionDesign::new(prepared, signals, &signals.rows, per_session))
             .collect();
         let base = prepared.terms.iter().map(|t| t.effect.columns()).sum();
-        let whole = sessions.iter().filter(|s| !s.measured.is_empty()).count() >= 3;
-        let mut folds = Vec::new();
-        for (s, session) in sessions.iter().enumerate() {
-            let blocks: Vec<(usize, usize)> = (0..session.blocks.len()).map(|b| (s, b)).collect();
-            if blocks.is_empty() {
-                continue;
-            }
-            if whole {
-                folds.push(blocks);
-            } else {
-                folds.extend(blocks.into_iter().map(|b| vec![b]));
-            }
-        }
+        let blocks = |(s, session): (usize, &SessionDesign)| -> Vec<(usize, usize)> {
+            (0..session.blocks.len()).map(|b| (s, b)).collect()
+        };
+        let mut by_session: Vec<_> = sessions.iter().enumerate().map(blocks).collect();
+        by_session.retain(|session| !session.is_empty());
+        let by_block = || by_session.iter().flatten().map(|block| vec![*block]);
+        let folds = match by_session.len() >= MIN_SESSIONS_FOR_ERRORS {
+            true => by_session.clone(),
+            false => by_block().collect(),
+        };
+        let left_out = match one_predicts_the_other(&sessions) {
+            true => by_session,
+            false => by_block().collect(),
+        };
         let mut design = Self {
             sessions,
             base,
             folds,
+            left_out,
             shared: DVector::zeros(base),
             covariance: DMatrix::zeros(base, base),
             hold: DVector::zeros(base),
         };
         design.fit();
         design
+    }
+
+    /// Number of blocks of time that each of so many sessions is cut into.
+    #[must_use]
+    pub const fn blocks_per_session(sessions: usize) -> usize {
+        match sessions {
+            0 => MIN_BLOCKS,
+            sessions => MIN_BLOCKS.div_ceil(sessions),
+        }
+    }
+
+    /// Whether the error that is reported is that of whole sessions left out.
+    #[must_use]
+    pub fn leaves_sessions_out(&self) -> bool {
+        self.sessions.len() > 1
+            && (self.left_out.iter().any(|fold| fold.len() > 1)
+                || self.left_out.len() == self.sessions.len())
     }
 
     /// Fits the parameters of all sessions together, and the weights that draw a
@@ -241,9 +272,12 @@ impl SessionDesign {
             .iter()
             .map(|(from, to)| Gram::from_columns(&views, &measured, *from, *to))
             .collect();
+        let judged = rows.iter();
+        let judged = judged.map(|row| signals.unjudged_rows.binary_search(row).is_err());
         Self {
             measured,
             base,
+            judged: judged.collect(),
             blocks,
             grams,
         }
@@ -277,6 +311,18 @@ impl SessionDesign {
             .map(Vec::as_slice)
             .chain([self.measured.as_slice()])
             .collect()
+    }
+}
+
+/// Whether sessions are left out as a whole: of three or more each, of two where
+/// neither is too short to predict the other.
+fn one_predicts_the_other(sessions: &[SessionDesign]) -> bool {
+    let mut rows: Vec<usize> = sessions.iter().map(|s| s.measured.len()).collect();
+    rows.retain(|count| *count > 0);
+    match rows.as_slice() {
+        [] | [_] => false,
+        [a, b] => *a.min(b) as f64 >= MIN_SHARE_OF_TWO * (a + b) as f64,
+        _ => true,
     }
 }
 

@@ -66,11 +66,24 @@ impl PreparedModel {
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             for term in &self.terms {
                 let samples = (term.effect).undetermined_samples(&term.shape, &signals.points);
-                signals.rows.retain(|row| {
-                    let after = samples.partition_point(|at| at + reach < *row);
-                    samples.get(after).is_none_or(|at| *at > row + reach)
-                });
+                signals.rows.retain(|row| !reaches(*row, reach, &samples));
             }
+        }
+        self.find_unjudged_rows();
+    }
+
+    /// Notes the rows whose filters reach a sample at which the measured torque is
+    /// not the motor's, by an effect of the model.
+    fn find_unjudged_rows(&mut self) {
+        let reach = Kernel::reach(self.filters.column);
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            let each = self.terms.iter();
+            let samples: Vec<Vec<usize>> = each
+                .map(|term| (term.effect).unjudged_samples(&term.shape, &signals.points))
+                .filter(|samples| !samples.is_empty())
+                .collect();
+            let is_reached = |row: &&usize| samples.iter().any(|own| reaches(**row, reach, own));
+            signals.unjudged_rows = signals.rows.iter().filter(is_reached).copied().collect();
         }
     }
 
@@ -80,14 +93,23 @@ impl PreparedModel {
         all.map(|signals| signals.rows.as_slice())
     }
 
-    /// The same model on the rows of `other`, which has the same sessions.
+    /// The same model on the rows of `other`, which has the same sessions; of these
+    /// the same count for errors.
     #[must_use]
     pub fn on_rows_of(mut self, other: &Self) -> Self {
         let own = self.sessions.iter_mut().chain(&mut self.held_out);
         let theirs = other.sessions.iter().chain(&other.held_out);
         for (own, theirs) in own.zip(theirs) {
             own.rows.clone_from(&theirs.rows);
+            own.unjudged_rows.clone_from(&theirs.unjudged_rows);
         }
         self
     }
+}
+
+/// Whether the filters of `row`, which look `reach` samples to either side, reach one
+/// of `samples`, which are in order.
+fn reaches(row: usize, reach: usize, samples: &[usize]) -> bool {
+    let after = samples.partition_point(|at| at + reach < row);
+    samples.get(after).is_some_and(|at| *at <= row + reach)
 }

@@ -1,10 +1,11 @@
 //! Which effect is missing, if any.
 //!
 //! Every effect that the model lacks is a candidate (`candidates`). Of those that
-//! pass the tests (`verdict`), the simplest of the equivalent ones comes first
+//! pass the tests (`verdict`) and lower the error that is reported (`acceptance`), the simplest of the equivalent ones comes first
 //! (`equivalents`), after pairs that are easily confused have been decided: by the
 //! rows at reversals, by the sensor's zero, by an encompassing test.
 
+mod acceptance;
 mod at_reversals;
 mod backlash_or_presliding;
 mod candidates;
@@ -15,13 +16,18 @@ mod results;
 mod sensor_zero;
 mod verdict;
 
+use std::collections::BTreeMap;
+
 use crate::comparison::noise_floor;
+use crate::data::check::check;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, ModelSpec, RecordedSession};
 use crate::design::{Design, PreparedModel};
-use crate::fit::{Fit, Rms, fit};
-use crate::preparation::{extend, prepare};
+use crate::fit::addition::Addition;
+use crate::fit::{Parameter, Rms, fit};
+use crate::preparation::Filtered;
 
+use acceptance::Acceptance;
 use candidates::{Candidate, Trial, try_all};
 use dependence::Dependence;
 pub use results::{Diagnosis, NamedCandidate, Suspect, Verdict};
@@ -42,13 +48,23 @@ pub fn diagnose(
     spec: &ModelSpec,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Diagnosis, PrepareError> {
-    let prepared = prepare(dataset, spec)?;
+    check(dataset, spec)?;
+    let filtered = Filtered::new(dataset);
+    let prepared = filtered.bind(spec)?;
     let design = Design::new(&prepared);
     progress(0.05);
     let trial = try_all(&prepared, &design, &mut |done| progress(0.05 + 0.6 * done));
     let base = fit(&prepared, &design);
-    let noise = noise_floor::find(&prepared, &design, base.held_out * base.held_out);
+    let noise = noise_floor::find(&prepared, &design, base.held_out);
+    let mut acceptance = Acceptance {
+        filtered: &filtered,
+        spec,
+        prepared: &prepared,
+        base: &base,
+        made: BTreeMap::new(),
+    };
     let mut passing = passing(&trial);
+    acceptance.keep_accepted(&mut passing);
     encompassing_test::drop_redundant_terms(&prepared, &design, &mut passing);
     equivalents::order(&design, &mut passing);
     backlash_or_presliding::decide(&prepared, &mut passing, &trial.candidates);
@@ -59,6 +75,7 @@ pub fn diagnose(
     if passing.is_empty() {
         passing.extend(named_by_map(&trial, &maps));
     }
+    acceptance.keep_accepted(&mut passing);
     progress(0.75);
     let verdict = judge(&prepared, &passing, &maps, &mut |done| {
         progress(0.75 + 0.2 * done)
@@ -75,8 +92,17 @@ pub fn diagnose(
     };
     let candidates = named
         .iter()
-        .map(|candidate| describe(&prepared, &design, &base, candidate, &passing, &trial))
+        .filter_map(|candidate| {
+            let addition = acceptance.of(candidate)?;
+            Some(describe(
+                &prepared, &design, addition, candidate, &passing, &trial,
+            ))
+        })
         .collect();
+    // Gains by parameters of each session's own and by shared ones are shares of
+    // different errors.
+    let mut depends_on = maps;
+    depends_on.sort_by(|a, b| b.strength.total_cmp(&a.strength));
     progress(1.0);
     Ok(Diagnosis {
         samples: dataset.sessions.iter().map(RecordedSession::len).sum(),
@@ -90,7 +116,7 @@ pub fn diagnose(
         noise,
         candidates,
         suspected,
-        residual_depends_on: maps,
+        residual_depends_on: depends_on,
         tried: trial.variants + trial.variants_between,
     })
 }
@@ -126,40 +152,51 @@ fn suspected(trial: &Trial) -> Vec<Suspect> {
 fn describe(
     prepared: &PreparedModel,
     design: &Design,
-    base: &Fit,
+    addition: &Addition,
     candidate: &Candidate,
     passing: &[Candidate],
     trial: &Trial,
 ) -> NamedCandidate {
-    let term = candidate.term();
-    // Before and after are reported on the rows that a model with it is fitted to.
-    let extended = match candidate.effect.row().shows_at_reversals {
-        true => extend(&prepared.with_reversals(), term),
-        false => extend(prepared, term),
-    };
-    let before = match extended.rows().eq(prepared.rows()) {
-        true => base.held_out,
-        false => {
-            let same = prepared.clone().on_rows_of(&extended);
-            fit(&same, &Design::new(&same)).held_out
-        }
-    };
-    let after = fit(&extended, &Design::new(&extended));
     let id = candidate.id();
     let equivalents = equivalents::find(design, candidate, passing, &trial.candidates);
+    let decrease = &addition.decrease;
     NamedCandidate {
         effect: id.to_owned(),
-        held_out_before: before,
-        held_out_after: after.held_out,
+        held_out_before: addition.held_out_before,
+        held_out_after: addition.held_out_after,
         p_value: trial.corrected(candidate),
-        share: candidate.score.share(),
-        parameters: after
-            .parameters
-            .into_iter()
-            .filter(|(_, p)| p.effect == id)
-            .collect(),
+        share: decrease.mean_square / decrease.before.powi(2).max(1e-300),
+        share_std_error: decrease.std_error / decrease.before.powi(2).max(1e-300),
+        parameters: parameters(prepared, addition, candidate),
         separate_by: equivalents::separate_by(prepared, candidate, &equivalents),
         next_experiment: equivalents::proposal(candidate, &equivalents),
         indistinguishable_from: equivalents.iter().map(|c| c.id().to_owned()).collect(),
     }
+}
+
+/// The candidate's own parameters in the model with it.
+fn parameters(
+    prepared: &PreparedModel,
+    addition: &Addition,
+    candidate: &Candidate,
+) -> BTreeMap<String, Parameter> {
+    let row = candidate.effect.row();
+    let all = addition.parameters.iter();
+    let own = all.filter(|(_, parameter)| parameter.effect == candidate.id());
+    own.map(|(name, parameter)| {
+        let mut parameter = parameter.clone();
+        // The inertia is fitted as a whole; what is missing is a correction.
+        match (
+            row.corrects_inertia,
+            row.coefficients,
+            prepared.facts.inertia,
+        ) {
+            (true, [correction], Some(given)) => {
+                parameter.value -= given;
+                (correction.name.to_owned(), parameter)
+            }
+            _ => (name.clone(), parameter),
+        }
+    })
+    .collect()
 }

@@ -33,8 +33,10 @@ pub struct NamedCandidate {
     /// p-value by leaving blocks out in turn, or by the variation between sessions,
     /// corrected for all variants tried.
     pub p_value: f64,
-    /// Share of the residual's mean square that it explains on rows left out.
+    /// Share of the residual's mean square by which the error on rows left out falls.
     pub share: f64,
+    /// Its standard error.
+    pub share_std_error: f64,
     /// Its parameters.
     pub parameters: BTreeMap<String, Parameter>,
     /// Ids of effects that explain these data as well.

@@ -32,24 +32,35 @@ impl Effect for CurrentSaturation {
         };
     }
 
+    // Limits that more than one sample in four exceeds are none: there the torque that
+    // is measured would explain itself.
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
-        (0..11)
+        let [low, _] = limits(facts);
+        (0..LIMITS)
             .flat_map(|i| {
-                let share = 0.5 + 0.05 * f64::from(i);
-                [
-                    vec![share * facts.motor_torque, 0.0],
-                    vec![share * facts.motor_torque, 1.0],
-                ]
+                let share = f64::from(i) / f64::from(LIMITS - 1);
+                let limit = low + share * (facts.motor_torque - low).max(0.0);
+                [vec![limit, 0.0], vec![limit, 1.0]]
             })
             .collect()
     }
 
     fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
         // The place is not refined.
-        vec![
-            [0.4 * facts.motor_torque, 1.05 * facts.motor_torque],
-            [0.0, 0.0],
-        ]
+        vec![limits(facts), [0.0, 0.0]]
+    }
+
+    fn unjudged_samples(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
+        let [limit, place, ..] = shape else {
+            return Vec::new();
+        };
+        let torque = |point: &Point| match *place < 0.5 {
+            true => point.motor_torque,
+            false => point.motor_predicted,
+        };
+        let beyond = |(_, point): &(usize, &Point)| torque(point).abs() > *limit;
+        let samples = points.iter().enumerate().filter(beyond);
+        samples.map(|(at, _)| at).collect()
     }
 
     // Measured torque as a column explains its own noise with a small
@@ -62,4 +73,16 @@ impl Effect for CurrentSaturation {
         };
         coefficients.iter().all(|c| (least..1.6).contains(c))
     }
+}
+
+/// Limits tried of each place.
+const LIMITS: u32 = 11;
+
+/// Lowest and highest limit \[Nm\].
+fn limits(facts: &Facts) -> [f64; 2] {
+    let high = 1.05 * facts.motor_torque;
+    [
+        facts.common_torque.max(0.4 * facts.motor_torque).min(high),
+        high,
+    ]
 }

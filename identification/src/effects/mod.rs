@@ -108,6 +108,14 @@ pub trait Effect: Send + Sync {
         Vec::new()
     }
 
+    /// Samples whose measured torque is not the motor's, in order of time: what is
+    /// measured there explains itself, so that rows whose filters reach there
+    /// are fitted but count for no error, neither before nor after.
+    fn unjudged_samples(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
+        let _ = (shape, points);
+        Vec::new()
+    }
+
     /// Takes its influence out of the measured `channels`, sampled every `period`
     /// \[s\], for an effect that acts on these. Returns the number of samples at
     /// the end that are invalid afterwards.

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{Parameter, fit};
+use super::{Fit, Parameter, fit};
+use crate::data::check::check;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
-use crate::design::Design;
+use crate::design::{Design, PreparedModel};
 use crate::effects;
-use crate::preparation::prepare;
+use crate::preparation::Filtered;
+use crate::validation::left_out::Decrease;
 
 /// Errors and parameters without and with one more effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -20,6 +22,13 @@ pub struct Addition {
     pub held_out_before: f64,
     /// RMS on rows left out, after \[Nm\].
     pub held_out_after: f64,
+    /// The same as mean squares, with the uncertainty of their difference.
+    pub decrease: Decrease,
+    /// Whether the error on rows left out falls by more than its own uncertainty.
+    pub lowers_error: bool,
+    /// Share of the rows fitted that count for errors: torque beyond a limit of the
+    /// drive or its sensor does not.
+    pub judged_share: f64,
     /// RMS on the rows fitted, before \[Nm\].
     pub train_before: f64,
     /// RMS on the rows fitted, after \[Nm\].
@@ -41,6 +50,55 @@ pub struct Addition {
 ///
 /// See [`PrepareError`].
 pub fn add(dataset: &Dataset, spec: &ModelSpec, effect: &Term) -> Result<Addition, PrepareError> {
+    check(dataset, spec)?;
+    let filtered = Filtered::new(dataset);
+    let before = filtered.bind(spec)?;
+    let base = fit(&before, &Design::new(&before));
+    let (addition, _) = add_to(&filtered, spec, (&before, &base), effect)?;
+    Ok(addition)
+}
+
+/// The same of recordings that are filtered, to which `spec` is bound and fitted;
+/// and the model with the effect.
+pub(crate) fn add_to(
+    filtered: &Filtered<'_>,
+    spec: &ModelSpec,
+    (prepared, base): (&PreparedModel, &Fit),
+    effect: &Term,
+) -> Result<(Addition, PreparedModel), PrepareError> {
+    let model = with(spec, effect)?;
+    let extended = filtered.bind(&model)?;
+    // Both on the rows that the new model is fitted to.
+    let same = |of: fn(&PreparedModel) -> Vec<&[usize]>| of(prepared) == of(&extended);
+    let refitted = match same(rows) && same(unjudged_rows) {
+        true => None,
+        false => {
+            let before = prepared.clone().on_rows_of(&extended);
+            Some(fit(&before, &Design::new(&before)))
+        }
+    };
+    let before = refitted.as_ref().unwrap_or(base);
+    let after = fit(&extended, &Design::new(&extended));
+    let decrease = after.left_out.decrease_from(&before.left_out);
+    let count = |rows: Vec<&[usize]>| rows.iter().map(|own| own.len()).sum::<usize>() as f64;
+    let addition = Addition {
+        effect: effect.name().to_owned(),
+        held_out_before: before.held_out,
+        held_out_after: after.held_out,
+        lowers_error: decrease.is_certain(),
+        decrease,
+        judged_share: 1.0 - count(unjudged_rows(&extended)) / count(rows(&extended)).max(1.0),
+        train_before: before.train,
+        train_after: after.train,
+        parameters: after.parameters,
+        not_excited: after.not_excited,
+        model,
+    };
+    Ok((addition, extended))
+}
+
+/// The model `spec` with one more effect.
+fn with(spec: &ModelSpec, effect: &Term) -> Result<ModelSpec, PrepareError> {
     let mut model = spec.clone();
     match effect {
         Term::Catalogue(id) if effects::find(id).is_some_and(|own| own.row().corrects_inertia) => {
@@ -52,19 +110,15 @@ pub fn add(dataset: &Dataset, spec: &ModelSpec, effect: &Term) -> Result<Additio
         }
         _ => model.effects.push(effect.clone()),
     }
-    let prepared = prepare(dataset, &model)?;
-    // Both on the rows that the new model is fitted to.
-    let before = prepare(dataset, spec)?.on_rows_of(&prepared);
-    let before = fit(&before, &Design::new(&before));
-    let after = fit(&prepared, &Design::new(&prepared));
-    Ok(Addition {
-        effect: effect.name().to_owned(),
-        held_out_before: before.held_out,
-        held_out_after: after.held_out,
-        train_before: before.train,
-        train_after: after.train,
-        parameters: after.parameters,
-        not_excited: after.not_excited,
-        model,
-    })
+    Ok(model)
+}
+
+fn rows(prepared: &PreparedModel) -> Vec<&[usize]> {
+    prepared.rows().collect()
+}
+
+fn unjudged_rows(prepared: &PreparedModel) -> Vec<&[usize]> {
+    let all = prepared.sessions.iter().chain(&prepared.held_out);
+    all.map(|signals| signals.unjudged_rows.as_slice())
+        .collect()
 }

@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use crate::design::{Design, PreparedModel, SessionDesign};
+use crate::design::{Design, PreparedModel};
 use crate::effects::with_columns;
 use crate::numerics::gram::{Gram, pseudo_inverse};
-use crate::validation::left_out;
+use crate::validation::left_out::LeftOut;
 
 /// Root mean square errors \[Nm\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -46,6 +46,8 @@ pub struct Fit {
     pub train: f64,
     /// The same on rows left out: explicit held-out sessions, else folds \[Nm\].
     pub held_out: f64,
+    /// The residuals that it is of.
+    pub left_out: LeftOut,
     /// All parameters by name.
     pub parameters: BTreeMap<String, Parameter>,
     /// Names of parameters whose standard error exceeds their value, or which
@@ -58,21 +60,16 @@ pub struct Fit {
 /// Fits the model to the rows of its sessions.
 #[must_use]
 pub fn fit(prepared: &PreparedModel, design: &Design) -> Fit {
-    let grams = design.own();
     let total = design.total();
     let (coefficients, covariance) = (design.shared.clone(), design.covariance.clone());
-    let rows = total.rows.max(1) as f64;
-    let held_out = if prepared.held_out.is_empty() {
-        left_out(design, &grams).sqrt()
-    } else {
-        held_out_error(prepared, &coefficients)
-    };
+    let left_out = LeftOut::new(prepared, design);
     let n = total.columns();
     let (_, condition) = pseudo_inverse(&total.products.view((0, 0), (n, n)).into_owned());
     let (parameters, not_excited) = name(prepared, &coefficients, &covariance, &total);
     Fit {
-        train: (total.squared_error(&coefficients) / rows).sqrt(),
-        held_out,
+        train: error_on_judged_rows(design, &coefficients),
+        held_out: left_out.rms(),
+        left_out,
         coefficients,
         covariance,
         parameters,
@@ -81,17 +78,17 @@ pub fn fit(prepared: &PreparedModel, design: &Design) -> Fit {
     }
 }
 
-/// RMS on the held-out sessions.
-fn held_out_error(prepared: &PreparedModel, coefficients: &DVector<f64>) -> f64 {
-    let (mut error, mut rows) = (0.0, 0);
-    for signals in &prepared.held_out {
-        let session = SessionDesign::new(prepared, signals, &signals.rows, 1);
-        for gram in &session.grams {
-            error += gram.squared_error(coefficients);
-            rows += gram.rows;
+/// RMS \[Nm\] on the rows fitted that count for errors.
+fn error_on_judged_rows(design: &Design, coefficients: &DVector<f64>) -> f64 {
+    let (mut square, mut rows) = (0.0, 0_usize);
+    for session in &design.sessions {
+        let residual = session.residual(coefficients);
+        for (residual, _) in (residual.iter().zip(&session.judged)).filter(|(_, judged)| **judged) {
+            square += residual * residual;
+            rows += 1;
         }
     }
-    (error / rows.max(1) as f64).sqrt()
+    (square / rows.max(1) as f64).sqrt()
 }
 
 type Named = (BTreeMap<String, Parameter>, Vec<String>);

@@ -71,6 +71,7 @@ pub(super) fn gather(
             quantile_or_zero(&mut speeds, 0.98),
         ],
         motor_torque: quantile_or_zero(&mut torques, 0.999),
+        common_torque: quantile_or_zero(&mut torques, 0.75),
         resolved: RESOLVED * filters.position_noise,
         loaded: dataset.joint.is_contact()
             || dataset.sessions.iter().all(|s| s.joint_torque.is_some())

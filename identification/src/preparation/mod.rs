@@ -16,6 +16,15 @@ use crate::design::PreparedModel;
 use crate::effects::BoundTerm;
 use crate::signals::{Filters, Signals};
 
+/// Recordings filtered, to which any model can be bound: filters go by the noise
+/// in the recordings alone.
+pub(crate) struct Filtered<'a> {
+    dataset: &'a Dataset,
+    filters: Filters,
+    sessions: Vec<Signals>,
+    held_out: Vec<Signals>,
+}
+
 /// Binds the model `spec` to the recordings in `dataset`.
 ///
 /// # Errors
@@ -23,24 +32,68 @@ use crate::signals::{Filters, Signals};
 /// See [`PrepareError`].
 pub fn prepare(dataset: &Dataset, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
     check(dataset, spec)?;
-    let mut prepared = with_signals(dataset, spec);
-    prepared.terms = prepared.bind(spec)?;
-    let mut terms = prepared.terms.iter();
-    if terms.any(|t| t.effect.row().shows_at_reversals) {
-        prepared.keep_reversals();
+    Filtered::new(dataset).bind(spec)
+}
+
+impl<'a> Filtered<'a> {
+    /// Filters recordings that have been checked.
+    pub(crate) fn new(dataset: &'a Dataset) -> Self {
+        let filters = Filters::for_dataset(dataset);
+        let filtered = |sessions: &[RecordedSession]| -> Vec<Signals> {
+            let sessions = sessions.iter();
+            sessions.map(|s| Signals::new(s, &filters)).collect()
+        };
+        Self {
+            dataset,
+            filters,
+            sessions: filtered(&dataset.sessions),
+            held_out: filtered(&dataset.held_out),
+        }
     }
-    let parameters = prepared.terms.iter().map(|t| t.effect.columns()).sum();
-    let rows = prepared.sessions.iter().map(|s| s.rows.len()).sum();
-    if rows < 20 + 5 * parameters {
-        return Err(PrepareError::NothingExcited { rows, parameters });
+
+    /// Binds a model whose numbers have been checked.
+    pub(crate) fn bind(&self, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
+        let mut prepared = self.without_terms(spec);
+        prepared.terms = prepared.bind(spec)?;
+        let mut terms = prepared.terms.iter();
+        if terms.any(|t| t.effect.row().shows_at_reversals) {
+            prepared.keep_reversals();
+        }
+        let parameters = prepared.terms.iter().map(|t| t.effect.columns()).sum();
+        let rows = prepared.sessions.iter().map(|s| s.rows.len()).sum();
+        if rows < 20 + 5 * parameters {
+            return Err(PrepareError::NothingExcited { rows, parameters });
+        }
+        prepared.model_load();
+        prepared.find_shapes();
+        prepared.model_load();
+        prepared.predict();
+        prepared.compensate();
+        prepared.refine_shapes_on_determined_rows();
+        Ok(prepared)
     }
-    prepared.model_load();
-    prepared.find_shapes();
-    prepared.model_load();
-    prepared.predict();
-    prepared.compensate();
-    prepared.refine_shapes_on_determined_rows();
-    Ok(prepared)
+
+    /// Signals and facts, without any term yet.
+    fn without_terms(&self, spec: &ModelSpec) -> PreparedModel {
+        let (mut sessions, mut held_out) = (self.sessions.clone(), self.held_out.clone());
+        let facts = facts::gather(self.dataset, spec, &sessions, &self.filters);
+        for signals in sessions.iter_mut().chain(&mut held_out) {
+            for point in &mut signals.points {
+                if facts.temperature {
+                    point.temperature -= facts.reference_temperature;
+                }
+            }
+        }
+        PreparedModel {
+            facts,
+            filters: self.filters,
+            sessions,
+            held_out,
+            terms: Vec::new(),
+            reversals: false,
+            predicted: DVector::zeros(0),
+        }
+    }
 }
 
 /// `prepared` with one more effect in the model, whose shape is kept.
@@ -56,32 +109,4 @@ pub fn extend(prepared: &PreparedModel, term: BoundTerm) -> PreparedModel {
     }
     extended.leave_out_undetermined_rows();
     extended
-}
-
-/// Filtered signals and facts, without any term yet.
-fn with_signals(dataset: &Dataset, spec: &ModelSpec) -> PreparedModel {
-    let filters = Filters::for_dataset(dataset);
-    let filtered = |sessions: &[RecordedSession]| -> Vec<Signals> {
-        let sessions = sessions.iter();
-        sessions.map(|s| Signals::new(s, &filters)).collect()
-    };
-    let mut sessions = filtered(&dataset.sessions);
-    let mut held_out = filtered(&dataset.held_out);
-    let facts = facts::gather(dataset, spec, &sessions, &filters);
-    for signals in sessions.iter_mut().chain(&mut held_out) {
-        for point in &mut signals.points {
-            if facts.temperature {
-                point.temperature -= facts.reference_temperature;
-            }
-        }
-    }
-    PreparedModel {
-        facts,
-        filters,
-        sessions,
-        held_out,
-        terms: Vec::new(),
-        reversals: false,
-        predicted: DVector::zeros(0),
-    }
 }

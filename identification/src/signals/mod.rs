@@ -45,6 +45,10 @@ pub struct Signals {
     /// Working samples that are rows of the regression, in order of time: sliding,
     /// away from rest and reversals.
     pub rows: Vec<usize>,
+    /// Those of `rows` that are fitted, but count for no error: their torque is not
+    /// what was measured, by an effect of the model
+    /// ([`Effect::unjudged_samples`](crate::effects::Effect::unjudged_samples)).
+    pub unjudged_rows: Vec<usize>,
     /// Whether the session is known to be free of load, see [`RecordedSession::unloaded`].
     pub unloaded: bool,
     /// Rows that include rest and reversals (of a contact while it lasts), for
@@ -106,6 +110,7 @@ impl Signals {
             jacobians: BTreeMap::new(),
             unloaded: session.unloaded,
             rows: Vec::new(),
+            unjudged_rows: Vec::new(),
             rows_with_reversals: Vec::new(),
             all_rows: Vec::new(),
         };

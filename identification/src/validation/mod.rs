@@ -7,6 +7,7 @@
 //! are shared, as in a prediction for a new day; temperature and date show only
 //! here.
 
+pub mod left_out;
 pub mod session_variation;
 
 use nalgebra::DVector;
@@ -248,22 +249,6 @@ pub fn agreement(design: &Design, grams: &BlockGrams) -> f64 {
     } else {
         1.0
     }
-}
-
-/// Mean square on rows left out, all parameters shared \[Nm²\].
-#[must_use]
-pub fn left_out(design: &Design, grams: &BlockGrams) -> f64 {
-    let columns = grams.iter().flatten().next().map_or(0, Gram::columns);
-    let total = Gram::sum(grams.iter().flatten(), columns);
-    let error: f64 = design
-        .folds
-        .iter()
-        .map(|fold| {
-            let out = fold_gram(grams, fold, columns);
-            out.squared_error(&total.without(&out).solve())
-        })
-        .sum();
-    error / total.rows.max(1) as f64
 }
 
 /// Σ (X c)².

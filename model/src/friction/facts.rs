@@ -109,6 +109,8 @@ pub struct Facts {
     pub speed: [f64; 2],
     /// Top of |τ_m| \[Nm\].
     pub motor_torque: f64,
+    /// |τ_m| \[Nm\] that one sample in four exceeds, of those away from rest.
+    pub common_torque: f64,
     /// Travel \[rad\] that is seen for certain, for the position's noise.
     pub resolved: f64,
     /// Whether there is a load: a torque sensor, gravity, a spring or an inertia.

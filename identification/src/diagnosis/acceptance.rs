@@ -1,0 +1,79 @@
+//! What a candidate does to the error that is reported: it is no name unless it
+//! lowers that.
+//!
+//! Other tests tell whether an effect is there; session by session, with parameters
+//! of its own for each, they see effects that are smaller than the variation from
+//! session to session. Whether it helps is told by the model with it, bound to
+//! the recordings and fitted anew as when it is added.
+
+use std::collections::BTreeMap;
+
+use super::candidates::Candidate;
+use crate::comparison::noise_floor;
+use crate::data::{ModelSpec, Term};
+use crate::design::{Design, PreparedModel};
+use crate::fit::Fit;
+use crate::fit::addition::{Addition, add_to};
+use crate::preparation::Filtered;
+
+/// Largest share of the samples beyond a limit of torque: what is measured there tells
+/// nothing of the model.
+const MAX_SHARE_BEYOND: f64 = 0.25;
+
+/// Additions of candidates, by their ids; made once.
+pub struct Acceptance<'a> {
+    pub filtered: &'a Filtered<'a>,
+    pub spec: &'a ModelSpec,
+    pub prepared: &'a PreparedModel,
+    pub base: &'a Fit,
+    pub made: BTreeMap<String, Option<Addition>>,
+}
+
+impl Acceptance<'_> {
+    /// The model with the candidate, where that lowers the error.
+    pub fn of(&mut self, candidate: &Candidate) -> Option<&Addition> {
+        let id = candidate.id();
+        if !self.made.contains_key(id) {
+            let made = self.add(id);
+            self.made.insert(id.to_owned(), made);
+        }
+        self.made.get(id)?.as_ref()
+    }
+
+    /// Leaves out of `passing` what does not lower the error.
+    pub fn keep_accepted(&mut self, passing: &mut Vec<Candidate>) {
+        passing.retain(|candidate| self.of(candidate).is_some());
+    }
+
+    fn add(&self, id: &str) -> Option<Addition> {
+        let term = Term::Catalogue(id.to_owned());
+        let both = (self.prepared, self.base);
+        let (addition, extended) = add_to(self.filtered, self.spec, both, &term).ok()?;
+        let is_no_limit = share_beyond(&extended) > MAX_SHARE_BEYOND;
+        let is_refused = is_no_limit || is_below_noise(&addition, &extended);
+        (addition.lowers_error && !is_refused).then_some(addition)
+    }
+}
+
+/// Share of the samples at which the measured torque is not the motor's, by an effect
+/// of the model.
+fn share_beyond(extended: &PreparedModel) -> f64 {
+    let (mut beyond, mut all) = (0, 0);
+    for signals in &extended.sessions {
+        all += signals.points.len();
+        for term in &extended.terms {
+            beyond += (term.effect.unjudged_samples(&term.shape, &signals.points)).len();
+        }
+    }
+    beyond as f64 / all.max(1) as f64
+}
+
+/// Whether the error is less than the noise between repeats, as it is where torque
+/// explains itself.
+fn is_below_noise(addition: &Addition, extended: &PreparedModel) -> bool {
+    if addition.judged_share >= 1.0 {
+        return false;
+    }
+    let noise = noise_floor::find(extended, &Design::new(extended), addition.held_out_after);
+    (noise.repeats).is_some_and(|repeats| addition.held_out_after < repeats)
+}
