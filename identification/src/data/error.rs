@@ -152,15 +152,18 @@ pub enum ExpressionError {
         /// The fault and its place.
         why: String,
     },
-    /// A parameter neither enters linearly nor has bounds.
+    /// Parameters neither enter linearly nor have bounds.
     #[error(
-        "effect {effect:?}: parameter {parameter:?} does not enter linearly; give it bounds, like {parameter} = [0.005, 0.2]"
+        "effect {effect:?}: {} not enter linearly. A name that is no signal is a parameter; the recordings have the signals {signals}: is one misspelt? If not, give bounds, like {} = [0.005, 0.2]",
+        listed(.parameters), .parameters.last().map_or("vs", String::as_str)
     )]
     NotLinear {
         /// Name of the effect.
         effect: String,
-        /// The parameter.
-        parameter: String,
+        /// The parameter, or those that enter linearly each, but not together.
+        parameters: Vec<String>,
+        /// Names of the recorded signals, separated by commas.
+        signals: String,
     },
     /// No parameter enters linearly, so that there is nothing to fit.
     #[error(
@@ -228,4 +231,12 @@ pub enum ExpressionError {
         /// Time in it \[s\].
         time: f64,
     },
+}
+
+/// The names with their verb.
+fn listed(names: &[String]) -> String {
+    match names {
+        [one] => format!("the parameter {one:?} does"),
+        many => format!("the parameters {} together do", many.join(", ")),
+    }
 }

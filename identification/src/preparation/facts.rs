@@ -1,6 +1,7 @@
 //! Properties of recordings and model that the effects depend on.
 
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
+use crate::effects::expression::is_load;
 use crate::effects::{self, Facts, Row};
 use crate::numerics::statistics::quantile_or_zero;
 use crate::signals::{Filters, RESOLVED, Signals};
@@ -9,6 +10,17 @@ use crate::signals::{Filters, RESOLVED, Signals};
 fn has_row(spec: &ModelSpec, is: impl Fn(&Row) -> bool) -> bool {
     let ids = spec.effects.iter().map(Term::name);
     ids.filter_map(effects::find).any(|effect| is(effect.row()))
+}
+
+/// Whether a formula of the model is a load.
+fn has_formula_of_load(dataset: &Dataset, spec: &ModelSpec) -> bool {
+    let first = dataset.sessions.first();
+    let extras: Vec<String> = first.map_or_else(Vec::new, |s| s.extra.keys().cloned().collect());
+    let subject = dataset.joint.subject();
+    spec.effects.iter().any(|term| match term {
+        Term::Custom(custom) => is_load(custom, subject, &extras),
+        Term::Catalogue(_) => false,
+    })
 }
 
 /// Gathers them: ranges of the signals over the rows of `sessions`, and what
@@ -76,7 +88,8 @@ pub(super) fn gather(
         loaded: dataset.joint.is_contact()
             || dataset.sessions.iter().all(|s| s.joint_torque.is_some())
             || spec.inertia != Inertia::Given(0.0)
-            || has_row(spec, |row| row.is_load),
+            || has_row(spec, |row| row.is_load)
+            || has_formula_of_load(dataset, spec),
         period: sessions
             .first()
             .map_or(filters.thinning as f64, |s| s.period),

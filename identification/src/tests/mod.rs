@@ -3,6 +3,7 @@
 mod acceptance;
 mod compensation;
 mod contact;
+mod formulas;
 pub mod recordings;
 
 use std::collections::BTreeMap;

@@ -139,7 +139,7 @@ impl Facts {
     #[must_use]
     pub fn no_load(&self) -> Option<String> {
         (!self.loaded).then(|| {
-            "no load: neither a joint torque sensor nor gravity, spring or inertia in the model"
+            "no load: neither a joint torque sensor nor gravity, spring, inertia or a formula of such in the model"
                 .to_owned()
         })
     }

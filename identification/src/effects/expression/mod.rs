@@ -4,15 +4,17 @@
 //! exp ln sin cos tan asin acos atan sinh cosh tanh`. Every other name is a signal or a parameter.
 
 mod grammar;
+mod load;
 
 use std::collections::BTreeMap;
 
-use super::{Effect, EffectDescription, Facts, MAX_COLUMNS, Memory, Point, Quantity, Unit};
+use super::{Effect, EffectDescription, Facts, MAX_COLUMNS, Memory, Point, Quantity, Row, Unit};
 use crate::data::error::ExpressionError;
 use crate::data::{CustomEffect, Subject};
 use crate::signals::Signals;
 use ferntast_model::friction::Proposal;
 use grammar::Formula;
+pub use load::is_load;
 
 /// Names of the signals that every recording may have: of a joint …
 const OF_JOINT: [&str; 7] = ["q", "qd", "qdd", "tau", "tau_m", "T", "t"];
@@ -28,7 +30,38 @@ pub const fn signal_names(subject: Subject) -> [&'static str; 7] {
     }
 }
 
+/// Names that nobody gives to a parameter: signals of the other subject, and what
+/// signals are called in files and results.
+const NAMES_OF_SIGNALS: [&str; 18] = [
+    "qd",
+    "qdd",
+    "tau_m",
+    "rd",
+    "rdd",
+    "F_N",
+    "F_T",
+    "position",
+    "velocity",
+    "acceleration",
+    "load",
+    "motor_torque",
+    "joint_torque",
+    "normal_force",
+    "tangential_force",
+    "temperature",
+    "time",
+    "date",
+];
+
 const SECONDS_PER_DAY: f64 = 86_400.0;
+
+/// Names of the signals that formulas can read, separated by commas.
+fn known_signals(facts: &Facts, extras: &[String]) -> String {
+    let own = signal_names(facts.joint.subject()).into_iter();
+    let own = own.filter(|name| *name != "T" || facts.temperature);
+    let all: Vec<&str> = own.chain(extras.iter().map(String::as_str)).collect();
+    all.join(", ")
+}
 
 /// Where the value of a variable of the formula comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +81,7 @@ pub struct Compiled {
     bounds: Vec<[f64; 2]>,
     linear: usize,
     reference_temperature: f64,
+    is_load: bool,
 }
 
 impl Compiled {
@@ -80,6 +114,7 @@ impl Compiled {
             bounds: Vec::new(),
             linear: 0,
             reference_temperature: facts.reference_temperature,
+            is_load: is_load(custom, facts.joint.subject(), &extras),
             formula,
         };
         let names: Vec<String> = compiled.formula.names().to_vec();
@@ -103,7 +138,7 @@ impl Compiled {
                 });
             }
         }
-        compiled.check_linear(custom, sessions)?;
+        compiled.check_linear(custom, sessions, &known_signals(facts, &extras))?;
         compiled.check_finite(sessions)?;
         Ok(compiled)
     }
@@ -121,25 +156,23 @@ impl Compiled {
             return Ok(Source::Shape(self.bounds.len() - 1));
         }
         let signals = signal_names(facts.joint.subject());
+        let missing = || ExpressionError::MissingSignal {
+            effect: custom.name.clone(),
+            signal: name.to_owned(),
+            known: known_signals(facts, extras),
+        };
         if let Some(at) = signals.iter().position(|s| *s == name) {
             if name == "T" && !facts.temperature {
-                let known: Vec<&str> = signals
-                    .iter()
-                    .copied()
-                    .filter(|s| *s != "T")
-                    .chain(extras.iter().map(String::as_str))
-                    .collect();
-                return Err(ExpressionError::MissingSignal {
-                    effect: custom.name.clone(),
-                    signal: name.to_owned(),
-                    known: known.join(", "),
-                });
+                return Err(missing());
             }
             return Ok(Source::Signal(at));
         }
         if extras.iter().any(|e| e == name) {
             self.extra.push(name.to_owned());
             return Ok(Source::Extra(self.extra.len() - 1));
+        }
+        if NAMES_OF_SIGNALS.contains(&name) {
+            return Err(missing());
         }
         self.linear += 1;
         self.description.coefficients.push(quantity(name));
@@ -204,6 +237,7 @@ impl Compiled {
         &self,
         custom: &CustomEffect,
         sessions: &[Signals],
+        known: &str,
     ) -> Result<(), ExpressionError> {
         let shape = self.middle();
         for (signals, at, extra) in self.samples(sessions, 40) {
@@ -224,21 +258,37 @@ impl Compiled {
                     expression: custom.expression.clone(),
                 });
             }
-            let bent = (0..self.linear).find(|i| {
-                let twice = value(&unit(*i, -2.5));
-                (twice + 2.5 * ones[*i]).abs() > 1e-7 * scale
-                    || twice.is_finite() != ones[*i].is_finite()
-            });
-            let crossed = (together - ones.iter().sum::<f64>()).abs() > 1e-7 * scale;
-            if let Some(at) = bent.or(crossed.then_some(0)) {
+            let is_bent = |i: usize| {
+                let twice = value(&unit(i, -2.5));
+                (twice + 2.5 * ones[i]).abs() > 1e-7 * scale
+                    || twice.is_finite() != ones[i].is_finite()
+            };
+            let all = 0..self.linear;
+            let mut culprits: Vec<usize> = all.clone().filter(|i| is_bent(*i)).take(1).collect();
+            if culprits.is_empty() && (together - ones.iter().sum::<f64>()).abs() > 1e-7 * scale {
+                // Two that depend on each other, else all.
+                let crossed = |i: usize, j: usize| {
+                    let mut both = unit(i, 1.0);
+                    both[j] = 1.0;
+                    (value(&both) - ones[i] - ones[j]).abs() > 1e-7 * scale
+                };
+                let mut pairs = all.clone().flat_map(|j| (0..j).map(move |i| (i, j)));
+                culprits = match pairs.find(|(i, j)| crossed(*i, *j)) {
+                    Some((i, j)) => vec![i, j],
+                    None => all.collect(),
+                };
+            }
+            if !culprits.is_empty() {
+                let name = |i: usize| {
+                    self.description
+                        .coefficients
+                        .get(i)
+                        .map(|own| own.name.clone())
+                };
                 return Err(ExpressionError::NotLinear {
                     effect: custom.name.clone(),
-                    parameter: self
-                        .description
-                        .coefficients
-                        .get(at)
-                        .map(|c| c.name.clone())
-                        .unwrap_or_default(),
+                    parameters: culprits.into_iter().filter_map(name).collect(),
+                    signals: known.to_owned(),
                 });
             }
         }
@@ -273,6 +323,13 @@ impl Compiled {
 impl Effect for Compiled {
     fn description(&self) -> &EffectDescription {
         &self.description
+    }
+
+    fn row(&self) -> &'static Row {
+        match self.is_load {
+            true => &load::ROW,
+            false => &Row::NONE,
+        }
     }
 
     fn bounds(&self, _facts: &Facts) -> Vec<[f64; 2]> {
