@@ -57,6 +57,9 @@ const EVEN: f64 = 0.01;
 /// Acceleration at the start, as a share of its limit: with that of a motor of 1 kg m²
 /// the torque begins with a step of 2 Nm, not of 40.
 const FIRST_SHARE: f64 = 0.05;
+/// How fast the acceleration may grow that stops a setpoint that is called back [rad/s³]: with
+/// a motor of 1 kg m² by 1 Nm in a step.
+const BRAKING_JERK: f64 = 1000.0;
 /// Time in which the acceleration is led over to its limit after the start [s].
 const LEAD_TIME: f64 = 0.3;
 /// A joint has come to the first command once the setpoint is this near to the tracker [rad],
@@ -84,6 +87,8 @@ pub struct SetpointGenerator {
     share: f64,
     /// How far the acceleration is led over to its limit, 0 … 1.
     led: f64,
+    /// With which a setpoint that is called back is stopped \[rad/s²\].
+    braking: f64,
     setpoint: Setpoint,
     pub(super) planted: Planted,
 }
@@ -104,6 +109,7 @@ impl SetpointGenerator {
             top: limits.approach,
             share: 1.0,
             led: 0.0,
+            braking: 0.0,
             setpoint: Setpoint::default(),
             planted: Planted::NONE,
         }
@@ -121,6 +127,7 @@ impl SetpointGenerator {
         self.hand_speed = 0.0;
         self.top = self.limits.approach;
         self.led = 0.0;
+        self.braking = 0.0;
         self.setpoint = Setpoint {
             position,
             ..Setpoint::default()
@@ -211,11 +218,15 @@ impl SetpointGenerator {
             + self.closing_speed(distance, limits.acceleration);
         let bounded = wanted.clamp(-top, top);
         let speed = self.setpoint.velocity;
-        if bounded * speed < 0.0 {
-            // Called back, from what is in its way perhaps: it stops as soon as it can.
-            let stop = (speed.abs() / dt).min(self.limits.acceleration);
-            limits.acceleration = limits.acceleration.max(stop);
-        }
+        // Called back, from what is in its way perhaps, it stops as soon as torque may change.
+        let ends_softly = (2.0 * BRAKING_JERK * speed.abs()).sqrt();
+        self.braking = match bounded * speed < 0.0 {
+            true => (self.braking + BRAKING_JERK * dt).min(ends_softly),
+            false => 0.0,
+        };
+        limits.acceleration = limits
+            .acceleration
+            .max(self.braking.min(self.limits.acceleration));
         let step = limits.acceleration * dt;
         let change = bounded - speed;
         let velocity = speed + change.clamp(-step, step);
@@ -314,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn an_approach_that_is_called_back_stops_at_once() {
+    fn an_approach_that_is_called_back_stops_soon_and_softly() {
         let mut generator = SetpointGenerator::new(80.0, LIMITS);
         generator.start(0.0);
         generator.set_target(1.0);
@@ -325,14 +336,19 @@ mod tests {
         assert!(speed > 0.19, "{speed}");
         generator.set_target(0.0);
         let mut furthest = from;
+        let mut last = generator.setpoint().acceleration;
         for _ in 0..500 {
             generator.step(DT);
+            let now = generator.setpoint().acceleration;
+            // The 5 % that it starts with, back and forth, and the jerk.
+            assert!((now - last).abs() < 4.0 + 1.5, "{last} to {now} rad/s²");
+            last = now;
             furthest = furthest.max(generator.setpoint().position);
         }
-        // v²/2a, but for a step; by the acceleration of the approach twenty times as much.
-        let way = 0.5 * speed * speed / LIMITS.acceleration;
+        // v √(v/j); by the acceleration of the approach it is 10 mrad.
+        let way = speed * (speed / BRAKING_JERK).sqrt();
         let went_on = furthest - from;
-        assert!((0.7 * way..1.5 * way).contains(&went_on), "{went_on} rad");
+        assert!((0.8 * way..1.2 * way).contains(&went_on), "{went_on} rad");
         // Back it goes slowly again.
         assert!(generator.setpoint().velocity < 0.0);
         assert!(generator.is_approaching());
