@@ -26,6 +26,8 @@ pub const TELLER: &str = "session";
 const WAITING: usize = 64;
 /// What a node warns of is an event so often at most, and the same again so often \[s\].
 const WARNING_PERIOD: f64 = 5.0;
+/// For so long from the first word of a node on, nodes wait for each other: no event \[s\].
+const STARTING: f64 = 3.0;
 const SAME_WARNING_PERIOD: f64 = 60.0;
 
 /// Something that happened.
@@ -69,6 +71,8 @@ pub struct EventWatch {
     recording: Option<bool>,
     /// What each node warned of last, and when.
     warnings: HashMap<Text<24>, (Text<96>, Time)>,
+    /// When a node said something first.
+    began: Option<Time>,
     waiting: VecDeque<Event>,
     last: Time,
 }
@@ -100,7 +104,9 @@ impl EventWatch {
     /// A device, `follower` or `leader`, told its state.
     pub fn state(&mut self, device: &'static str, sample: &OperatingStateSample) {
         let now = (sample.state, sample.reason);
-        if self.states.insert(device, now) == Some(now) {
+        let before = self.states.insert(device, now);
+        let begins = before.is_none() && sample.state == OperatingState::DISABLED;
+        if before == Some(now) || begins {
             return;
         }
         let level = match sample.state {
@@ -143,7 +149,8 @@ impl EventWatch {
     /// The master told who holds it.
     pub fn authority(&mut self, sample: &AuthoritySample) {
         let holder = sample.holder;
-        if self.holder.replace(holder) != Some(holder) {
+        let before = self.holder.replace(holder);
+        if before.unwrap_or_default() != holder {
             let at = sample.stamp;
             match (holder, page_of(holder)) {
                 (0, _) => self.note(at, Level::OK, "nobody's hand is on the master"),
@@ -198,10 +205,14 @@ impl EventWatch {
 
     /// A node told how it is doing. What the servo warns of is a state, and told as such.
     pub fn health(&mut self, health: &HealthSample) {
+        let began = *self.began.get_or_insert(health.stamp);
         if health.level < Level::WARN
             || health.message.is_empty()
             || health.node.as_str() == "servo"
         {
+            return;
+        }
+        if health.stamp.seconds_since(began) < STARTING {
             return;
         }
         let known = self.warnings.get(&health.node);
@@ -291,7 +302,7 @@ mod tests {
     #[test]
     fn hands_links_recordings_and_marks_are_told() {
         let mut watch = EventWatch::default();
-        for holder in [0, 0, THIS_HOST, 0x7061_6765_0000_0003, 0xabcd, 0xabcd] {
+        for holder in [0, 0, THIS_HOST, 0x7061_6765_0000_0003, 0xabcd, 0xabcd, 0] {
             watch.authority(&AuthoritySample {
                 holder,
                 ..AuthoritySample::initial(at(0.0))
@@ -300,10 +311,10 @@ mod tests {
         assert_eq!(
             said(&mut watch),
             [
-                "nobody's hand is on the master",
                 "the session's own hand is on the master",
                 "the hand of page 3 is on the master",
                 "the hand of client 000000000000abcd is on the master",
+                "nobody's hand is on the master",
             ]
         );
         for (connected, law) in [
@@ -348,6 +359,28 @@ mod tests {
                 "mark: second contact"
             ]
         );
+    }
+
+    #[test]
+    fn how_a_session_begins_is_no_event() {
+        let mut watch = EventWatch::default();
+        let started = "started; send enable";
+        watch.state(
+            "follower",
+            &OperatingStateSample::new(at(0.0), OperatingState::DISABLED, started),
+        );
+        let waits = |seconds| HealthSample {
+            level: Level::WARN,
+            message: Text::new("no handshake yet"),
+            ..HealthSample::new(at(seconds), "link_follower")
+        };
+        for tenth in 0..29 {
+            watch.health(&waits(f64::from(tenth) * 0.1));
+        }
+        assert_eq!(said(&mut watch), [""; 0]);
+        // What lasts is one.
+        watch.health(&waits(3.1));
+        assert_eq!(said(&mut watch), ["link_follower: no handshake yet"]);
     }
 
     #[test]

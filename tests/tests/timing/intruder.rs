@@ -15,8 +15,8 @@ use ferntast_tests::{
 
 /// Frames a second that are tried; what comes of it is the machine's.
 const FLOOD: f64 = 100_000.0;
-/// Frames a second that make a flood: twenty times the operator's.
-const LEAST: f64 = 10_000.0;
+/// Frames a second that make a flood: ten times the operator's.
+const LEAST: f64 = 5_000.0;
 /// For how long \[s\].
 const SECONDS: f64 = 5.0;
 
