@@ -17,7 +17,7 @@ use super::{
     host_resources::HostResources,
     live::LiveLine,
     preflight, recording,
-    scripted_operator::{HandsOff, ScriptedOperator, Seen},
+    scripted_operator::{ScriptedOperator, Seen},
     supervisor::Unclean,
 };
 use crate::{
@@ -331,9 +331,8 @@ impl Running {
             return;
         };
         let foreign = stops.into_iter().any(|stamp| Some(stamp) != self.own_stop);
-        let left = (foreign && operator.leave(HandsOff::Stopped))
-            || (monitor.holder > THIS_HOST && operator.leave(HandsOff::Taken));
-        if left {
+        let taken = monitor.holder > THIS_HOST;
+        if (foreign || taken) && operator.leave() {
             monitor.events.note(now, Level::OK, LEFT_TO_YOU);
         }
         let mut nodes = self.supervisor.nodes();
@@ -401,10 +400,7 @@ impl Running {
         status: ExitStatus,
         events: &mut EventWatch,
     ) {
-        let left = self
-            .operator
-            .as_mut()
-            .is_some_and(|own| own.leave(HandsOff::Died));
+        let left = self.operator.as_mut().is_some_and(ScriptedOperator::leave);
         let told = format_args!("node {node} died ({status}); it is started again");
         events.note(now, Level::ERROR, told);
         if left {

@@ -14,17 +14,6 @@ use ferntast_msgs::{
 /// For so long all has to be well again before a word is given \[s\].
 const REACTION: f64 = 1.0;
 
-/// Why the operator of a script leaves the arm alone from now on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HandsOff {
-    /// Somebody stopped the arm.
-    Stopped,
-    /// Another hand is on the master.
-    Taken,
-    /// A node died.
-    Died,
-}
-
 /// What the operator sees.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
@@ -37,7 +26,8 @@ pub struct Seen {
 /// The operator of a script.
 #[derive(Debug, Default)]
 pub struct ScriptedOperator {
-    hands_off: Option<HandsOff>,
+    /// It leaves the arm alone for good.
+    hands_off: bool,
     /// The state that is to be left, and since when it could be.
     since: Option<(OperatingState, Time)>,
     /// It gave the word that took the drives off, to leave a fault.
@@ -46,15 +36,13 @@ pub struct ScriptedOperator {
 
 impl ScriptedOperator {
     /// Leaves the arm alone from now on; gives whether that is new.
-    pub fn leave(&mut self, why: HandsOff) -> bool {
-        let new = self.hands_off.is_none();
-        self.hands_off = self.hands_off.or(Some(why));
-        new
+    pub fn leave(&mut self) -> bool {
+        !std::mem::replace(&mut self.hands_off, true)
     }
 
     /// The word that is due at `now`, if one is, and what it is an answer to.
     pub fn step(&mut self, now: Time, seen: &Seen) -> Option<(StateCommand, OperatingStateSample)> {
-        let arm = seen.arm.filter(|_| self.hands_off.is_none())?;
+        let arm = seen.arm.filter(|_| !self.hands_off)?;
         let Some(word) = self.answer(&arm) else {
             self.since = None;
             self.resetting = false;
@@ -194,8 +182,8 @@ mod tests {
             assert_eq!(words(&mut operator, 0.0, 9.0, &seen(state, reason)), NONE);
         }
         let paused = seen(OperatingState::PAUSED, SILENT);
-        assert!(operator.leave(HandsOff::Died));
-        assert!(!operator.leave(HandsOff::Stopped));
+        assert!(operator.leave());
+        assert!(!operator.leave());
         assert_eq!(words(&mut operator, 9.0, 9.0, &paused), NONE);
     }
 }

@@ -3,6 +3,7 @@
 use std::{
     io::{Read, Write},
     net::TcpStream,
+    path::PathBuf,
     thread,
     time::Duration,
 };
@@ -306,6 +307,22 @@ fn the_page_names_strangers_and_a_scenario_that_re_arms_by_itself() {
     process.wait(PATIENCE).success();
 }
 
+/// Ends the page's recording.
+pub fn end_recording(browser: &Browser) {
+    browser.click("#record");
+    browser.until(
+        "it ended",
+        PATIENCE,
+        "return document.querySelector('#recording').textContent.startsWith('last:')",
+    );
+}
+
+/// The recording that a page began.
+pub fn recorded_by_a_page(session: &Session) -> PathBuf {
+    let folder = std::fs::read_dir(session.folder().join("recordings")).expect("recordings");
+    folder.flatten().next().expect("a recording").path()
+}
+
 #[test]
 fn recordings_are_begun_marked_and_ended_by_the_page() {
     let session = Session::new();
@@ -319,19 +336,12 @@ fn recordings_are_begun_marked_and_ended_by_the_page() {
     browser.until("it records", PATIENCE, "return /[1-9][0-9]* messages in recordings/.test(document.querySelector('#recording').textContent)");
     browser.type_into("#mark-label", "second contact");
     browser.click("#mark");
-    browser.click("#record");
-    browser.until(
-        "it ended",
-        PATIENCE,
-        "return document.querySelector('#recording').textContent.startsWith('last:')",
-    );
+    end_recording(&browser);
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);
     process.interrupt();
     process.wait(PATIENCE).success();
-    let folder = std::fs::read_dir(session.folder().join("recordings")).expect("recordings");
-    let bag = folder.flatten().next().expect("a recording").path();
-    let told = messages(&bag, topics::RECORDER_COMMAND);
+    let told = messages(&recorded_by_a_page(&session), topics::RECORDER_COMMAND);
     let mark = told
         .iter()
         .find(|own| own.message.action == RecorderAction::MARK);

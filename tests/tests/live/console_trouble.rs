@@ -9,7 +9,7 @@ use ferntast_tests::{
     signal, wait_for,
 };
 
-use crate::console::{led_back, session_with_page};
+use crate::console::{end_recording, led_back, recorded_by_a_page, session_with_page};
 
 /// A session with its console, which nothing records and nobody but the page arms again.
 fn unrecorded(session: &Session) -> (Process, String) {
@@ -223,21 +223,14 @@ fn who_watches_records_and_marks_and_reads_the_charts() {
     assert_eq!(drawn(), still);
     browser.click("#pause");
     assert!(wait_for(PATIENCE, || (drawn() != still).then_some(())).is_some());
-    browser.click("#record");
-    browser.until(
-        "it ended",
-        PATIENCE,
-        "return document.querySelector('#recording').textContent.startsWith('last:')",
-    );
+    end_recording(&browser);
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);
     process.interrupt();
     let ended = process.wait(PATIENCE).success();
     assert!(ended.stdout.contains("recorded  "), "{}", ended.stdout);
     assert!(!ended.stdout.contains("not recorded"), "{}", ended.stdout);
-    let bag = std::fs::read_dir(session.folder().join("recordings")).expect("recordings");
-    let bag = bag.flatten().next().expect("a recording").path();
-    let marks = messages(&bag, topics::RECORDER_COMMAND);
+    let marks = messages(&recorded_by_a_page(&session), topics::RECORDER_COMMAND);
     assert!(
         marks
             .iter()

@@ -36,32 +36,63 @@ fn moving(position: f64, speed: f64) -> Option<Motion> {
     })
 }
 
-/// A hand that is pulled along by 5 N: what it gets, with what was promised \[J\].
-fn pulled(promised: f64) -> f64 {
-    let mut leader = law().leader();
-    let (mut position, mut given, mut force) = (0.0, 0.0, 0.0);
-    let mut energy = Energy::default();
-    for k in 0..2000 {
-        position += 1e-4;
-        let work = force * 1e-4;
-        energy.left += f64::max(work, 0.0);
-        energy.entered += f64::max(-work, 0.0);
-        given += work;
+/// A hand at the leader's end, and what goes through it.
+struct Hand {
+    leader: TwoLayerLeader,
+    energy: Energy,
+    position: f64,
+    /// On the hand [N].
+    force: f64,
+    /// To the hand since the start [J].
+    given: f64,
+    steps: u32,
+}
+
+impl Hand {
+    fn new() -> Hand {
+        Hand {
+            leader: law().leader(),
+            energy: Energy::default(),
+            position: 0.0,
+            force: 0.0,
+            given: 0.0,
+            steps: 0,
+        }
+    }
+
+    /// Goes on by `way` \[m\], with a speed \[m/s\] then, and so much force \[N\] asked for and
+    /// energy promised \[J\].
+    fn step(&mut self, way: f64, speed: f64, wanted: f64, promised: f64) {
+        self.position += way;
+        let work = self.force * way;
+        self.energy.left += f64::max(work, 0.0);
+        self.energy.entered += f64::max(-work, 0.0);
+        self.given += work;
         // Sums since the start; the first one tells where they begin.
-        let promised = if k < 10 { 0.0 } else { promised };
-        let step = leader.step(
+        let promised = if self.steps < 10 { 0.0 } else { promised };
+        self.steps += 1;
+        let step = self.leader.step(
             DT,
             &LeaderInput {
-                hand: moving(position, 0.1),
-                received: received(0.0, 5.0, promised),
+                hand: moving(self.position, speed),
+                received: received(0.0, wanted, promised),
                 connected: true,
             },
-            energy,
+            self.energy,
         );
-        assert!((step.force[0] - force).abs() <= 0.45 + 1e-9, "{step:?}");
-        force = step.force[0];
+        let change = step.force[0] - self.force;
+        assert!(change.abs() <= 0.45 + 1e-9, "{step:?}");
+        self.force = step.force[0];
     }
-    given
+}
+
+/// A hand that is pulled along by 5 N: what it gets, with what was promised \[J\].
+fn pulled(promised: f64) -> f64 {
+    let mut hand = Hand::new();
+    for _ in 0..2000 {
+        hand.step(1e-4, 0.1, 5.0, promised);
+    }
+    hand.given
 }
 
 #[test]
@@ -76,33 +107,18 @@ fn a_hand_gets_what_was_promised_and_no_more() {
 /// A hand of the lightest mass that was held against 10 N, with so much promised \[J\], is let
 /// go: what it gets \[J\].
 fn let_go(promised: f64) -> f64 {
-    let mut leader = law().leader();
-    let (mut position, mut speed, mut given, mut force) = (0.0, 0.0, 0.0, 0.0);
-    let mut energy = Energy::default();
-    for k in 0..1000 {
-        if k > 500 {
-            let pushed = speed + force / law().hand_mass * DT;
-            let work = force * 0.5 * (speed + pushed) * DT;
-            position += 0.5 * (speed + pushed) * DT;
-            speed = pushed;
-            energy.left += f64::max(work, 0.0);
-            energy.entered += f64::max(-work, 0.0);
-            given += work;
-        }
-        let promised = if k < 10 { 0.0 } else { promised };
-        let step = leader.step(
-            DT,
-            &LeaderInput {
-                hand: moving(position, speed),
-                received: received(0.0, 10.0, promised),
-                connected: true,
-            },
-            energy,
-        );
-        force = step.force[0];
-        assert!(k != 500 || force > 5.0 || promised < 0.01, "{force} N");
+    let mut hand = Hand::new();
+    for _ in 0..=500 {
+        hand.step(0.0, 0.0, 10.0, promised);
     }
-    given
+    assert!(hand.force > 5.0 || promised < 0.01, "{} N", hand.force);
+    let mut speed = 0.0;
+    for _ in 501..1000 {
+        let pushed = speed + hand.force / law().hand_mass * DT;
+        hand.step(0.5 * (speed + pushed) * DT, pushed, 10.0, promised);
+        speed = pushed;
+    }
+    hand.given
 }
 
 #[test]
