@@ -39,14 +39,14 @@ pub mod signals;
 pub mod twin;
 pub mod validation;
 
-pub use comparison::{Comparison, compare};
+pub use comparison::{Comparison, Usage, compare};
 pub use data::error::{ExpressionError, PrepareError};
 pub use data::stated_filter::StatedFilter;
 pub use data::{
     CustomEffect, Dataset, Inertia, JointType, ModelSpec, RecordedSession, Subject, Term,
 };
 pub use design::PreparedModel;
-pub use diagnosis::{Diagnosis, Suspect, Verdict, diagnose};
+pub use diagnosis::{Diagnosis, Suspect, Verdict, diagnose, diagnose_at_cutoffs};
 pub use effects::EffectDescription;
 pub use ferntast_model::friction::Proposal;
 pub use fit::addition::{Addition, add};

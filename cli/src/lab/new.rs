@@ -190,7 +190,7 @@ fn tell(made: &Made) {
             recording.stretches
         );
         for (reason, count) in recording.left_out() {
-            println!("  {count} {reason}");
+            println!("  {count} {}", reason.text());
         }
         if recording.bridged > 0 {
             println!("  {} bridged by a straight line", recording.bridged);

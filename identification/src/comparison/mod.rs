@@ -4,6 +4,7 @@ pub mod extrapolation;
 pub mod noise_floor;
 pub mod residual_map;
 pub mod simulation;
+pub mod usage;
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use serde::Serialize;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, ModelSpec};
 use crate::design::{Design, PreparedModel, SessionDesign};
-use crate::fit::{Parameter, Rms, fit};
+use crate::fit::{Parameter, Rms, Soundness, fit};
 use crate::preparation::prepare;
 use crate::signals::Signals;
 use crate::validation::left_out::LeftOut;
@@ -20,6 +21,7 @@ use extrapolation::Extrapolation;
 use noise_floor::NoiseFloor;
 use residual_map::{Residual, ResidualMap, Window};
 use simulation::{Simulation, simulate};
+pub use usage::{HeldOutBy, Reason, Usage};
 
 /// Largest number of points of a session in [`Comparison::series`].
 const MAX_DRAWN_POINTS: usize = 2000;
@@ -27,10 +29,10 @@ const MAX_DRAWN_POINTS: usize = 2000;
 /// The model against the recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Samples in the recordings.
+    /// Samples in the recordings that are fitted.
     pub samples: usize,
-    /// Rows of the regression: filtered, thinned, away from rest.
-    pub used: usize,
+    /// What of the recordings is used, and what not, for which reason.
+    pub used: Usage,
     /// Errors \[Nm\].
     pub rms: Rms,
     /// RMS of the residual over the RMS of the motor torque, on the rows fitted.
@@ -43,8 +45,10 @@ pub struct Comparison {
     pub parameters: BTreeMap<String, Parameter>,
     /// Parameters that the data do not excite: standard error above the value.
     pub not_excited: Vec<String>,
-    /// Condition of the normalised normal equations.
-    pub condition: f64,
+    /// Whether they can be told apart, and are possible: `condition`, `inseparable`,
+    /// `implausible`.
+    #[serde(flatten)]
+    pub soundness: Soundness,
     /// RMS between repeats, and variation between sessions \[Nm\].
     pub noise: NoiseFloor,
     /// Residual over each signal.
@@ -59,18 +63,6 @@ pub struct Comparison {
     /// the serialised form for its length.
     #[serde(skip)]
     pub series: Vec<Series>,
-}
-
-/// What is left out of the fit to measure its error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum HeldOutBy {
-    /// Recordings named for it.
-    Recordings,
-    /// Whole sessions in turn.
-    Sessions,
-    /// Blocks of time in turn.
-    Blocks,
 }
 
 /// Signals of one session for drawing.
@@ -154,20 +146,14 @@ pub(crate) fn compare_prepared(
             .iter()
             .map(crate::data::RecordedSession::len)
             .sum(),
-        used: design.total().rows,
+        used: usage::find(dataset, prepared, &design),
         rms: Rms {
             train: fitted.train,
             held_out: fitted.held_out,
         },
         relative_error: fitted.train / torque,
         relative_error_held_out: fitted.held_out / torque_rms(shown),
-        held_out_by: if !prepared.held_out.is_empty() {
-            HeldOutBy::Recordings
-        } else if design.leaves_sessions_out() {
-            HeldOutBy::Sessions
-        } else {
-            HeldOutBy::Blocks
-        },
+        held_out_by: HeldOutBy::of(prepared, &design),
         noise: noise_floor::find(prepared, &design, LeftOut::of_folds(&design).rms()),
         residual_maps: residual_map::maps(&residuals, &prepared.facts),
         worst: residual_map::worst(&residuals),
@@ -186,7 +172,7 @@ pub(crate) fn compare_prepared(
             .collect(),
         parameters: fitted.parameters,
         not_excited: fitted.not_excited,
-        condition: fitted.condition,
+        soundness: fitted.soundness,
     }
 }
 

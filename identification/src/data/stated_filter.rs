@@ -79,15 +79,27 @@ impl StatedFilter {
         Kernel::with_taps(taps(gain, ((60.0 * every) as usize).min(POINTS / 4)))
     }
 
-    /// Samples that are rows, of those with these velocities \[rad/s\].
+    /// Samples that are rows, of so many, however slow.
     #[must_use]
-    pub fn rows(&self, velocities: impl ExactSizeIterator<Item = f64>) -> Vec<usize> {
-        let last = velocities.len().saturating_sub(LEFT_OUT);
-        let samples = velocities.enumerate().take(last).skip(LEFT_OUT);
-        let rows = samples.step_by(self.decimation.max(1));
-        rows.filter(|(_, velocity)| velocity.abs() >= self.least_speed)
-            .map(|(at, _)| at)
-            .collect()
+    pub fn rows(&self, samples: usize) -> Vec<usize> {
+        let last = samples.saturating_sub(LEFT_OUT);
+        (LEFT_OUT..last).step_by(self.decimation.max(1)).collect()
+    }
+
+    /// Whether a row of this `velocity` \[rad/s\] is left out.
+    #[must_use]
+    pub fn is_slow(&self, velocity: f64) -> bool {
+        velocity.abs() < self.least_speed
+    }
+
+    /// The same filters at `factor` times the cut-off.
+    #[must_use]
+    pub fn at_cut_off(&self, factor: f64) -> Self {
+        Self {
+            butterworth_hz: self.butterworth_hz * factor,
+            decimation: ((self.decimation.max(1) as f64 / factor).round() as usize).max(1),
+            ..*self
+        }
     }
 }
 
@@ -176,17 +188,30 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_every_tenth_sample_that_is_fast_enough() {
-        let velocity = |at: usize| if at < 500 { 0.1 } else { -0.3 };
-        let rows = |least_speed: f64| {
-            let filter = StatedFilter {
-                least_speed,
-                ..FILTER
-            };
-            filter.rows((0..1000).map(velocity))
-        };
+    fn rows_are_every_tenth_sample_away_from_the_ends() {
         let all: Vec<usize> = (100..900).step_by(10).collect();
-        assert_eq!(rows(0.0), all);
-        assert_eq!(rows(0.2), all[40..]);
+        assert_eq!(FILTER.rows(1000), all);
+        assert_eq!(FILTER.rows(150), [] as [usize; 0]);
+    }
+
+    #[test]
+    fn slow_rows_are_left_out_in_both_directions() {
+        let filter = StatedFilter {
+            least_speed: 0.2,
+            ..FILTER
+        };
+        assert!(filter.is_slow(0.1) && filter.is_slow(-0.19) && !filter.is_slow(-0.3));
+        assert!(!FILTER.is_slow(0.0));
+    }
+
+    #[test]
+    fn twice_the_cut_off_takes_every_fifth_sample() {
+        let filter = FILTER.at_cut_off(2.0);
+        assert_eq!((filter.butterworth_hz, filter.decimation), (200.0, 5));
+        let none = StatedFilter {
+            decimation: 0,
+            ..FILTER
+        };
+        assert_eq!(none.at_cut_off(4.0).decimation, 1);
     }
 }

@@ -123,6 +123,32 @@ pub fn score(
     }
 }
 
+/// Scores the effects of another trial that this model lacks, too, at the shapes found
+/// there: no shape is searched.
+#[must_use]
+pub fn try_again(prepared: &PreparedModel, design: &Design, other: &Trial) -> Trial {
+    let mut candidates = Vec::new();
+    for effect in missing(prepared) {
+        let id = &effect.description().id;
+        let Some(known) = other.candidates.iter().find(|own| own.id() == id) else {
+            continue;
+        };
+        let score = score(prepared, design, &effect, &known.shape);
+        candidates.push(Candidate {
+            plausible: effect.plausible(&known.shape, &score.coefficients),
+            score,
+            effect,
+            ..known.clone()
+        });
+    }
+    candidates.sort_by(|a, b| b.score.gain.total_cmp(&a.score.gain));
+    Trial {
+        candidates,
+        variants: other.variants,
+        variants_between: other.variants_between,
+    }
+}
+
 /// Tries every effect that the model lacks at its best shape. `progress` is called
 /// with the share done, 0 … 1.
 #[must_use]

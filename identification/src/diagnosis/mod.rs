@@ -3,7 +3,8 @@
 //! Every effect that the model lacks is a candidate (`candidates`). Of those that
 //! pass the tests (`verdict`) and lower the error that is reported (`acceptance`), the simplest of the equivalent ones comes first
 //! (`equivalents`), after pairs that are easily confused have been decided: by the
-//! rows at reversals, by the sensor's zero, by an encompassing test.
+//! rows at reversals, by the sensor's zero, by an encompassing test (`examination`).
+//! The same at other cut-offs tells what the filter has to do with it (`other_cutoffs`).
 
 mod acceptance;
 mod at_reversals;
@@ -12,29 +13,34 @@ mod candidates;
 pub mod dependence;
 mod encompassing_test;
 mod equivalents;
+mod examination;
+mod other_cutoffs;
 mod results;
 mod sensor_zero;
 mod verdict;
 
 use std::collections::BTreeMap;
 
-use crate::comparison::noise_floor;
+use crate::comparison::{noise_floor, usage};
 use crate::data::check::check;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, ModelSpec, RecordedSession};
 use crate::design::{Design, PreparedModel};
 use crate::fit::addition::Addition;
-use crate::fit::{Parameter, Rms, fit};
+use crate::fit::{Parameter, Rms};
 use crate::preparation::Filtered;
 
-use acceptance::Acceptance;
-use candidates::{Candidate, Trial, try_all};
-use dependence::Dependence;
-pub use results::{Diagnosis, NamedCandidate, Suspect, Verdict};
-use verdict::{judge, maps, passing};
+use candidates::{Candidate, Trial};
+use examination::Examination;
+pub use results::{
+    Diagnosis, NamedCandidate, RunnerUp, Suspect, Verdict, VerdictAtCutoff, WhyNot,
+};
+use verdict::why_not;
 
-/// Smallest share of a map that passed which an effect must explain to be its name.
-const MIN_SHARE_OF_NAMED_MAP: f64 = 0.85;
+/// Effects that are told as tried and not named, at most.
+const MAX_RUNNERS_UP: usize = 5;
+/// Other cut-offs at which the verdict is asked for, as factors.
+const OTHER_CUTOFFS: [f64; 2] = [0.5, 1.5];
 
 /// Tries every effect that the model lacks.
 ///
@@ -50,64 +56,73 @@ pub fn diagnose(
 ) -> Result<Diagnosis, PrepareError> {
     check(dataset, spec)?;
     let filtered = Filtered::new(dataset);
-    let prepared = filtered.bind(spec)?;
-    let design = Design::new(&prepared);
-    progress(0.05);
-    let trial = try_all(&prepared, &design, &mut |done| progress(0.05 + 0.6 * done));
-    let base = fit(&prepared, &design);
-    let noise = noise_floor::find(&prepared, &design, base.held_out);
-    let mut acceptance = Acceptance {
-        filtered: &filtered,
-        spec,
-        prepared: &prepared,
-        base: &base,
-        made: BTreeMap::new(),
-    };
-    let mut passing = passing(&trial);
-    acceptance.keep_accepted(&mut passing);
-    encompassing_test::drop_redundant_terms(&prepared, &design, &mut passing);
-    equivalents::order(&design, &mut passing);
-    backlash_or_presliding::decide(&prepared, &mut passing, &trial.candidates);
-    sensor_zero::decide(&prepared, &mut passing);
-    encompassing_test::drop_encompassed(&prepared, &design, &mut passing);
-    at_reversals::put_first(&prepared, &design, &mut passing);
-    let maps = maps(&prepared, &design);
-    if passing.is_empty() {
-        passing.extend(named_by_map(&trial, &maps));
+    let mut share = |done: f64| progress(done);
+    let found = examination::examine(&filtered, spec, None, &mut share)?;
+    progress(1.0);
+    Ok(describe_all(dataset, &found))
+}
+
+/// The same, with the verdicts at two other cut-offs of the filter.
+///
+/// # Errors
+///
+/// See [`PrepareError`].
+pub fn diagnose_at_cutoffs(
+    dataset: &Dataset,
+    spec: &ModelSpec,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Diagnosis, PrepareError> {
+    check(dataset, spec)?;
+    let filtered = Filtered::new(dataset);
+    let found = examination::examine(&filtered, spec, None, &mut |done| progress(0.7 * done))?;
+    let mut diagnosis = describe_all(dataset, &found);
+    for (number, factor) in OTHER_CUTOFFS.into_iter().enumerate() {
+        let other = other_cutoffs::verdict(dataset, spec, &found.trial, factor, &diagnosis);
+        diagnosis.verdict_at_other_cutoffs.push(other);
+        progress(0.7 + 0.15 * (number as f64 + 1.0));
     }
-    acceptance.keep_accepted(&mut passing);
-    progress(0.75);
-    let verdict = judge(&prepared, &passing, &maps, &mut |done| {
-        progress(0.75 + 0.2 * done)
-    });
-    // A residual that no effect explains is not reported under the name of a similar one.
-    let named: &[Candidate] = if verdict == Verdict::Missing {
-        &passing
-    } else {
-        &[]
-    };
-    let suspected = match named.is_empty() {
-        true => suspected(&trial),
-        false => Vec::new(),
-    };
-    let candidates = named
-        .iter()
+    Ok(diagnosis)
+}
+
+/// What an examination found, in results.
+fn describe_all(dataset: &Dataset, found: &Examination) -> Diagnosis {
+    let Examination {
+        prepared,
+        design,
+        trial,
+        base,
+        passing,
+        additions,
+        maps,
+        verdict,
+    } = found;
+    let described: Vec<NamedCandidate> = (passing.iter())
         .filter_map(|candidate| {
-            let addition = acceptance.of(candidate)?;
+            let addition = additions.get(candidate.id())?;
             Some(describe(
-                &prepared, &design, addition, candidate, &passing, &trial,
+                prepared, design, addition, candidate, passing, trial,
             ))
         })
         .collect();
+    // A residual that no effect explains is not reported under the name of a similar one.
+    let (candidates, helps_in_part) = match verdict {
+        Verdict::Missing => (described, Vec::new()),
+        Verdict::Unexplained => (Vec::new(), described),
+        Verdict::Complete => (Vec::new(), Vec::new()),
+    };
+    let suspected = match candidates.is_empty() {
+        true => suspected(trial),
+        false => Vec::new(),
+    };
     // Gains by parameters of each session's own and by shared ones are shares of
     // different errors.
-    let mut depends_on = maps;
+    let mut depends_on = maps.clone();
     depends_on.sort_by(|a, b| b.strength.total_cmp(&a.strength));
-    progress(1.0);
-    Ok(Diagnosis {
+    let noise = noise_floor::find(prepared, design, base.held_out);
+    Diagnosis {
         samples: dataset.sessions.iter().map(RecordedSession::len).sum(),
-        used: design.total().rows,
-        verdict,
+        used: usage::find(dataset, prepared, design),
+        verdict: *verdict,
         rms: Rms {
             train: base.train,
             held_out: base.held_out,
@@ -116,24 +131,28 @@ pub fn diagnose(
         noise,
         candidates,
         suspected,
+        helps_in_part,
+        runners_up: runners_up(trial, passing),
+        verdict_at_other_cutoffs: Vec::new(),
+        soundness: base.soundness.clone(),
         residual_depends_on: depends_on,
         tried: trial.variants + trial.variants_between,
-    })
+    }
 }
 
-/// The suspect that explains as much as a map over its own signals, with the map's
-/// p-value. A free map has many coefficients, so that fewer sessions make it
-/// significant than the one coefficient of an effect.
-fn named_by_map(trial: &Trial, maps: &[Dependence]) -> Option<Candidate> {
-    let best = equivalents::suspects(&trial.candidates).next()?;
-    let names = best.effect.row().own_signals.names;
-    let map = maps.iter().find(|map| {
-        let own = |signal: &String| names.contains(&signal.as_str());
-        map.signals.iter().any(own) && best.score.gain > MIN_SHARE_OF_NAMED_MAP * map.gain
-    })?;
-    let mut named = best.clone();
-    named.score.p_value = map.p_value / trial.variants_between.max(1) as f64;
-    Some(named)
+/// The strongest of those that were tried and do not pass.
+fn runners_up(trial: &Trial, passing: &[Candidate]) -> Vec<RunnerUp> {
+    let is_named = |own: &Candidate| passing.iter().any(|other| other.id() == own.id());
+    let others = trial.candidates.iter().filter(|own| !is_named(own));
+    others
+        .take(MAX_RUNNERS_UP)
+        .map(|own| RunnerUp {
+            effect: own.id().to_owned(),
+            share: own.score.share(),
+            p_value: trial.corrected(own),
+            why_not: why_not(own, trial),
+        })
+        .collect()
 }
 
 /// Effects that show between sessions, for a diagnosis in which nothing passes.
@@ -192,7 +211,7 @@ fn parameters(
             prepared.facts.inertia,
         ) {
             (true, [correction], Some(given)) => {
-                parameter.value -= given;
+                parameter.shift(-given);
                 (correction.name.to_owned(), parameter)
             }
             _ => (name.clone(), parameter),

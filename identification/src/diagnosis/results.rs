@@ -7,15 +7,17 @@ use serde::Serialize;
 
 use super::dependence::Dependence;
 use crate::comparison::noise_floor::NoiseFloor;
-use crate::fit::{Parameter, Rms};
+use crate::comparison::usage::Usage;
+use crate::fit::{Parameter, Rms, Soundness};
 
-/// Whether the model is complete.
+/// What a residual says of the model, on the samples that are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// An effect of the catalogue is missing.
     Missing,
-    /// Nothing is missing: the residual is noise.
+    /// No systematic rest: on the samples used the residual depends on no signal that
+    /// is recorded, and no effect of the catalogue lowers the error.
     Complete,
     /// The residual depends on signals in a way that no effect of the catalogue has.
     Unexplained,
@@ -62,13 +64,71 @@ pub struct Suspect {
     pub next_experiment: Proposal,
 }
 
+/// An effect that was tried and is not named.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunnerUp {
+    /// Its id.
+    pub effect: String,
+    /// Share of the residual's mean square that it explains on rows left out, each
+    /// session with its own parameters of the model.
+    pub share: f64,
+    /// p-value, corrected for all variants tried.
+    pub p_value: f64,
+    /// Why it is not named.
+    pub why_not: WhyNot,
+}
+
+/// Why an effect that was tried is not named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WhyNot {
+    /// Sign or size of its parameters is not possible.
+    Implausible,
+    /// It explains next to nothing.
+    TooSmall,
+    /// Chance explains as much.
+    NotSignificant,
+    /// It does not lower the error on rows left out by more than that is uncertain, or
+    /// is a part of what another one is.
+    NoGain,
+}
+
+impl WhyNot {
+    /// In words.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Implausible => "its parameters are not possible",
+            Self::TooSmall => "explains next to nothing",
+            Self::NotSignificant => "chance explains as much",
+            Self::NoGain => "does not lower the error for certain, or another one contains it",
+        }
+    }
+}
+
+/// The verdict with other filters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VerdictAtCutoff {
+    /// Frequency \[Hz\] above which torque and columns are filtered away.
+    pub cutoff_hz: f64,
+    /// Share of the samples that is used then.
+    pub share: f64,
+    /// The verdict; `None` where too few rows remain.
+    pub verdict: Option<Verdict>,
+    /// The effect that is named first.
+    pub effect: Option<String>,
+    /// Whether verdict and name are those of the diagnosis: that name, or one that
+    /// these data cannot tell from it.
+    pub agrees: bool,
+}
+
 /// Result of a diagnosis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnosis {
-    /// Samples in the recordings.
+    /// Samples in the recordings that are fitted.
     pub samples: usize,
-    /// Rows of the regression: filtered, thinned, away from rest.
-    pub used: usize,
+    /// What of the recordings the verdict rests on, and what not, for which reason.
+    pub used: Usage,
     /// Whether an effect is missing, and whether it is known.
     pub verdict: Verdict,
     /// Error of the model as it is.
@@ -82,8 +142,79 @@ pub struct Diagnosis {
     /// Where nothing passes: effects that show between sessions, of which there are
     /// too few to distinguish them from random variation. Best first.
     pub suspected: Vec<Suspect>,
+    /// Where the verdict is unexplained: effects that pass all tests and lower the
+    /// error, though they are not the explanation. Best first.
+    pub helps_in_part: Vec<NamedCandidate>,
+    /// The strongest of those that were tried and not named, best first.
+    pub runners_up: Vec<RunnerUp>,
+    /// Verdicts with other filters: empty where they were not asked for.
+    pub verdict_at_other_cutoffs: Vec<VerdictAtCutoff>,
+    /// Whether the model's parameters can be told apart, and are possible:
+    /// `condition`, `inseparable`, `implausible`.
+    #[serde(flatten)]
+    pub soundness: Soundness,
     /// Signals on which the residual depends, strongest first.
     pub residual_depends_on: Vec<Dependence>,
     /// Effects and shapes tried.
     pub tried: usize,
+}
+
+impl Diagnosis {
+    /// What the verdict claims, as a sentence; no more than the samples used allow.
+    #[must_use]
+    pub fn claim(&self) -> String {
+        let where_ = self.used.claim();
+        match self.verdict {
+            Verdict::Missing => {
+                let first = self.candidates.first();
+                let name = first.map_or("an effect of the catalogue", |own| own.effect.as_str());
+                format!("{name} explains what the model leaves in the {where_} used")
+            }
+            Verdict::Complete => format!("no systematic rest in the {where_} used"),
+            Verdict::Unexplained => {
+                format!("in the {where_} used something is left that the catalogue does not have")
+            }
+        }
+    }
+
+    /// Where the verdict is another with other filters: a warning.
+    #[must_use]
+    pub fn cutoff_warning(&self) -> Option<String> {
+        let others = self.verdict_at_other_cutoffs.iter();
+        let other: Vec<String> = others
+            .filter(|own| !own.agrees)
+            .map(|own| format!("{} at {:.3} Hz", own.text(), own.cutoff_hz))
+            .collect();
+        (!other.is_empty()).then(|| {
+            format!(
+                "the verdict depends on the filter: {} (here the cut-off is {:.3} Hz)",
+                other.join(", "),
+                self.used.cutoff_hz
+            )
+        })
+    }
+}
+
+impl Verdict {
+    /// As in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Missing => "missing",
+            Self::Complete => "complete",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+impl VerdictAtCutoff {
+    /// Verdict and name in words.
+    #[must_use]
+    pub fn text(&self) -> String {
+        match (self.verdict, &self.effect) {
+            (None, _) => "too few rows".to_owned(),
+            (Some(verdict), Some(effect)) => format!("{}, {effect}", verdict.name()),
+            (Some(verdict), None) => verdict.name().to_owned(),
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use super::candidates::{Candidate, Trial, try_all};
 use super::dependence::{self, Dependence};
 use super::equivalents;
-use super::results::Verdict;
+use super::results::{Verdict, WhyNot};
 use crate::design::{Design, PreparedModel};
 use crate::preparation::extend;
 
@@ -54,6 +54,19 @@ fn passes(candidate: &Candidate, trial: &Trial) -> bool {
                 true => SIGNIFICANCE_BETWEEN,
                 false => SIGNIFICANCE,
             }
+}
+
+/// Why a candidate that is not named is not.
+pub(super) fn why_not(candidate: &Candidate, trial: &Trial) -> WhyNot {
+    if !candidate.plausible {
+        WhyNot::Implausible
+    } else if candidate.score.share() <= MIN_SHARE {
+        WhyNot::TooSmall
+    } else if !passes(candidate, trial) {
+        WhyNot::NotSignificant
+    } else {
+        WhyNot::NoGain
+    }
 }
 
 /// Dependences of the residual that count, strongest first.

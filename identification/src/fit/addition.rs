@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{Fit, Parameter, fit};
+use super::{Fit, Parameter, Soundness, fit};
 use crate::data::check::check;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
@@ -37,6 +37,8 @@ pub struct Addition {
     pub parameters: BTreeMap<String, Parameter>,
     /// Parameters that the data do not excite.
     pub not_excited: Vec<String>,
+    /// Whether they can be told apart, and are possible.
+    pub soundness: Soundness,
     /// The new model.
     pub model: ModelSpec,
 }
@@ -92,6 +94,7 @@ pub(crate) fn add_to(
         train_after: after.train,
         parameters: after.parameters,
         not_excited: after.not_excited,
+        soundness: after.soundness,
         model,
     };
     Ok((addition, extended))

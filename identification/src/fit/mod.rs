@@ -1,6 +1,8 @@
 //! The model fitted to all sessions: parameters with standard errors.
 
 pub mod addition;
+mod soundness;
+mod standard_errors;
 
 use std::collections::BTreeMap;
 
@@ -9,8 +11,10 @@ use serde::Serialize;
 
 use crate::design::{Design, PreparedModel};
 use crate::effects::with_columns;
-use crate::numerics::gram::{Gram, pseudo_inverse};
+use crate::numerics::statistics::t_quantile;
 use crate::validation::left_out::LeftOut;
+pub use soundness::{Implausible, Pair, Soundness};
+use standard_errors::Uncertainty;
 
 /// Root mean square errors \[Nm\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -27,12 +31,45 @@ pub struct Parameter {
     /// Estimate, or the value found by search.
     pub value: f64,
     /// Standard error by leaving sessions (or blocks of time) out in turn, which
-    /// allows for autocorrelation; `None` for a shape parameter, which is searched.
+    /// allows for autocorrelation; `None` for what is chosen, not measured, or
+    /// searched by its influence on the measured channels.
     pub std_error: Option<f64>,
-    /// Unit of value and standard error.
+    /// Interval that holds the true value with a probability of 95 %, by Student's
+    /// distribution with as many degrees of freedom as there are sessions (or blocks
+    /// of time), less one.
+    pub interval_95: Option<[f64; 2]>,
+    /// Unit of all.
     pub unit: String,
     /// Id of the effect that it belongs to.
     pub effect: String,
+}
+
+impl Parameter {
+    /// With a standard error of so many degrees of `freedom`.
+    #[must_use]
+    pub fn measured(
+        value: f64,
+        (std_error, freedom): (f64, f64),
+        unit: &str,
+        effect: &str,
+    ) -> Self {
+        let half = t_quantile(0.975, freedom) * std_error;
+        Self {
+            value,
+            std_error: Some(std_error),
+            interval_95: Some([value - half, value + half]),
+            unit: unit.to_owned(),
+            effect: effect.to_owned(),
+        }
+    }
+
+    /// The same parameter counted from elsewhere: of a correction in place of the whole.
+    pub fn shift(&mut self, by: f64) {
+        self.value += by;
+        if let Some(interval) = &mut self.interval_95 {
+            interval.iter_mut().for_each(|end| *end += by);
+        }
+    }
 }
 
 /// A model fitted to all sessions together.
@@ -53,28 +90,30 @@ pub struct Fit {
     /// Names of parameters whose standard error exceeds their value, or which
     /// the data do not touch at all.
     pub not_excited: Vec<String>,
-    /// Ratio of the largest to the smallest eigenvalue of the normalised normal equations.
-    pub condition: f64,
+    /// Whether parameters can be told apart, and are possible.
+    pub soundness: Soundness,
 }
 
 /// Fits the model to the rows of its sessions.
 #[must_use]
 pub fn fit(prepared: &PreparedModel, design: &Design) -> Fit {
-    let total = design.total();
-    let (coefficients, covariance) = (design.shared.clone(), design.covariance.clone());
+    let coefficients = design.shared.clone();
+    let uncertainty = Uncertainty::new(prepared, design);
     let left_out = LeftOut::new(prepared, design);
-    let n = total.columns();
-    let (_, condition) = pseudo_inverse(&total.products.view((0, 0), (n, n)).into_owned());
-    let (parameters, not_excited) = name(prepared, &coefficients, &covariance, &total);
+    let (parameters, not_excited, names) = name(prepared, &coefficients, &uncertainty);
+    let base = design.base;
     Fit {
         train: error_on_judged_rows(design, &coefficients),
         held_out: left_out.rms(),
         left_out,
-        coefficients,
-        covariance,
+        covariance: uncertainty
+            .covariance
+            .view((0, 0), (base, base))
+            .into_owned(),
         parameters,
         not_excited,
-        condition,
+        soundness: Soundness::new(prepared, &uncertainty, coefficients.as_slice(), &names),
+        coefficients,
     }
 }
 
@@ -91,20 +130,30 @@ fn error_on_judged_rows(design: &Design, coefficients: &DVector<f64>) -> f64 {
     (square / rows.max(1) as f64).sqrt()
 }
 
-type Named = (BTreeMap<String, Parameter>, Vec<String>);
+/// Where a parameter stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Place {
+    /// Index of its term.
+    term: usize,
+    /// Its column, or that of the derivative by it; `None` where it is not measured.
+    column: Option<usize>,
+}
 
-fn name(
-    prepared: &PreparedModel,
-    coefficients: &DVector<f64>,
-    covariance: &DMatrix<f64>,
-    total: &Gram,
-) -> Named {
+type Named = (
+    BTreeMap<String, Parameter>,
+    Vec<String>,
+    Vec<(String, Place)>,
+);
+
+fn name(prepared: &PreparedModel, coefficients: &DVector<f64>, uncertainty: &Uncertainty) -> Named {
     let mut parameters = BTreeMap::new();
     let mut not_excited = Vec::new();
-    for (term, columns) in with_columns(&prepared.terms) {
+    let mut names = Vec::new();
+    for (at, (term, columns)) in with_columns(&prepared.terms).enumerate() {
         let description = term.effect.description();
         let effect = &description.id;
-        let mut insert = |name: &str, parameter: Parameter| {
+        let joint = prepared.facts.joint;
+        let mut insert = |name: &str, parameter: Parameter, column: Option<usize>| {
             // Two effects of the user's own may share a name.
             let name = if parameters.contains_key(name) {
                 format!("{effect}.{name}")
@@ -112,34 +161,34 @@ fn name(
                 name.to_owned()
             };
             parameters.insert(name.clone(), parameter);
+            names.push((name.clone(), Place { term: at, column }));
             name
         };
-        for (quantity, at) in description.coefficients.iter().zip(columns) {
-            let (value, error) = (coefficients[at], covariance[(at, at)].max(0.0).sqrt());
-            let name = insert(
-                &quantity.name,
-                Parameter {
-                    value,
-                    std_error: Some(error),
-                    unit: quantity.unit.of(prepared.facts.joint).to_owned(),
-                    effect: effect.clone(),
-                },
-            );
-            if error >= value.abs() || total.products[(at, at)] <= 0.0 {
+        for (quantity, column) in description.coefficients.iter().zip(columns) {
+            let (value, error) = (coefficients[column], uncertainty.of_coefficient(column));
+            let both = (error, uncertainty.freedom);
+            let parameter = Parameter::measured(value, both, quantity.unit.of(joint), effect);
+            let name = insert(&quantity.name, parameter, Some(column));
+            if error >= value.abs() || uncertainty.gram.products[(column, column)] <= 0.0 {
                 not_excited.push(name);
             }
         }
-        for (quantity, value) in description.shape.iter().zip(&term.shape) {
-            insert(
-                &quantity.name,
-                Parameter {
+        for (place, (quantity, value)) in description.shape.iter().zip(&term.shape).enumerate() {
+            let column = uncertainty.column_of_shape(at, place);
+            let unit = quantity.unit.of(joint);
+            let both = column.map(|at| (uncertainty.of_coefficient(at), uncertainty.freedom));
+            let parameter = match both {
+                Some(both) => Parameter::measured(*value, both, unit, effect),
+                None => Parameter {
                     value: *value,
                     std_error: None,
-                    unit: quantity.unit.of(prepared.facts.joint).to_owned(),
+                    interval_95: None,
+                    unit: unit.to_owned(),
                     effect: effect.clone(),
                 },
-            );
+            };
+            insert(&quantity.name, parameter, column);
         }
     }
-    (parameters, not_excited)
+    (parameters, not_excited, names)
 }

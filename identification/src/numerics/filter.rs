@@ -129,6 +129,23 @@ impl Kernel {
         self.taps.iter().map(|t| t * t).sum()
     }
 
+    /// Frequency \[Hz\] above which less than half of the power passes (−3 dB), for
+    /// samples `period` \[s\] apart; half the sampling rate where all of it passes.
+    #[must_use]
+    pub fn cut_off(&self, period: f64) -> f64 {
+        const STEPS: usize = 1000;
+        let radius = (self.taps.len() / 2) as f64;
+        let gain = |step: usize| -> f64 {
+            let angle = std::f64::consts::PI * step as f64 / STEPS as f64;
+            let each = self.taps.iter().enumerate();
+            each.map(|(i, tap)| tap * (angle * (i as f64 - radius)).cos())
+                .sum()
+        };
+        let passes = |step: &usize| gain(*step).abs() >= std::f64::consts::FRAC_1_SQRT_2;
+        let last = (0..=STEPS).take_while(passes).count();
+        last.min(STEPS) as f64 / STEPS as f64 * 0.5 / period
+    }
+
     /// Value at sample `at`; beyond the ends the signal keeps its end value.
     #[must_use]
     pub fn at(&self, signal: &[f64], at: usize) -> f64 {
@@ -194,6 +211,13 @@ const MAX_NOISE_SHARE: f64 = 0.05;
 /// this `order` a twentieth noise; the greatest where none does.
 #[must_use]
 pub fn least_width(signals: &[Vec<f64>], order: u8, period: f64) -> f64 {
+    let [.., greatest] = WIDTHS;
+    quiet_width(signals, order, period).unwrap_or(greatest)
+}
+
+/// The same; `None` where the greatest leaves more noise, too.
+#[must_use]
+pub fn quiet_width(signals: &[Vec<f64>], order: u8, period: f64) -> Option<f64> {
     let noise = signals.iter().map(|s| noise_level(s)).fold(0.0, f64::max);
     let is_quiet = |width: f64| {
         let kernel = Kernel::sharp(width, order, period);
@@ -206,9 +230,7 @@ pub fn least_width(signals: &[Vec<f64>], order: u8, period: f64) -> f64 {
         }
         noise * noise * kernel.noise_gain() < MAX_NOISE_SHARE * MAX_NOISE_SHARE * sum / count
     };
-    let [.., greatest] = WIDTHS;
-    let least = WIDTHS.into_iter().find(|width| is_quiet(*width));
-    least.unwrap_or(greatest)
+    WIDTHS.into_iter().find(|width| is_quiet(*width))
 }
 
 /// Thins a signal by `factor` after a Gaussian against aliasing.
@@ -267,6 +289,18 @@ mod tests {
         for at in 20..380 {
             assert!((smooth[at] - gain * signal[at]).abs() < 2e-3);
         }
+    }
+
+    /// A Gaussian of standard deviation σ passes exp(−(2π f σ)²/2): half of the power
+    /// at f = √(ln 2)/(2π σ).
+    #[test]
+    fn half_of_the_power_passes_at_the_cut_off() {
+        for sigma in [2.0, 3.0, 6.0] {
+            let expected = 2.0_f64.ln().sqrt() / (std::f64::consts::TAU * sigma * 0.002);
+            let found = Kernel::gaussian(sigma, 0, 0.002).cut_off(0.002);
+            assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+        }
+        assert_eq!(Kernel::with_taps(vec![1.0]).cut_off(0.001), 500.0);
     }
 
     #[test]

@@ -36,6 +36,26 @@ pub fn f_tail(f: f64, numerator: f64, denominator: f64) -> f64 {
     puruspe::betai(0.5 * denominator, 0.5 * numerator, x)
 }
 
+/// The number that a t-distributed one with this many degrees of `freedom` is below
+/// with `probability` (a half or more).
+#[must_use]
+pub fn t_quantile(probability: f64, freedom: f64) -> f64 {
+    // t² is F-distributed with one degree of freedom above.
+    let beyond = |t: f64| 0.5 * f_tail(t * t, 1.0, freedom);
+    let (mut low, mut high) = (0.0, 1.0);
+    while beyond(high) > 1.0 - probability && high < 1e6 {
+        high *= 2.0;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match beyond(middle) > 1.0 - probability {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    0.5 * (low + high)
+}
+
 /// Wald test that all coefficients are zero, from the estimates with one of
 /// G clusters left out each (jackknife, CR3): it allows for any correlation
 /// and any variance within a cluster.
@@ -106,6 +126,14 @@ mod tests {
         assert!((f_tail(6.608, 1.0, 5.0) - 0.05).abs() < 1e-4);
         assert!((f_tail(4.103, 2.0, 10.0) - 0.05).abs() < 1e-4);
         assert!((f_tail(7.559, 2.0, 10.0) - 0.01).abs() < 1e-5);
+    }
+
+    #[test]
+    fn quantiles_of_t_agree_with_tables() {
+        for (freedom, expected) in [(1.0, 12.706), (5.0, 2.571), (11.0, 2.201), (1e6, 1.960)] {
+            let found = t_quantile(0.975, freedom);
+            assert!((found - expected).abs() < 1e-3, "{found} for {freedom}");
+        }
     }
 
     #[test]

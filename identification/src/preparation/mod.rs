@@ -38,7 +38,12 @@ pub fn prepare(dataset: &Dataset, spec: &ModelSpec) -> Result<PreparedModel, Pre
 impl<'a> Filtered<'a> {
     /// Filters recordings that have been checked.
     pub(crate) fn new(dataset: &'a Dataset) -> Self {
-        let filters = Filters::for_dataset(dataset);
+        Self::at_cut_off(dataset, 1.0)
+    }
+
+    /// The same, with filters at `factor` times the cut-off.
+    pub(crate) fn at_cut_off(dataset: &'a Dataset, factor: f64) -> Self {
+        let filters = Filters::at_cut_off(dataset, factor);
         let filtered = |sessions: &[RecordedSession]| -> Vec<Signals> {
             let sessions = sessions.iter();
             sessions.map(|s| Signals::new(s, &filters)).collect()

@@ -2,7 +2,7 @@
 
 use crate::data::stated_filter::StatedFilter;
 use crate::data::{Dataset, RecordedSession};
-use crate::numerics::filter::{Kernel, least_width, noise_level, thin};
+use crate::numerics::filter::{Kernel, least_width, noise_level, quiet_width, thin};
 use crate::numerics::statistics::quantile_or_zero;
 
 /// Sampling period \[s\] below which a recording holds no more information about friction.
@@ -16,6 +16,15 @@ const NEAR_REST: f64 = 0.005;
 const MIN_NORMAL_FORCE_SHARE: f64 = 0.1;
 /// Travel that is resolved for certain, in standard deviations of the position's noise.
 pub(crate) const RESOLVED: f64 = 10.0;
+
+/// Why filters are as wide as they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChosenFor {
+    /// Derivative of the position that has to be quiet.
+    pub order: u8,
+    /// Whether it is: else the filters are the widest there are.
+    pub is_quiet: bool,
+}
 
 /// Widths of the filters, the same for all sessions of a dataset.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,27 +48,87 @@ pub struct Filters {
     pub position_noise: f64,
     /// Of a contact: F_N \[N\] below which the tip does not touch; `None` for a joint.
     pub touching: Option<f64>,
+    /// What the width was chosen for.
+    pub chosen_for: ChosenFor,
     /// Filters stated by the user, which replace those chosen from the noise.
     pub stated: Option<StatedFilter>,
 }
 
 impl Filters {
-    /// The filters for these recordings: as stated, else chosen from the noise.
+    /// The filters for these recordings, at `factor` times the cut-off that is stated,
+    /// else chosen from the noise.
     #[must_use]
-    pub fn for_dataset(dataset: &Dataset) -> Self {
+    pub fn at_cut_off(dataset: &Dataset, factor: f64) -> Self {
         let sessions = &dataset.sessions;
         let chosen = match dataset.joint.is_contact() {
             true => Self::choose_for_contact(sessions),
             false => Self::choose(sessions),
         };
         match dataset.filter {
-            Some(filter) => Self {
-                thinning: 1,
-                stride: filter.decimation.max(1),
-                stated: Some(filter),
-                ..chosen
-            },
-            None => chosen,
+            Some(filter) => {
+                let filter = filter.at_cut_off(factor);
+                Self {
+                    thinning: 1,
+                    stride: filter.decimation.max(1),
+                    stated: Some(filter),
+                    ..chosen
+                }
+            }
+            None => chosen.narrowed(factor, sessions),
+        }
+    }
+
+    /// As wide as makes the cut-off `factor` times as high.
+    fn narrowed(self, factor: f64, sessions: &[RecordedSession]) -> Self {
+        if factor == 1.0 {
+            return self;
+        }
+        let period = sessions.first().map_or(0.01, |s| s.period) * self.thinning as f64;
+        let (state, column) = (self.state / factor, self.column / factor);
+        // A narrower filter leaves the velocity noisier.
+        let noise = Kernel::sharp(state, 1, period).noise_gain().sqrt() * self.position_noise;
+        Self {
+            state,
+            load: self.load / factor,
+            column,
+            stride: ((2.0 * column).round() as usize).max(1),
+            rest_speed: self.rest_speed.max(4.0 * noise),
+            ..self
+        }
+    }
+
+    /// Cut-off \[Hz\] of the filter that torque and columns pass, for working
+    /// samples `period` \[s\] apart.
+    #[must_use]
+    pub fn cut_off(&self, period: f64) -> f64 {
+        let column = self.column_kernel(period).cut_off(period);
+        match &self.stated {
+            Some(filter) => column.min(filter.butterworth_hz),
+            None => column,
+        }
+    }
+
+    /// Why it is as it is, in words.
+    #[must_use]
+    pub fn why(&self) -> String {
+        if let Some(filter) = &self.stated {
+            return format!(
+                "as stated in [filter]: Butterworth {} Hz forwards and backwards, every {} samples a row",
+                filter.butterworth_hz,
+                filter.decimation.max(1)
+            );
+        }
+        let what = match self.chosen_for.order {
+            1 => "velocity",
+            _ => "acceleration",
+        };
+        match self.chosen_for.is_quiet {
+            true => format!(
+                "chosen from the noise in the position: the least smoothing that leaves the {what} 5 % noise or less"
+            ),
+            false => format!(
+                "the most smoothing there is, and the {what} has more than 5 % noise all the same: state a lower one in [filter]"
+            ),
         }
     }
 
@@ -98,7 +167,8 @@ impl Filters {
             .map(|s| thin(&s.position, thinning))
             .collect();
         let noise = positions.iter().map(|q| noise_level(q)).fold(0.0, f64::max);
-        let state = least_width(&positions, order, working);
+        let quiet = quiet_width(&positions, order, working);
+        let state = quiet.unwrap_or_else(|| least_width(&positions, order, working));
         let loads: Vec<Vec<f64>> = (sessions.iter())
             .filter_map(|s| Some(thin(s.joint_torque.as_ref()?, thinning)))
             .collect();
@@ -125,6 +195,10 @@ impl Filters {
             travel: TRAVEL_AFTER_REVERSAL * range,
             position_noise: noise,
             touching: None,
+            chosen_for: ChosenFor {
+                order,
+                is_quiet: quiet.is_some(),
+            },
             stated: None,
         }
     }

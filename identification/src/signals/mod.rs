@@ -13,7 +13,7 @@ use crate::numerics::filter::{Kernel, thin};
 pub use filters::Filters;
 pub(crate) use filters::RESOLVED;
 pub use point::Point;
-pub(crate) use sliding::Sliding;
+pub(crate) use sliding::{Motion, Sliding};
 use sliding::{rows_clear_of_bad_samples, touches_and_moves};
 
 const SECONDS_PER_DAY: f64 = 86_400.0;
@@ -147,7 +147,7 @@ impl Signals {
         let reach = Kernel::reach(filters.column);
         let last = points.len().saturating_sub(reach + lost);
         self.all_rows = match &filters.stated {
-            Some(filter) => filter.rows(points.iter().map(|point| point.velocity)),
+            Some(filter) => filter.rows(points.len()),
             None => (reach..last).step_by(filters.stride.max(1)).collect(),
         };
         let mut sliding = Sliding::default();
@@ -164,8 +164,12 @@ impl Signals {
             .zip(&with_reversals)
             .map(|(slides, counts)| *slides && *counts)
             .collect();
-        let rows = |good: &[bool]| match filters.stated {
-            Some(_) => self.all_rows.clone(),
+        let rows = |good: &[bool]| match &filters.stated {
+            Some(filter) => {
+                let all = self.all_rows.iter().copied();
+                all.filter(|at| !filter.is_slow(points[*at].velocity))
+                    .collect()
+            }
             None => rows_clear_of_bad_samples(&self.all_rows, good, reach),
         };
         (self.rows, self.rows_with_reversals) = (rows(&both), rows(&with_reversals));

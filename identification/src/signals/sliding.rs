@@ -13,20 +13,39 @@ pub(crate) struct Sliding {
     travelled: f64,
 }
 
+/// How a joint moves at one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    /// Friction has a value of its own.
+    Slides,
+    /// Near rest.
+    Slow,
+    /// Friction still builds up.
+    JustReversed,
+}
+
 impl Sliding {
     /// Whether the next sample, in order of time, slides.
     pub(crate) fn next(&mut self, point: &Point, filters: &Filters) -> bool {
+        self.motion(point, filters) == Motion::Slides
+    }
+
+    /// How the joint moves at the next sample, in order of time.
+    pub(crate) fn motion(&mut self, point: &Point, filters: &Filters) -> Motion {
         // A fast change of speed passes rest between two samples.
         let passing = 2.0 * point.acceleration.abs() * point.period;
         if point.velocity.abs() < filters.rest_speed.max(passing) {
-            return false;
+            return Motion::Slow;
         }
         if point.velocity.signum() != self.direction {
             self.direction = point.velocity.signum();
             self.travelled = 0.0;
         }
         self.travelled += point.velocity.abs() * point.period;
-        self.travelled > filters.travel
+        match self.travelled > filters.travel {
+            true => Motion::Slides,
+            false => Motion::JustReversed,
+        }
     }
 }
 

@@ -151,6 +151,15 @@ impl Experiment {
         }
     }
 
+    /// Every file that it reads, fitted ones first.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = [&self.recordings[..], &self.unloaded[..], &self.held_out[..]].concat();
+        let joined = files.iter().filter_map(|own| self.joined.get(own));
+        files.extend(joined.flatten().cloned().collect::<Vec<PathBuf>>());
+        files
+    }
+
     /// Reads an experiment file.
     ///
     /// # Errors

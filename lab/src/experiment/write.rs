@@ -65,14 +65,7 @@ pub fn write_child(parent: &Experiment, step: &NextStep, output: &Path) -> Resul
         .parse()
         .map_err(|error: toml_edit::TomlError| again(error.to_string()))?;
     let (from, to) = (folder_of(parent_path), folder_of(output));
-    let mut recordings = [
-        &parent.recordings[..],
-        &parent.unloaded[..],
-        &parent.held_out[..],
-    ]
-    .concat();
-    let joined = recordings.iter().filter_map(|own| parent.joined.get(own));
-    recordings.extend(joined.flatten().cloned().collect::<Vec<PathBuf>>());
+    let mut recordings = parent.files();
     if let Some(recording) = &step.twin_recording {
         let path = turned(&recording.to_string_lossy(), Path::new("."), &to);
         document.insert("recording", value(path));

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ferntast_identification::comparison::Reason;
 use serde::Serialize;
 
 /// Samples of a recording's position by what became of them; they add up to
@@ -47,14 +48,14 @@ impl Tally {
 
     /// What is left out: reason and samples, where there are any.
     #[must_use]
-    pub fn left_out(&self) -> Vec<(&'static str, usize)> {
+    pub fn left_out(&self) -> Vec<(Reason, usize)> {
         let all = [
-            ("not read: more than is held at once", self.too_much),
-            ("without a number", self.without_number),
-            ("with the time of the sample before", self.repeated_time),
-            ("where another signal is missing", self.without_other_signal),
-            ("not valid", self.not_valid),
-            ("in short stretches", self.in_short_stretches),
+            (Reason::NotRead, self.too_much),
+            (Reason::WithoutNumber, self.without_number),
+            (Reason::RepeatedTime, self.repeated_time),
+            (Reason::OtherSignalMissing, self.without_other_signal),
+            (Reason::NotValid, self.not_valid),
+            (Reason::ShortStretch, self.in_short_stretches),
         ];
         let there = all.into_iter().filter(|(_, count)| *count > 0);
         there.collect()

@@ -1,10 +1,15 @@
 //! From results to a report.
 
-use ferntast_identification::{Comparison, Diagnosis, comparison::Series, diagnosis};
+use ferntast_identification::{
+    Comparison, Diagnosis, Usage,
+    comparison::{Reason, Series},
+    diagnosis::NamedCandidate,
+    fit::{Implausible, Pair},
+};
 
 use super::{
-    Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap, Trace,
-    Verdict, Window,
+    About, Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap,
+    Rival, Share, Trace, Verdict, Window, shades,
 };
 use crate::{
     experiment::{self, ExperimentError},
@@ -26,23 +31,9 @@ pub fn assemble(
         Some(path) => experiment::history(path, &experiment::data_folder())?,
         None => Vec::new(),
     };
-    let (kind, text) = match diagnosis.verdict {
-        diagnosis::Verdict::Missing => (
-            "missing",
-            format!(
-                "{} explains what the model leaves.",
-                diagnosis
-                    .candidates
-                    .first()
-                    .map_or("An effect", |best| best.effect.as_str())
-            ),
-        ),
-        diagnosis::Verdict::Complete => ("complete", "What is left is noise.".to_owned()),
-        diagnosis::Verdict::Unexplained => (
-            "unexplained",
-            "Something is missing that the catalogue does not have.".to_owned(),
-        ),
-    };
+    let kind = diagnosis.verdict.name();
+    let mut text = diagnosis.claim();
+    text.push('.');
     let mut notes = opened.notes.clone();
     notes.extend(comparison.extrapolated.iter().map(|beyond| {
         format!(
@@ -55,16 +46,19 @@ pub fn assemble(
     Ok(Report {
         title: opened.experiment.title.clone(),
         subtitle: format!(
-            "{} samples in {} sessions, {} used",
-            comparison.samples,
+            "{} samples in {} sessions, {:.1} % of them used",
+            comparison.used.samples,
             opened.dataset.sessions.len(),
-            comparison.used
+            comparison.used.share * 100.0,
         ),
         verdict: Some(Verdict {
             kind: kind.to_owned(),
             text,
         }),
         figures: figures(comparison, &unit),
+        used: used(&comparison.used),
+        warnings: warnings(comparison, diagnosis),
+        about: about(opened, comparison)?,
         traces: comparison
             .series
             .iter()
@@ -89,17 +83,16 @@ pub fn assemble(
                     .collect(),
             })
             .collect(),
-        candidates: diagnosis
-            .candidates
+        candidates: candidates(&diagnosis.candidates, &unit),
+        helps_in_part: candidates(&diagnosis.helps_in_part, &unit),
+        rivals: diagnosis
+            .runners_up
             .iter()
-            .map(|own| Candidate {
+            .map(|own| Rival {
                 effect: own.effect.clone(),
-                held_out_before: own.held_out_before,
-                held_out_after: own.held_out_after,
-                unit: unit.clone(),
+                share: own.share,
                 p_value: own.p_value,
-                indistinguishable_from: own.indistinguishable_from.clone(),
-                separate_by: own.separate_by.clone(),
+                why: own.why_not.text().to_owned(),
             })
             .collect(),
         dependences: diagnosis
@@ -127,6 +120,8 @@ pub fn assemble(
                 name: name.clone(),
                 value: own.value,
                 std_error: own.std_error,
+                interval_95: own.interval_95,
+                effect: own.effect.clone(),
                 unit: own.unit.clone(),
                 excited: !comparison.not_excited.contains(name),
             })
@@ -144,6 +139,66 @@ pub fn assemble(
             .collect(),
         notes,
     })
+}
+
+fn candidates(named: &[NamedCandidate], unit: &str) -> Vec<Candidate> {
+    let each = named.iter().map(|own| Candidate {
+        effect: own.effect.clone(),
+        held_out_before: own.held_out_before,
+        held_out_after: own.held_out_after,
+        unit: unit.to_owned(),
+        p_value: own.p_value,
+        indistinguishable_from: own.indistinguishable_from.clone(),
+        separate_by: own.separate_by.clone(),
+    });
+    each.collect()
+}
+
+/// What becomes of the samples, the used ones first.
+fn used(usage: &Usage) -> Vec<Share> {
+    let row = |(reason, samples): (Reason, usize)| Share {
+        what: reason.text().to_owned(),
+        samples,
+        share: samples as f64 / usage.samples.max(1) as f64,
+        used: reason.is_used(),
+    };
+    let all = usage.by_reason.iter().map(|(own, count)| (*own, *count));
+    let used = all.filter(|(reason, _)| reason.is_used());
+    used.chain(usage.left_out()).map(row).collect()
+}
+
+/// What has to be known before the verdict or a parameter is believed.
+fn warnings(comparison: &Comparison, diagnosis: &Diagnosis) -> Vec<String> {
+    let soundness = &comparison.soundness;
+    let implausible = soundness.implausible.iter().map(Implausible::text);
+    let pairs = soundness.inseparable.iter().map(Pair::text);
+    let cutoff = diagnosis.cutoff_warning();
+    cutoff.into_iter().chain(implausible).chain(pairs).collect()
+}
+
+/// The model's equation, the program's version, the data.
+fn about(opened: &Opened, comparison: &Comparison) -> Result<Vec<About>, ExperimentError> {
+    let row = |name: &str, value: String| About {
+        name: name.to_owned(),
+        value,
+    };
+    let equation = opened.equation().into_iter();
+    let mut about: Vec<About> = equation.map(|own| row(&own.effect, own.formula)).collect();
+    let usage = &comparison.used;
+    about.push(row(
+        "filter",
+        format!("{} Hz, {}", significant(usage.cutoff_hz), usage.cutoff_reason),
+    ));
+    let condition = significant(comparison.soundness.condition);
+    about.push(row("condition of the normal equations", condition));
+    let files = opened.experiment.files();
+    let hash = experiment::data_hash(&files)
+        .map_err(|(path, source)| ExperimentError::Read { path, source })?;
+    let names: Vec<String> = files.iter().map(|own| own.display().to_string()).collect();
+    about.push(row("recordings", names.join(", ")));
+    about.push(row("SHA-256 of their content", hash));
+    about.push(row("ferntast", env!("CARGO_PKG_VERSION").to_owned()));
+    Ok(about)
 }
 
 fn figures(comparison: &Comparison, unit: &str) -> Vec<Figure> {
@@ -206,6 +261,7 @@ fn trace(series: &Series, unit: &str) -> Trace {
             curve("model", series.modelled.clone()),
             curve("residual", residual),
         ],
+        shades: shades::of(series),
     }
 }
 

@@ -53,9 +53,9 @@ const allCharts = [];
  * A chart in `parent`. `curves`: [{name, x, y, colour, band (half width, as
  * long as y), dots, hollow (which of the dots), tell (text on a point),
  * visible}], x ascending; `labels`: {x, y, step (least distance of ticks on
- * x)}; `height` in px.
+ * x)}; `height` in px; `shades`: [{from, to, colour}] behind the curves.
  */
-function chart(parent, curves, labels, height) {
+function chart(parent, curves, labels, height, shades) {
   const box = document.createElement("div");
   box.className = "chart";
   const canvas = document.createElement("canvas");
@@ -65,7 +65,7 @@ function chart(parent, curves, labels, height) {
   hint.className = "hint";
   box.append(canvas, hint);
   parent.append(box);
-  const self = { curves, view: null, pointer: null, drag: null };
+  const self = { curves, shades: shades || [], view: null, pointer: null, drag: null };
   const margin = { left: 62, right: 28, top: 10, bottom: 38 };
 
   function extent() {
@@ -152,6 +152,11 @@ function chart(parent, curves, labels, height) {
     pen.beginPath();
     pen.rect(margin.left, margin.top, f.width, f.tall);
     pen.clip();
+    for (const { from, to, colour: name } of self.shades) {
+      if (to < f.from || from > f.to) continue;
+      pen.fillStyle = colour(name);
+      pen.fillRect(f.x(from), margin.top, Math.max(0.5, f.x(to) - f.x(from)), f.tall);
+    }
     for (const curve of self.curves) if (curve.visible !== false) drawCurve(pen, f, curve);
     if (self.pointer !== null) {
       pen.strokeStyle = colour("--quiet");
@@ -288,7 +293,7 @@ function chart(parent, curves, labels, height) {
 
   self.draw = draw;
   self.look = look;
-  self.show = (next) => { self.curves = next; self.view = null; draw(); };
+  self.show = (next, shaded) => { self.curves = next; self.shades = shaded || []; self.view = null; draw(); };
   allCharts.push(self);
   draw();
   return self;

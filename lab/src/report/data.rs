@@ -13,12 +13,22 @@ pub struct Report {
     pub verdict: Option<Verdict>,
     /// Numbers to see first, such as the error on data held out.
     pub figures: Vec<Figure>,
+    /// What becomes of the samples.
+    pub used: Vec<Share>,
+    /// What has to be known before anything here is believed.
+    pub warnings: Vec<String>,
+    /// The model's equation, version and data.
+    pub about: Vec<About>,
     /// Measured against model, one a session.
     pub traces: Vec<Trace>,
     /// The residual over one signal each.
     pub maps: Vec<ResidualMap>,
     /// Effects that may be missing, the best first.
     pub candidates: Vec<Candidate>,
+    /// Where nothing explains the rest: effects that take a part of it.
+    pub helps_in_part: Vec<Candidate>,
+    /// Effects that were tried and are not named.
+    pub rivals: Vec<Rival>,
     /// What the residual depends on though no effect explains it.
     pub dependences: Vec<Dependence>,
     /// How the error fell, the first experiment first.
@@ -38,6 +48,52 @@ pub struct Verdict {
     pub kind: String,
     /// The same as a sentence.
     pub text: String,
+}
+
+/// Samples of one fate.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Share {
+    /// What becomes of them.
+    pub what: String,
+    /// How many they are.
+    pub samples: usize,
+    /// Part of all samples \[0 … 1\].
+    pub share: f64,
+    /// Whether the verdict rests on them.
+    pub used: bool,
+}
+
+/// Something to know of the model or its origin.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct About {
+    /// What.
+    pub name: String,
+    /// Its formula, number or text.
+    pub value: String,
+}
+
+/// An effect that was tried and is not named.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Rival {
+    /// Its id.
+    pub effect: String,
+    /// Part of the residual's mean square that it explains \[0 … 1\].
+    pub share: f64,
+    /// Probability of such a gain by chance.
+    pub p_value: f64,
+    /// Why it is not named.
+    pub why: String,
+}
+
+/// A stretch of time that is shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Shade {
+    /// Its begin \[s\].
+    pub from: f64,
+    /// Its end \[s\].
+    pub to: f64,
+    /// `not used` or `validates`.
+    pub what: &'static str,
 }
 
 /// One number with its name.
@@ -65,6 +121,8 @@ pub struct Trace {
     /// The curves; one name has one colour on the whole page. Values that are
     /// not finite leave a hole.
     pub curves: Vec<Curve>,
+    /// What is not used, and what validates.
+    pub shades: Vec<Shade>,
 }
 
 /// A curve.
@@ -150,6 +208,10 @@ pub struct Parameter {
     pub value: f64,
     /// Its standard error; `None` where it could not be determined.
     pub std_error: Option<f64>,
+    /// Interval that holds the true value with a probability of 95 %.
+    pub interval_95: Option<[f64; 2]>,
+    /// The effect that it belongs to.
+    pub effect: String,
     /// Unit of both.
     pub unit: String,
     /// Whether the data say anything about it.

@@ -8,12 +8,13 @@ mod assemble;
 mod data;
 #[cfg(test)]
 mod tests;
+mod shades;
 mod thin;
 
 pub use assemble::{assemble, significant};
 pub use data::{
-    Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap, Trace,
-    Verdict, Window,
+    About, Bin, Candidate, Curve, Dependence, Figure, HistoryPoint, Parameter, Report, ResidualMap,
+    Rival, Shade, Share, Trace, Verdict, Window,
 };
 
 const PAGE: &str = include_str!("page.html");

@@ -8,7 +8,7 @@ function percent(before, after) {
 
 function showTraces(page, plots) {
   const part = section(page, "Measured against model",
-    "Wheel: zoom. Drag: move. Shift and drag: frame a stretch. Double click: all.");
+    "Wheel: zoom. Drag: move. Shift and drag: frame a stretch. Double click: all. Grey: not used; green: held out, validates.");
   const panel = make(part, "div", null, "panel");
   const bar = make(panel, "div", null, "bar");
   let choice = null;
@@ -29,10 +29,13 @@ function showTraces(page, plots) {
     ...curve, colour: colourOf(curve.name), visible: !hidden.has(curve.name),
   }));
   const labels = { x: "time [s]", y: "[" + plots[0].unit + "]" };
-  const drawn = chart(panel, curves(plots[0]), labels, 340);
+  const shades = (plot) => (plot.shades || []).map((each) => ({
+    ...each, colour: each.what === "validates" ? "--check" : "--off",
+  }));
+  const drawn = chart(panel, curves(plots[0]), labels, 340, shades(plots[0]));
   const show = (n) => {
     labels.y = "[" + plots[n].unit + "]";
-    drawn.show(curves(plots[n]));
+    drawn.show(curves(plots[n]), shades(plots[n]));
   };
   if (choice) choice.addEventListener("change", () => show(Number(choice.value)));
   return (title, from, to) => {
@@ -62,8 +65,14 @@ function showMaps(page, maps) {
   }
 }
 
-function showCandidates(page, candidates) {
-  const part = section(page, "Effects that may be missing", "The best first; errors on data that were not fitted.");
+function showUsed(page, shares) {
+  table(section(page, "What the verdict rests on", "Every sample of the recordings, by what becomes of it."),
+    [["samples"], ["number", 1], ["part", 1], [""]],
+    shares.map((each) => [each.what, String(each.samples), (100 * each.share).toFixed(1) + " %", each.used ? "used" : ""]));
+}
+
+function showCandidates(page, candidates, title, words) {
+  const part = section(page, title, words);
   const most = Math.max(...candidates.map((each) => each.held_out_before - each.held_out_after), 1e-300);
   table(part, [["effect"], ["before", 1], ["after", 1], ["change", 1], [""], ["p", 1], ["cannot be told from"], ["separate by"]],
     candidates.map((each) => {
@@ -100,6 +109,7 @@ function showReport(report) {
     make(box, "b", report.verdict.kind);
     make(box, "span", report.verdict.text);
   }
+  for (const warning of report.warnings) make(page, "p", warning, "warning");
   if (report.figures.length) {
     const grid = make(page, "div", null, "figures");
     for (const each of report.figures) {
@@ -111,9 +121,16 @@ function showReport(report) {
   }
   const plots = report.plots.filter((plot) => plot.curves.length);
   const jump = plots.length ? showTraces(page, plots) : null;
-  if (report.candidates.length) showCandidates(page, report.candidates);
+  if (report.candidates.length) {
+    showCandidates(page, report.candidates, "Effects that may be missing", "The best first; errors on data that were not fitted.");
+  }
+  if (report.helps_in_part.length) {
+    showCandidates(page, report.helps_in_part, "Effects that help in part",
+      "They lower the error, but are not the explanation: the residual has another shape.");
+  }
+  if (report.used.length) showUsed(page, report.used);
   if (report.dependences.length) {
-    table(section(page, "What the residual depends on"), [["signals"], ["part of the mean square", 1]],
+    table(section(page, "What the residual depends on", "The parts overlap, since the signals go together: their sum says nothing."), [["signals"], ["part of the mean square", 1]],
       report.dependences.map((each) => [each.signals.join(" × "), (100 * each.strength).toFixed(1) + " %"]));
   }
   if (report.history.length) showHistory(page, report.history);
@@ -130,10 +147,19 @@ function showReport(report) {
       }));
   }
   if (report.parameters.length) {
-    table(section(page, "Parameters", "With standard errors that allow for autocorrelation."),
-      [["parameter"], ["value", 1], ["standard error", 1], ["unit"], [""]],
-      report.parameters.map((each) => [each.name, brief(each.value), brief(each.std_error), each.unit,
+    table(section(page, "Parameters", "Standard errors by sessions, or blocks of time, left out in turn; the interval holds the true value with 95 %."),
+      [["parameter"], ["value", 1], ["standard error", 1], ["95 %", 1], ["unit"], ["effect"], [""]],
+      report.parameters.map((each) => [each.name, brief(each.value), brief(each.std_error),
+        each.interval_95 ? each.interval_95.map(brief).join(" … ") : "–", each.unit, each.effect,
         each.excited ? "" : "the data say nothing about it"]));
+  }
+  if (report.rivals.length) {
+    table(section(page, "Tried and not named", "The strongest of the other effects."),
+      [["effect"], ["part of the mean square", 1], ["p", 1], ["why not"]],
+      report.rivals.map((each) => [each.effect, (100 * each.share).toFixed(2) + " %", brief(each.p_value), each.why]));
+  }
+  if (report.about.length) {
+    table(section(page, "Model and data"), [["", 0], ["", 0]], report.about.map((each) => [each.name, each.value]));
   }
   if (report.notes.length) {
     const list = make(section(page, "Notes"), "ul");

@@ -24,6 +24,7 @@ fn the_page_holds_the_data_and_asks_nothing_of_a_network() {
             unit: "Nm".to_owned(),
             start: 5.0,
             period: 0.5,
+            shades: Vec::new(),
             curves: vec![Curve {
                 name: "measured".to_owned(),
                 values: vec![1.0, f64::NAN, 1.234_567_89],

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Report, Trace};
+use super::{Report, Shade, Trace};
 
 /// A curve keeps at most that many values; a screen has fewer columns.
 pub(super) const MAX_POINTS: usize = 20_000;
@@ -21,6 +21,7 @@ struct Plot {
     title: String,
     unit: String,
     curves: Vec<Points>,
+    shades: Vec<Shade>,
 }
 
 /// A curve as points.
@@ -47,6 +48,7 @@ fn plot(trace: &Trace) -> Plot {
     Plot {
         title: trace.title.clone(),
         unit: trace.unit.clone(),
+        shades: trace.shades.clone(),
         curves: trace
             .curves
             .iter()

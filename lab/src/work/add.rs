@@ -5,7 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_identification::{Addition, CustomEffect, Term, add, fit::Parameter};
+use ferntast_identification::{
+    Addition, CustomEffect, Term, add,
+    fit::{Parameter, Soundness},
+};
 use serde::Serialize;
 
 use super::{Opened, WorkError, units};
@@ -26,6 +29,9 @@ pub struct Added {
     pub parameters: BTreeMap<String, Parameter>,
     /// Those that the data do not excite.
     pub not_excited: Vec<String>,
+    /// Whether they can be told apart, and are possible.
+    #[serde(flatten)]
+    pub soundness: Soundness,
 }
 
 /// `E.toml` with `stribeck` added: `E+stribeck.toml`.
@@ -101,6 +107,7 @@ impl Opened {
         let mut addition: Addition = add(&self.dataset, &self.experiment.model, effect)
             .map_err(|error| self.refuse(error))?;
         units::in_units_of(&self.experiment, &mut addition.parameters);
+        units::implausible(&self.experiment, &mut addition.soundness);
         let step = NextStep {
             effect: Some(effect.clone()),
             twin_recording: None,
@@ -117,6 +124,7 @@ impl Opened {
             experiment: output.to_owned(),
             parameters: addition.parameters,
             not_excited: addition.not_excited,
+            soundness: addition.soundness,
         })
     }
 }

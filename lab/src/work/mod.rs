@@ -3,6 +3,7 @@
 
 mod add;
 mod document;
+mod equation;
 mod error;
 mod new;
 mod paths;
@@ -14,7 +15,8 @@ mod units;
 use std::path::Path;
 
 use ferntast_identification::{
-    Comparison, Dataset, Diagnosis, compare, comparison::compare_drawing, diagnose,
+    Comparison, Dataset, Diagnosis, Usage, compare, comparison::compare_drawing, diagnose,
+    diagnose_at_cutoffs,
 };
 
 use crate::{
@@ -23,6 +25,7 @@ use crate::{
 };
 
 pub use add::{Added, beside, own_effect};
+pub use equation::Formula;
 pub use error::{NewError, WorkError};
 pub use new::{Made, NewSignal, Request, Said, make};
 pub use paths::{Offered, offered};
@@ -47,6 +50,12 @@ impl Opened {
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
         self.experiment.force_unit()
+    }
+
+    /// The model's equation, part by part.
+    #[must_use]
+    pub fn equation(&self) -> Vec<Formula> {
+        equation::of(&self.experiment)
     }
 
     /// Reads the recordings of `experiment`.
@@ -91,6 +100,8 @@ impl Opened {
         let mut comparison = found.map_err(|error| self.refuse(error))?;
         units::in_units_of(&self.experiment, &mut comparison.parameters);
         units::maps(&self.experiment, &mut comparison.residual_maps);
+        units::implausible(&self.experiment, &mut comparison.soundness);
+        self.account(&mut comparison.used);
         Ok(comparison)
     }
 
@@ -101,11 +112,38 @@ impl Opened {
     /// [`WorkError::Prepare`]: what data or model lack.
     pub fn diagnose(&self, progress: &mut dyn FnMut(f64)) -> Result<Diagnosis, WorkError> {
         let found = diagnose(&self.dataset, &self.experiment.model, progress);
-        let mut diagnosis = found.map_err(|error| self.refuse(error))?;
-        for candidate in &mut diagnosis.candidates {
+        Ok(self.told(found.map_err(|error| self.refuse(error))?))
+    }
+
+    /// The same, with the verdicts at two other cut-offs of the filter.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Prepare`]: what data or model lack.
+    pub fn diagnose_at_cutoffs(
+        &self,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Diagnosis, WorkError> {
+        let found = diagnose_at_cutoffs(&self.dataset, &self.experiment.model, progress);
+        Ok(self.told(found.map_err(|error| self.refuse(error))?))
+    }
+
+    /// In the recordings' units, with what was left out in reading them.
+    fn told(&self, mut diagnosis: Diagnosis) -> Diagnosis {
+        let named = diagnosis.candidates.iter_mut();
+        for candidate in named.chain(&mut diagnosis.helps_in_part) {
             units::in_units_of(&self.experiment, &mut candidate.parameters);
         }
-        Ok(diagnosis)
+        units::implausible(&self.experiment, &mut diagnosis.soundness);
+        self.account(&mut diagnosis.used);
+        diagnosis
+    }
+
+    /// Adds what was left out in reading the recordings.
+    fn account(&self, used: &mut Usage) {
+        for (reason, samples) in self.tallies.iter().flat_map(Tally::left_out) {
+            used.add(reason, samples);
+        }
     }
 
     fn refuse(&self, source: ferntast_identification::PrepareError) -> WorkError {

@@ -143,8 +143,10 @@ pub fn from_twin(model: &Path, recording: &Path, output: &Path) -> Result<FromTw
             for i in 0..word.len() {
                 if let Some(own) = parameters.get_mut(word.names[i].as_str()) {
                     own.value = word.values[i];
-                    // A shape has none.
-                    own.std_error = own.std_error.and(Some(word.std_errors[i]));
+                    // A shape keeps its value and error off line.
+                    if word.std_errors[i] > 0.0 {
+                        own.std_error = own.std_error.and(Some(word.std_errors[i]));
+                    }
                 }
             }
             (comparison.rms.held_out, parameters)

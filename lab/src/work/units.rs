@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use ferntast_identification::{comparison::residual_map::ResidualMap, fit::Parameter};
+use ferntast_identification::{
+    comparison::residual_map::ResidualMap,
+    fit::{Parameter, Soundness},
+};
 
 use crate::{experiment::Experiment, unit::in_drive_units};
 
@@ -10,6 +13,15 @@ use crate::{experiment::Experiment, unit::in_drive_units};
 pub(super) fn in_units_of(experiment: &Experiment, parameters: &mut BTreeMap<String, Parameter>) {
     if let Some(drive) = experiment.drive_unit() {
         for own in parameters.values_mut() {
+            own.unit = in_drive_units(&own.unit, drive);
+        }
+    }
+}
+
+/// The same of parameters that are not possible.
+pub(super) fn implausible(experiment: &Experiment, soundness: &mut Soundness) {
+    if let Some(drive) = experiment.drive_unit() {
+        for own in &mut soundness.implausible {
             own.unit = in_drive_units(&own.unit, drive);
         }
     }
