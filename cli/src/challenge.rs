@@ -177,7 +177,21 @@ fn hidden<H: TestBench>(seed: u64, hide: &[String]) -> Result<Vec<H>, BenchError
     }
 }
 
+/// Refuses what is no answer, before the seal is opened.
+fn check_answer(guess: &str) -> Result<(), Failure> {
+    let effects = ferntast_identification::catalogue();
+    let verdicts = ["complete", "none", "unexplained"];
+    let is_answer = verdicts.contains(&guess) || effects.iter().any(|own| own.id == guess);
+    match is_answer {
+        true => Ok(()),
+        false => Err(Failure::refused(format!(
+            "{guess:?} is no answer, and the seal stays closed: give an effect (ferntast lab effects), \"complete\" or \"unexplained\""
+        ))),
+    }
+}
+
 fn reveal(folder: &Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {
+    check_answer(guess)?;
     let answer = challenge::reveal(folder).map_err(Failure::refused)?;
     let outside = !answer.hidden.is_empty() && answer.accepted.is_empty();
     let right = match guess {
@@ -265,6 +279,19 @@ fn print(test: &BlindTest) {
         "two hidden at once, by adding what is named: both {}/{}, at least one {}/{}",
         both.found, both.tried, one.found, one.tried
     );
+    let coverage = &test.coverage;
+    for (what, count) in [
+        ("fitted", coverage.fitted),
+        ("searched", coverage.searched),
+        ("of one session", coverage.one_session),
+    ] {
+        println!(
+            "95 % intervals that hold the true value, parameters {what}: {}/{} ({:.1} %)",
+            count.found,
+            count.tried,
+            count.share() * 100.0
+        );
+    }
     println!();
     for (effect, counts) in &test.by_effect {
         row(effect, counts);

@@ -1,8 +1,11 @@
 //! `ferntast lab add`.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
-use ferntast_lab::work::{beside, own_effect};
+use ferntast_lab::work::{WorkError, beside, own_effect};
 
 use super::{
     super::{Failure, output::print_json},
@@ -35,6 +38,20 @@ pub struct Arguments {
     /// New experiment file (else beside the old one, with the effect in its name).
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+
+    /// Write over a file that is there.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Refuses to write over a file that is there.
+pub fn refuse_existing(output: &Path) -> Result<(), Failure> {
+    match output.exists() {
+        true => Err(Failure::refused(WorkError::Exists {
+            path: output.to_owned(),
+        })),
+        false => Ok(()),
+    }
 }
 
 /// Runs it.
@@ -45,6 +62,9 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         .output
         .clone()
         .unwrap_or_else(|| beside(&arguments.experiment, effect.name()));
+    if !arguments.force {
+        refuse_existing(&output)?;
+    }
     let added = opened.add(&effect, &output).map_err(Failure::refused)?;
     if json {
         print_json(&added)?;
@@ -59,6 +79,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         unit = opened.torque_unit()
     );
     table::parameters(&added.parameters, &added.not_excited);
+    table::soundness(&added.soundness);
     println!("written to {}", added.experiment.display());
     Ok(ExitCode::SUCCESS)
 }

@@ -6,6 +6,10 @@ use super::{super::Failure, open, table};
 
 /// Fit the model, tell its error on data it was not fitted to, and where it fails.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_help = "With --json always one object: the result of each joint under \"joints\", by its name; of an \
+    experiment file its one result also at the top."
+)]
 pub struct Arguments {
     /// Experiment file, or the recording of a session.
     experiment: PathBuf,
@@ -20,10 +24,8 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             println!("{}", opened.experiment.title);
             table::comparison(&result, opened.torque_unit());
         }
-        results.push(open::InUnit {
-            unit: opened.torque_unit(),
-            result,
-        });
+        let unit = opened.torque_unit();
+        results.push((opened.experiment.title, open::InUnit { unit, result }));
     }
     if json {
         open::print_results(&results)?;

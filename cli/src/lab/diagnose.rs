@@ -13,20 +13,32 @@ use super::{
 /// Tell which effect is missing.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Three verdicts: missing (with the effects that explain it, best first), complete (the rest is \
-    noise), unexplained (the residual depends on these signals in a way that no effect of the catalogue has)."
+    after_help = "Three verdicts, each on the samples that are used and no others: missing (with the effects that \
+    explain it, best first), complete (no systematic rest in these samples), unexplained (the residual depends on \
+    these signals in a way that no effect of the catalogue has; what helps in part is told, and is not the \
+    explanation).\n\n\
+    The verdict is also asked for at half and at one and a half times the cut-off of the filter; where it differs, \
+    that is a warning.\n\n\
+    With --json always one object: the result of each joint under \"joints\", by its name; of an experiment file its \
+    one result also at the top."
 )]
 pub struct Arguments {
     /// Experiment file, or the recording of a session.
     experiment: PathBuf,
+
+    /// Leave out the verdicts at other cut-offs.
+    #[arg(long)]
+    quick: bool,
 }
 
-/// Diagnoses with a progress bar.
-pub fn with_bar(opened: &Opened) -> Result<Diagnosis, Failure> {
+/// Diagnoses with a progress bar; without the verdicts at other cut-offs if `quick`.
+pub fn with_bar(opened: &Opened, quick: bool) -> Result<Diagnosis, Failure> {
     let bar = open::bar("diagnose");
-    let result = opened.diagnose(&mut |share| {
-        bar.set_position((share * 1000.0) as u64);
-    });
+    let mut progress = |share: f64| bar.set_position((share * 1000.0) as u64);
+    let result = match quick {
+        true => opened.diagnose(&mut progress),
+        false => opened.diagnose_at_cutoffs(&mut progress),
+    };
     bar.finish_and_clear();
     result.map_err(Failure::refused)
 }
@@ -35,15 +47,13 @@ pub fn with_bar(opened: &Opened) -> Result<Diagnosis, Failure> {
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     let mut results = Vec::new();
     for opened in open::open(&arguments.experiment)? {
-        let result = with_bar(&opened)?;
+        let result = with_bar(&opened, arguments.quick)?;
+        let unit = opened.torque_unit();
         if !json {
             println!("{}", opened.experiment.title);
-            table::diagnosis(&result, opened.torque_unit());
+            table::diagnosis(&result, unit);
         }
-        results.push(open::InUnit {
-            unit: opened.torque_unit(),
-            result,
-        });
+        results.push((opened.experiment.title, open::InUnit { unit, result }));
     }
     if json {
         open::print_results(&results)?;

@@ -10,6 +10,7 @@ mod open;
 mod report;
 mod serve;
 mod table;
+mod trend;
 
 use std::process::ExitCode;
 
@@ -25,7 +26,8 @@ use super::Failure;
     ferntast lab diagnose E.toml             # which effect is missing\n  \
     ferntast lab add E.toml stribeck -o E2.toml\n  \
     ferntast lab history E2.toml             # the error falling\n  \
-    ferntast lab report E2.toml -o report.html\n\n  All of it in the browser: ferntast lab serve\n\n\
+    ferntast lab report E2.toml -o report.html\n  \
+    ferntast lab trend E.toml later.toml     # what changed\n\n  All of it in the browser: ferntast lab serve\n\n\
     With recordings of your own begin with:  ferntast lab new my.csv\n\n\
     An experiment file names recording, signals and model:\n  \
     recording = \"bench.mcap\"                 # or a rosbag2 directory, a table (.csv, …), a list\n  \
@@ -44,6 +46,8 @@ use super::Failure;
     position = \"/follower/measured_cp.pose.position.x\"                 # along the contour; or tip = [x, y]\n  \
     [model]                                  # with tip: contour = [[x, y], ...] in [contact]\n  \
     effects = [\"contact_coulomb\"]\n\n\
+    A message path may end in functions: .@negative turns the sign, .@deg2rad and .@rad2deg angles, .@mul(X), .@div(X), \
+    .@add(X), .@sub(X) reckon, .@abs takes the size.\n\n\
     A recording of a session can be given in place of an experiment file.")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -64,6 +68,8 @@ enum Action {
     Auto(auto::Arguments),
     /// Show how the error fell, step by step.
     History(history::Arguments),
+    /// Tell what changed between recordings or dates.
+    Trend(trend::Arguments),
     /// Write one page with charts.
     Report(report::Arguments),
     /// Work in the browser.
@@ -81,6 +87,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         Action::Add(arguments) => add::run(&arguments, json),
         Action::Auto(arguments) => auto::run(&arguments, json),
         Action::History(arguments) => history::run(&arguments, json),
+        Action::Trend(arguments) => trend::run(&arguments, json),
         Action::Report(arguments) => report::run(&arguments, json),
         Action::Serve(arguments) => serve::run(arguments, json),
         Action::Effects => effects(json),

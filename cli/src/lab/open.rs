@@ -1,6 +1,6 @@
 //! From what the user names to data and model.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use ferntast_lab::work;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -51,10 +51,22 @@ pub fn bar(label: &str) -> ProgressBar {
     bar
 }
 
-/// Prints results as JSON: of one joint an object, of a recording of both a list.
-pub fn print_results<T: Serialize>(results: &[T]) -> Result<(), Failure> {
-    match results {
-        [result] => print_json(result),
-        results => print_json(&results),
-    }
+/// Results of every joint by its name, and where there is one only, at the top, too.
+#[derive(Debug, Serialize)]
+struct Results<'a, T> {
+    joints: BTreeMap<&'a str, &'a InUnit<T>>,
+    #[serde(flatten)]
+    only: Option<&'a InUnit<T>>,
+}
+
+/// Prints results as one JSON object, by title.
+pub fn print_results<T: Serialize>(results: &[(String, InUnit<T>)]) -> Result<(), Failure> {
+    let each = results.iter().map(|(title, own)| (title.as_str(), own));
+    print_json(&Results {
+        joints: each.collect(),
+        only: match results {
+            [(_, only)] => Some(only),
+            _ => None,
+        },
+    })
 }

@@ -20,6 +20,10 @@ pub struct Arguments {
     /// The page.
     #[arg(short, long, default_value = "report.html", value_name = "FILE")]
     output: PathBuf,
+
+    /// Leave out the verdicts at other cut-offs of the filter.
+    #[arg(long)]
+    quick: bool,
 }
 
 /// Runs it.
@@ -32,7 +36,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         )));
     };
     let comparison = opened.compare().map_err(Failure::refused)?;
-    let diagnosis = with_bar(opened)?;
+    let diagnosis = with_bar(opened, arguments.quick)?;
     let report = report::assemble(opened, &comparison, &diagnosis).map_err(Failure::refused)?;
     let html = report::render(&report).map_err(Failure::failed)?;
     std::fs::write(&arguments.output, html)

@@ -3,7 +3,10 @@
 use std::collections::BTreeMap;
 
 use ferntast_identification::{
-    Comparison, Diagnosis, Verdict, comparison::residual_map::ResidualMap, fit::Parameter,
+    Comparison, Diagnosis, Usage, Verdict,
+    comparison::residual_map::ResidualMap,
+    diagnosis::NamedCandidate,
+    fit::{Parameter, Soundness},
 };
 
 pub use ferntast_lab::report::significant;
@@ -11,31 +14,78 @@ pub use ferntast_lab::report::significant;
 /// The parameters with their standard errors.
 pub fn parameters(parameters: &BTreeMap<String, Parameter>, not_excited: &[String]) {
     println!(
-        "{:<26} {:>14} {:>14}  unit",
-        "parameter", "value", "std error"
+        "{:<26} {:>14} {:>14}  {:<24} unit",
+        "parameter", "value", "std error", "95 %"
     );
     for (name, parameter) in parameters {
         let error = parameter
             .std_error
-            .map_or_else(|| "searched".to_owned(), significant);
+            .map_or_else(|| "-".to_owned(), significant);
+        let interval = parameter
+            .interval_95
+            .map_or_else(String::new, |[low, high]| {
+                format!("{} … {}", significant(low), significant(high))
+            });
         let excited = match not_excited.contains(name) {
             true => "  (not excited by these data)",
             false => "",
         };
         println!(
-            "{name:<26} {:>14} {error:>14}  {}{excited}",
+            "{name:<26} {:>14} {error:>14}  {interval:<24} {}{excited}",
             significant(parameter.value),
             parameter.unit
         );
     }
 }
 
+/// Pairs of parameters that cannot be told apart, and values that are not possible.
+pub fn soundness(soundness: &Soundness) {
+    println!(
+        "condition of the normal equations {}",
+        significant(soundness.condition)
+    );
+    for own in &soundness.implausible {
+        println!("warning: {}", own.text());
+    }
+    for pair in &soundness.inseparable {
+        println!("warning: {}", pair.text());
+    }
+}
+
+/// What of the samples is used, and what is left out.
+fn usage(used: &Usage) {
+    println!(
+        "{} of {} used, as {} rows; errors are measured on {}",
+        used.claim(),
+        used.samples,
+        used.rows,
+        used.held_out_by.text()
+    );
+    for (reason, samples) in used.left_out() {
+        println!(
+            "  left out {:>5.1} %  {}",
+            samples as f64 / used.samples.max(1) as f64 * 100.0,
+            reason.text()
+        );
+    }
+    if let Some([low, high]) = used.speed_range {
+        println!(
+            "  speeds that remain {} … {}",
+            significant(low),
+            significant(high)
+        );
+    }
+    println!(
+        "  filter: cut-off {} Hz, {}",
+        significant(used.cutoff_hz),
+        used.cutoff_reason
+    );
+}
+
 /// How far off the model is, and where.
 pub fn comparison(comparison: &Comparison, unit: &str) {
     println!(
-        "{} samples, {} used; error {} {unit} fitted, {} {unit} held out ({:.1} % of what is measured); noise between repeats {}",
-        comparison.samples,
-        comparison.used,
+        "error {} {unit} fitted, {} {unit} held out ({:.1} % of what is measured); noise between repeats {}",
         significant(comparison.rms.train),
         significant(comparison.rms.held_out),
         comparison.relative_error_held_out * 100.0,
@@ -44,8 +94,10 @@ pub fn comparison(comparison: &Comparison, unit: &str) {
             |noise| format!("{} {unit}", significant(noise))
         )
     );
+    usage(&comparison.used);
     println!();
     parameters(&comparison.parameters, &comparison.not_excited);
+    soundness(&comparison.soundness);
     for map in &comparison.residual_maps {
         println!();
         residual_map(map, unit);
@@ -112,27 +164,77 @@ fn residual_map(map: &ResidualMap, unit: &str) {
 
 /// The verdict, the ranking, and what to do next.
 pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
-    let verdict = match diagnosis.verdict {
-        Verdict::Missing => "missing: an effect of the catalogue explains what the model leaves",
-        Verdict::Complete => "complete: what is left is noise",
-        Verdict::Unexplained => {
-            "unexplained: something is missing that the catalogue does not have"
-        }
-    };
-    println!("{verdict}");
+    println!("{}: {}", diagnosis.verdict.name(), diagnosis.claim());
     println!(
         "error {} {unit} on data held out; {} variants tried",
         significant(diagnosis.rms.held_out),
         diagnosis.tried
     );
+    usage(&diagnosis.used);
+    if let Some(warning) = diagnosis.cutoff_warning() {
+        println!("warning: {warning}");
+    } else if !diagnosis.verdict_at_other_cutoffs.is_empty() {
+        let others = diagnosis.verdict_at_other_cutoffs.iter();
+        let others: Vec<String> = others.map(|own| significant(own.cutoff_hz)).collect();
+        println!(
+            "the same verdict at cut-offs of {} Hz",
+            others.join(" and ")
+        );
+    }
+    soundness(&diagnosis.soundness);
     if !diagnosis.candidates.is_empty() {
         println!();
+    }
+    candidates(&diagnosis.candidates);
+    if !diagnosis.helps_in_part.is_empty() {
+        println!();
+        println!("these lower the error in part, and are not the explanation");
+    }
+    candidates(&diagnosis.helps_in_part);
+    for suspect in &diagnosis.suspected {
+        println!(
+            "suspected, not proven: {} (p {:.2})\n    next experiment: {}: {}",
+            suspect.effect,
+            suspect.p_value,
+            suspect.next_experiment.id(),
+            suspect.next_experiment.instruction()
+        );
+    }
+    if !diagnosis.residual_depends_on.is_empty() {
+        println!();
+        println!("the residual depends on (parts overlap: signals go together)");
+    }
+    for dependence in &diagnosis.residual_depends_on {
+        println!(
+            "  {:<28} {:.1} % of its mean square",
+            dependence.signals.join(" and "),
+            dependence.strength * 100.0
+        );
+    }
+    if diagnosis.verdict != Verdict::Missing && !diagnosis.runners_up.is_empty() {
+        println!();
+        println!("tried and not named, the strongest first");
+        for own in &diagnosis.runners_up {
+            println!(
+                "  {:<28} {:>6.2} % of the mean square, p {:.1e}: {}",
+                own.effect,
+                own.share * 100.0,
+                own.p_value,
+                own.why_not.text()
+            );
+        }
+    }
+}
+
+/// Effects with what they do to the error, and what would prove them.
+fn candidates(candidates: &[NamedCandidate]) {
+    if !candidates.is_empty() {
         println!(
             "{:<24} {:>12} {:>12} {:>8} {:>9}",
             "effect", "before", "after", "", "p"
         );
     }
-    for candidate in &diagnosis.candidates {
+    for candidate in candidates {
         println!(
             "{:<24} {:>12} {:>12} {:>7.1}% {:>9.1e}",
             candidate.effect,
@@ -148,27 +250,7 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
             );
         }
         if !candidate.separate_by.is_empty() {
-            println!("    {}", candidate.separate_by);
+            println!("    next experiment: {}", candidate.separate_by);
         }
-    }
-    for suspect in &diagnosis.suspected {
-        println!(
-            "suspected, not proven: {} (p {:.2}); to be sure record {}: {}",
-            suspect.effect,
-            suspect.p_value,
-            suspect.next_experiment.id(),
-            suspect.next_experiment.instruction()
-        );
-    }
-    if !diagnosis.residual_depends_on.is_empty() {
-        println!();
-        println!("the residual depends on");
-    }
-    for dependence in &diagnosis.residual_depends_on {
-        println!(
-            "  {:<28} {:.1} % of its mean square",
-            dependence.signals.join(" and "),
-            dependence.strength * 100.0
-        );
     }
 }

@@ -6,9 +6,9 @@ import { colours } from "../common/theme.js";
 import { axis, draw, tidy } from "./charts.js";
 
 const VERDICTS = {
-  missing: ["An effect is missing.", (best) => `${best} explains what the model leaves.`],
-  complete: ["The model is complete.", () => "What is left is noise."],
-  unexplained: ["Something is missing that has no name.", () => "The residual depends on signals below, and no effect of the catalogue has that shape. Write an expression of your own."],
+  missing: "An effect is missing.",
+  complete: "Nothing more is found.",
+  unexplained: "Something is missing that has no name. Write an expression of your own.",
 };
 
 const words = (effect) => effect.replaceAll("_", " ");
@@ -18,31 +18,37 @@ function evidence(candidate) {
   return make("div", { className: "evidence" },
     make("p", { textContent: `explains ${percent(candidate.share)} of the residual's mean square; chance alone: p = ${candidate.p_value.toExponential(1)}, for everything that was tried` }),
     alike.length ? make("p", { textContent: `These data cannot tell it from ${alike.map(words).join(", ")}.` }) : null,
-    candidate.separate_by ? make("p", { textContent: candidate.separate_by }) : null);
+    candidate.separate_by ? make("p", { textContent: `next experiment: ${candidate.separate_by}` }) : null);
 }
 
 /** The verdict with its ranking and evidence. */
 export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
   const { unit } = view.joints[joint];
   const isFile = view.history.length > 0;
-  const [title, text] = VERDICTS[found.verdict];
-  const rows = found.candidates.map((candidate, rank) => make("tr", {},
+  const rowsOf = (candidates) => candidates.map((candidate, rank) => make("tr", {},
     make("td", {}, make("b", { textContent: `${rank + 1}. ${words(candidate.effect)}` }), evidence(candidate)),
     make("td", { className: "right number", textContent: `${significant(candidate.held_out_before)} → ${significant(candidate.held_out_after)} ${unit}` }),
     make("td", { className: "right number", textContent: percent(candidate.held_out_after / candidate.held_out_before - 1) .replace("-", "−") }),
     make("td", { className: "right" }, isFile ? make("button", {
       type: "button", className: rank ? "" : "primary", textContent: "Add", "data-effect": candidate.effect, "aria-label": `Add ${words(candidate.effect)}`, onclick: () => actions.add(candidate.effect),
     }) : null)));
+  const ranking = (rows) => make("div", { className: "scroll" }, make("table", {},
+    make("thead", {}, make("tr", {}, make("th", { textContent: "effect" }), make("th", { className: "right", textContent: "error on data held out" }), make("th", { className: "right", textContent: "change" }), make("th", {}))),
+    make("tbody", {}, rows)));
   fill(parent,
     make("h2", { textContent: "Diagnosis" }),
     make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict },
-      make("b", { textContent: title }), text(words(found.candidates[0]?.effect || ""))),
-    make("p", { className: "quiet small", textContent: `${found.tried} variants tried, ${found.used.toLocaleString("en")} rows, error ${significant(found.rms.held_out)} ${unit} on data held out.` }),
-    rows.length ? make("div", { className: "scroll" }, make("table", {},
-      make("thead", {}, make("tr", {}, make("th", { textContent: "effect" }), make("th", { className: "right", textContent: "error on data held out" }), make("th", { className: "right", textContent: "change" }), make("th", {}))),
-      make("tbody", {}, rows))) : null,
+      make("b", { textContent: VERDICTS[found.verdict] }), `${words(found.claim)}.`),
+    found.warning ? make("p", { className: "note warning", id: "cutoff-warning", textContent: found.warning }) : null,
+    make("p", { className: "quiet small", textContent: `${found.tried} variants tried, ${found.used.rows.toLocaleString("en")} rows, error ${significant(found.rms.held_out)} ${unit} on data held out.` }),
+    found.candidates.length ? ranking(rowsOf(found.candidates)) : null,
+    found.helps_in_part.length ? [
+      make("h2", { textContent: "These help in part, and are not the explanation", style: "margin-top:14px" }),
+      ranking(rowsOf(found.helps_in_part))] : null,
+    found.suspected.map((own) => make("p", { className: "note", textContent: `suspected, not proven: ${words(own.effect)} (p ${own.p_value.toFixed(2)}); next experiment: ${words(own.next_experiment)}` })),
     found.residual_depends_on.length ? [
       make("h2", { textContent: "The residual depends on", style: "margin-top:14px" }),
+      make("p", { className: "quiet small", textContent: "The parts overlap, since signals go together: their sum says nothing." }),
       make("table", {}, make("tbody", {}, found.residual_depends_on.map((dependence) => make("tr", {},
         make("td", { textContent: dependence.signals.map(words).join(" and ") }), make("td", { className: "right number", textContent: percent(dependence.strength) })))))] : null);
 }
@@ -54,7 +60,7 @@ export async function charts(parent, state, actions) {
     return { chart, section: make("section", { className: "panel" }, make("h2", { textContent: title }), note || null, chart) };
   };
   const stairs = box("Error on data held out, step by step", "chart-stairs", 250);
-  const time = box("Measured against model", "chart-time", 380);
+  const time = box("Measured against model", "chart-time", 380, make("p", { className: "quiet small", textContent: "Grey: not used for the fit or the verdict. Green: held out, validates." }));
   const over = make("section", { className: "panel" }, make("h2", { textContent: "Residual over each signal" }));
   const map = box("Residual over two signals", "chart-map", 360);
   fill(parent, make("div", { className: "two" }, stairs.section, parameters(state)), time.section, over, map.section);
@@ -64,15 +70,18 @@ export async function charts(parent, state, actions) {
   ]);
 }
 
-function parameters({ results: { comparison }, view }) {
+function parameters({ results: { comparison }, view, joint }) {
+  const { equation } = view.joints[joint];
   const idle = new Set(comparison.not_excited);
+  const formulaOf = (effect) => equation.find((part) => part.effect === effect)?.formula ?? "";
   return make("section", { className: "panel" }, make("h2", { textContent: "Parameters" }),
     make("div", { className: "scroll", style: "max-height:250px" }, make("table", {},
-      make("thead", {}, make("tr", {}, ["parameter", "value", "± std error", "unit"].map((name, n) => make("th", { textContent: name, className: n === 1 || n === 2 ? "right" : "" })))),
-      make("tbody", {}, Object.entries(comparison.parameters).map(([name, own]) => make("tr", { className: idle.has(name) ? "off" : "", title: idle.has(name) ? "These data do not excite it." : "" },
+      make("thead", {}, make("tr", {}, ["parameter", "value", "± std error", "95 %", "unit"].map((name, n) => make("th", { textContent: name, className: n > 0 && n < 4 ? "right" : "" })))),
+      make("tbody", {}, Object.entries(comparison.parameters).map(([name, own]) => make("tr", { className: idle.has(name) ? "off" : "", title: idle.has(name) ? "These data do not excite it." : formulaOf(own.effect) },
         make("td", { textContent: idle.has(name) ? `${name} (not excited)` : name }),
         make("td", { className: "right number", textContent: significant(own.value) }),
-        make("td", { className: "right number", textContent: own.std_error === null ? "searched" : significant(own.std_error, 2) }),
+        make("td", { className: "right number", textContent: own.std_error === null ? "–" : significant(own.std_error, 2) }),
+        make("td", { className: "right number quiet", textContent: own.interval_95 ? own.interval_95.map((end) => significant(end)).join(" … ") : "–" }),
         make("td", { className: "quiet", textContent: own.unit })))))));
 }
 
@@ -105,13 +114,19 @@ async function staircase(element, { view, joint, results }, actions) {
   });
 }
 
+/** Behind the curves: y is 1 where it is shaded, else 0. */
+const shade = (name, colour, x, y) => ({
+  type: "scattergl", mode: "lines", name, x, y, yaxis: "y3", fill: "tozeroy", fillcolor: `${colour}2a`,
+  line: { width: 0, color: colour }, hoverinfo: "skip",
+});
+
 async function overTime({ chart, section }, { results: { drawings }, view, joint }) {
   const { unit } = view.joints[joint];
   let chosen = "all";
   const show = async () => {
     const sessions = drawings.filter((_, n) => chosen === "all" || String(n) === chosen);
     let from = 0;
-    const columns = { x: [], measured: [], modelled: [], residual: [] };
+    const columns = { x: [], measured: [], modelled: [], residual: [], unused: [], validates: [] };
     const seams = [];
     for (const drawing of sessions) {
       const shift = from - (drawing.time[0] || 0);
@@ -120,6 +135,8 @@ async function overTime({ chart, section }, { results: { drawings }, view, joint
         columns.measured.push(drawing.measured[n]);
         columns.modelled.push(drawing.modelled[n]);
         columns.residual.push(drawing.measured[n] - drawing.modelled[n]);
+        columns.unused.push(drawing.used[n] ? 0 : 1);
+        columns.validates.push(drawing.used[n] && drawing.held_out ? 1 : 0);
       }
       from = (columns.x.at(-1) || 0) + 1;
       // A hole between sessions, so that no line joins them.
@@ -131,12 +148,15 @@ async function overTime({ chart, section }, { results: { drawings }, view, joint
     const line = (name, y, colour, more = {}) => ({ type: "scattergl", mode: "lines", name, x: columns.x, y, line: { color: colour, width: 1.3 }, hovertemplate: `%{y:.4g} ${unit}<extra>${name}</extra>`, ...more });
     await draw(chart, () => ({
       data: [
+        shade("not used", colours.quiet, columns.x, columns.unused),
+        columns.validates.includes(1) ? shade("validates", colours.good, columns.x, columns.validates) : null,
         line("measured", columns.measured, colours.measured), line("model", columns.modelled, colours.model),
         line("residual", columns.residual, colours.residual, { yaxis: "y2" }),
-      ],
+      ].filter(Boolean),
       layout: {
         xaxis: axis("time", "s", { anchor: "y2", domain: [0, 1] }),
         yaxis: axis("torque", unit, { domain: [0.36, 1] }), yaxis2: axis("residual", unit, { domain: [0, 0.28] }),
+        yaxis3: { domain: [0, 1], range: [0, 1], visible: false, fixedrange: true },
         shapes: seams.slice(0, -1).map((x) => ({ type: "line", yref: "paper", y0: 0, y1: 1, x0: x - 0.5, x1: x - 0.5, line: { color: colours.line, width: 1 } })),
         margin: { l: 56, r: 12, t: 30, b: 40 },
       },

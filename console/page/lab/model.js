@@ -31,7 +31,15 @@ export function figures({ results, view, joint }) {
     figure(`${significant(c.rms.held_out)} ${unit}`, `error on data held out (${percent(c.relative_error_held_out)} of what is measured)`),
     figure(`${significant(c.rms.train)} ${unit}`, `error on data fitted (${percent(c.relative_error)})`),
     figure(c.noise.repeats === null ? "–" : `${significant(c.noise.repeats)} ${unit}`, "noise between repeats: no model gets below it"),
-    figure(c.samples.toLocaleString("en"), `samples, ${c.used.toLocaleString("en")} used, held out by ${c.held_out_by}`));
+    figure(percent(c.used.share), `of ${c.used.samples.toLocaleString("en")} samples used; errors by ${c.held_out_by} left out`));
+  const [slowest, fastest] = c.used.speed_range ?? [null, null];
+  fill(parts.used,
+    make("summary", { textContent: "What the verdict rests on" }),
+    results.left_out.map(([reason, share]) => make("p", { className: "note", textContent: `${percent(share)} left out: ${reason}` })),
+    make("p", { className: "note", textContent: `speeds that remain: ${significant(slowest)} … ${significant(fastest)}` }),
+    make("p", { className: "note", textContent: `cut-off of the filter: ${significant(c.used.cutoff_hz)} Hz, ${c.used.cutoff_reason}` }),
+    make("p", { className: "note", textContent: `condition of the normal equations: ${significant(c.condition)}` }));
+  fill(parts.warnings, results.warnings.map((text) => make("p", { className: "note warning", textContent: text })));
 }
 
 function ownEffect(actions, isContact) {
@@ -68,7 +76,7 @@ export function show(parent, { view, joint, path }, actions) {
   const select = make("select", { id: "add-effect", "aria-label": "Effect to add" }, make("option", { value: "", textContent: "add an effect of the catalogue …" }));
   select.onchange = () => { if (select.value) actions.add(select.value); };
   catalogue(select, own.effects, own.joint === "contact");
-  parts = { figures: make("div", { className: "figures" }) };
+  parts = { figures: make("div", { className: "figures" }), used: make("details", { id: "used" }), warnings: make("div", { id: "warnings" }) };
   fill(parent,
     make("div", { className: "headline" },
       make("div", {},
@@ -86,7 +94,9 @@ export function show(parent, { view, joint, path }, actions) {
       own.effects.map((effect) => make("span", {
         className: `tag${nameOf(effect) === added ? " new" : ""}`, title: typeof effect === "string" ? "" : effect.expression, textContent: nameOf(effect).replaceAll("_", " "),
       }))),
-    parts.figures,
+    parts.figures, parts.warnings, parts.used,
+    make("details", { id: "equation" }, make("summary", { textContent: "The model's equation" }),
+      own.equation.map((part) => make("p", { className: "note" }, make("b", { textContent: `${part.effect.replaceAll("_", " ")}: ` }), part.formula))),
     own.notes.map((note) => make("p", { className: "note", textContent: note })),
     isFile ? make("div", { style: "margin-top:14px;display:grid;gap:10px;max-width:760px" }, select, ownEffect(actions, own.joint === "contact")) : null);
 }

@@ -9,7 +9,7 @@ use axum::{
 use ferntast_identification::{Inertia, JointType, RecordedSession, Term};
 use ferntast_lab::{
     experiment::{self, HistoryStep, Signals},
-    work::Opened,
+    work::{Formula, Opened},
 };
 use serde::Serialize;
 
@@ -39,6 +39,8 @@ pub struct JointView {
     inertia: Inertia,
     gear_ratio: Option<f64>,
     effects: Vec<Term>,
+    /// The model's equation, part by part.
+    equation: Vec<Formula>,
     sessions: Vec<SessionView>,
     notes: Vec<String>,
 }
@@ -117,6 +119,7 @@ fn joint(lab: &Lab, opened: &Opened) -> JointView {
         inertia: experiment.model.inertia,
         gear_ratio: experiment.model.gear_ratio,
         effects: experiment.model.effects.clone(),
+        equation: opened.equation(),
         sessions: opened
             .dataset
             .sessions

@@ -9,7 +9,10 @@ use axum::{
     http::header,
     response::{IntoResponse, Response},
 };
-use ferntast_identification::{Comparison, Diagnosis};
+use ferntast_identification::{
+    Comparison, Diagnosis,
+    fit::{Implausible, Pair},
+};
 use ferntast_lab::{
     report,
     work::{self, Beginning, Opened},
@@ -115,6 +118,10 @@ pub async fn start(State(lab): State<Arc<Lab>>, Json(start): Json<Start>) -> Res
 #[derive(Serialize)]
 struct Compared {
     comparison: Comparison,
+    /// What of the samples is left out: reason in words, share.
+    left_out: Vec<(&'static str, f64)>,
+    /// What has to be known of the parameters, as sentences.
+    warnings: Vec<String>,
     drawings: Vec<Drawing>,
 }
 
@@ -127,7 +134,17 @@ pub async fn compare(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> R
             let sessions = opened.dataset.sessions.len() + opened.dataset.held_out.len();
             let comparison = opened.compare_drawing(MAX_POINTS / sessions.max(1))?;
             let drawings: Vec<Drawing> = comparison.series.iter().map(Drawing::of).collect();
+            let used = &comparison.used;
+            let share = |samples: usize| samples as f64 / used.samples.max(1) as f64;
+            let left_out = used.left_out().into_iter();
+            let soundness = &comparison.soundness;
+            let implausible = soundness.implausible.iter().map(Implausible::text);
+            let pairs = soundness.inseparable.iter().map(Pair::text);
             Ok(Compared {
+                left_out: left_out
+                    .map(|(reason, samples)| (reason.text(), share(samples)))
+                    .collect(),
+                warnings: implausible.chain(pairs).collect(),
                 comparison,
                 drawings,
             })
@@ -135,11 +152,28 @@ pub async fn compare(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> R
     })
 }
 
-/// Tells which effect is missing.
+/// Tells which effect is missing, with the claim and warnings in words.
 pub async fn diagnose(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> Response {
     in_lines(&lab, move |lab, progress| {
-        with_joint(lab, &joint, |opened| Ok(opened.diagnose(progress)?))
+        with_joint(lab, &joint, |opened| {
+            let diagnosis = opened.diagnose_at_cutoffs(progress)?;
+            Ok(Diagnosed {
+                claim: diagnosis.claim(),
+                warning: diagnosis.cutoff_warning(),
+                diagnosis,
+            })
+        })
     })
+}
+
+/// A diagnosis, and what it claims.
+#[derive(Serialize)]
+struct Diagnosed {
+    #[serde(flatten)]
+    diagnosis: Diagnosis,
+    claim: String,
+    /// Where the verdict depends on the filter.
+    warning: Option<String>,
 }
 
 /// What is to be added to which experiment.
@@ -180,7 +214,7 @@ pub async fn report(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> Re
     in_lines(&lab, move |lab, progress| {
         with_joint(lab, &joint, |opened| {
             let comparison = opened.compare()?;
-            let diagnosis: Diagnosis = opened.diagnose(progress)?;
+            let diagnosis: Diagnosis = opened.diagnose_at_cutoffs(progress)?;
             let report = report::assemble(opened, &comparison, &diagnosis)?;
             Ok(json!({ "html": report::render(&report)? }))
         })

@@ -89,6 +89,16 @@ pub enum HeldOutBy {
 }
 
 impl HeldOutBy {
+    /// In words.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Recordings => "recordings that are never fitted",
+            Self::Sessions => "whole sessions left out in turn",
+            Self::Blocks => "blocks of time left out in turn",
+        }
+    }
+
     /// What errors of the model are measured on.
     #[must_use]
     pub fn of(prepared: &PreparedModel, design: &Design) -> Self {

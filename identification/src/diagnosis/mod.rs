@@ -32,9 +32,7 @@ use crate::preparation::Filtered;
 
 use candidates::{Candidate, Trial};
 use examination::Examination;
-pub use results::{
-    Diagnosis, NamedCandidate, RunnerUp, Suspect, Verdict, VerdictAtCutoff, WhyNot,
-};
+pub use results::{Diagnosis, NamedCandidate, RunnerUp, Suspect, Verdict, VerdictAtCutoff, WhyNot};
 use verdict::why_not;
 
 /// Effects that are told as tried and not named, at most.

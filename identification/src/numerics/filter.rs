@@ -133,7 +133,7 @@ impl Kernel {
     /// samples `period` \[s\] apart; half the sampling rate where all of it passes.
     #[must_use]
     pub fn cut_off(&self, period: f64) -> f64 {
-        const STEPS: usize = 1000;
+        const STEPS: usize = 20_000;
         let radius = (self.taps.len() / 2) as f64;
         let gain = |step: usize| -> f64 {
             let angle = std::f64::consts::PI * step as f64 / STEPS as f64;
@@ -141,9 +141,17 @@ impl Kernel {
             each.map(|(i, tap)| tap * (angle * (i as f64 - radius)).cos())
                 .sum()
         };
-        let passes = |step: &usize| gain(*step).abs() >= std::f64::consts::FRAC_1_SQRT_2;
-        let last = (0..=STEPS).take_while(passes).count();
-        last.min(STEPS) as f64 / STEPS as f64 * 0.5 / period
+        let passes = |step: usize| gain(step).abs() >= std::f64::consts::FRAC_1_SQRT_2;
+        // Coarse steps first, then those between.
+        let coarse = (0..=STEPS).step_by(100).find(|step| !passes(*step));
+        let first = coarse.map_or(STEPS, |end| {
+            let between = end.saturating_sub(100)..end;
+            between
+                .into_iter()
+                .find(|step| !passes(*step))
+                .unwrap_or(end)
+        });
+        first as f64 / STEPS as f64 * 0.5 / period
     }
 
     /// Value at sample `at`; beyond the ends the signal keeps its end value.

@@ -4,6 +4,7 @@ mod acceptance;
 mod compensation;
 mod contact;
 mod formulas;
+mod honesty;
 pub mod recordings;
 
 use std::collections::BTreeMap;

@@ -52,6 +52,8 @@ pub struct Loaded {
     pub notes: Vec<String>,
     /// What of each recording is used.
     pub tallies: Vec<Tally>,
+    /// When the first session began \[s since 1970\], where recordings carry a date.
+    pub date: Option<f64>,
 }
 
 /// Reads what an experiment names.
@@ -110,6 +112,7 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
         },
         notes,
         tallies,
+        date: clock.first_date.map(|date| date as f64 * 1e-9 + origin),
     })
 }
 

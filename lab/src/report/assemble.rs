@@ -187,7 +187,11 @@ fn about(opened: &Opened, comparison: &Comparison) -> Result<Vec<About>, Experim
     let usage = &comparison.used;
     about.push(row(
         "filter",
-        format!("{} Hz, {}", significant(usage.cutoff_hz), usage.cutoff_reason),
+        format!(
+            "{} Hz, {}",
+            significant(usage.cutoff_hz),
+            usage.cutoff_reason
+        ),
     ));
     let condition = significant(comparison.soundness.condition);
     about.push(row("condition of the normal equations", condition));

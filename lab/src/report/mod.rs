@@ -6,9 +6,9 @@
 
 mod assemble;
 mod data;
+mod shades;
 #[cfg(test)]
 mod tests;
-mod shades;
 mod thin;
 
 pub use assemble::{assemble, significant};
@@ -21,6 +21,7 @@ const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 const CHARTS: &str = include_str!("charts.js");
 const KIT: &str = include_str!("kit.js");
+const TREND: &str = include_str!("trend.js");
 const SECTIONS: &str = include_str!("sections.js");
 
 /// Why there is no page.
@@ -36,6 +37,16 @@ pub struct RenderError(#[from] serde_json::Error);
 pub fn render(report: &Report) -> Result<String, RenderError> {
     let data = serde_json::to_string(&thin::thinned(report))?;
     Ok(page(&report.title, SECTIONS, "showReport", &data))
+}
+
+/// The page of a trend as HTML.
+///
+/// # Errors
+///
+/// None in practice: everything in a trend can be written as JSON.
+pub fn render_trend(trends: &impl serde::Serialize) -> Result<String, RenderError> {
+    let data = serde_json::to_string(trends)?;
+    Ok(page("Trend", TREND, "showTrend", &data))
 }
 
 /// A page of the same kit: `data` is JSON that the function named `show` of

@@ -38,15 +38,17 @@ pub(super) fn of(experiment: &Experiment) -> Vec<Formula> {
         });
     }
     let catalogue = catalogue();
-    formulas.extend(experiment.model.effects.iter().map(|term| Formula {
-        effect: term.name().to_owned(),
-        formula: match term {
-            Term::Catalogue(id) => catalogue
-                .iter()
-                .find(|own| own.id == *id)
-                .map_or_else(String::new, |own| own.equation.clone()),
-            Term::Custom(own) => own.expression.clone(),
-        },
+    formulas.extend(experiment.model.effects.iter().map(|term| {
+        Formula {
+            effect: term.name().to_owned(),
+            formula: match term {
+                Term::Catalogue(id) => catalogue
+                    .iter()
+                    .find(|own| own.id == *id)
+                    .map_or_else(String::new, |own| own.equation.clone()),
+                Term::Custom(own) => own.expression.clone(),
+            },
+        }
     }));
     formulas
 }

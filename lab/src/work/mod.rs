@@ -9,6 +9,7 @@ mod new;
 mod paths;
 mod sources;
 mod start;
+mod trend;
 mod twin;
 mod units;
 
@@ -30,6 +31,7 @@ pub use error::{NewError, WorkError};
 pub use new::{Made, NewSignal, Request, Said, make};
 pub use paths::{Offered, offered};
 pub use start::{Beginning, start};
+pub use trend::{Point, Trend, TrendError, trends};
 pub use twin::{FromTwin, from_twin};
 
 /// An experiment with its recordings read.
@@ -43,6 +45,8 @@ pub struct Opened {
     pub notes: Vec<String>,
     /// What of each recording is used.
     pub tallies: Vec<Tally>,
+    /// When the first session began \[s since 1970\], where recordings carry a date.
+    pub date: Option<f64>,
 }
 
 impl Opened {
@@ -70,6 +74,7 @@ impl Opened {
             dataset: loaded.dataset,
             notes: loaded.notes,
             tallies: loaded.tallies,
+            date: loaded.date,
         })
     }
 

@@ -16,9 +16,9 @@ fn a_recording_of_a_session_needs_no_experiment_file() {
     let told = run(&session, &["lab", "compare", "run", "--json"])
         .success()
         .json();
-    let joints = told.as_array().expect("one result a joint");
+    let joints = told["joints"].as_object().expect("one result a joint");
     assert_eq!(joints.len(), 2);
-    for joint in joints {
+    for joint in joints.values() {
         assert!(number(joint, "rms.held_out") > 0.0);
         assert!(joint["parameters"]["b0"]["unit"] == "Nm", "{joint:#}");
     }
@@ -53,7 +53,21 @@ fn a_hidden_effect_is_named_and_the_error_falls() {
         assert_eq!(history[1]["added"], effect, "{history:#}");
         assert!((number(&history[1], "held_out") - after).abs() < 1e-9);
         let rest = run(&session, &["lab", "diagnose", &to, "--json"]);
-        assert_eq!(rest.success().json()["verdict"], "complete", "{effect}");
+        let rest = rest.success().json();
+        assert_eq!(rest["verdict"], "complete", "{effect}");
+        // Of an experiment file the one result stands at the top, too.
+        assert_eq!(rest["joints"]["second.toml"]["verdict"], "complete", "{rest:#}");
+        let used = number(&rest, "used.share");
+        assert!((0.05..0.95).contains(&used), "{used}");
+        let all = rest["used"]["by_reason"].as_object().expect("reasons");
+        let all: f64 = all.values().filter_map(serde_json::Value::as_f64).sum();
+        assert_eq!(all, number(&rest, "used.samples"), "{rest:#}");
+        let others = rest["verdict_at_other_cutoffs"].as_array().map(Vec::len);
+        assert_eq!(others, Some(2), "{rest:#}");
+        // What is there is not written over unasked.
+        refused(&session, &add, &["second.toml", "--force"]);
+        let force = [&add[..], &["--force"]].concat();
+        run(&session, &force).success();
     }
     run(&session, &["challenge", "new", "none", "--hide", "none"]).success();
     let told = run(
@@ -96,8 +110,14 @@ fn a_challenge_is_made_solved_and_revealed() {
     );
     refused(
         &session,
-        &["challenge", "reveal", "nowhere", "x"],
+        &["challenge", "reveal", "nowhere", "stribeck"],
         &["nowhere"],
+    );
+    // What is no answer does not open the seal.
+    refused(
+        &session,
+        &["challenge", "reveal", "riddle", "nonsense"],
+        &["nonsense", "closed"],
     );
     refused(
         &session,

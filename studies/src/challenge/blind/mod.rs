@@ -2,6 +2,7 @@
 //! or none, put to the diagnosis.
 
 mod ask;
+mod coverage;
 mod tally;
 mod two;
 
@@ -15,6 +16,7 @@ use std::{
 
 use super::TestBench;
 
+pub use coverage::Coverage;
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 
 /// What is tried.
@@ -90,7 +92,10 @@ pub fn run<H: TestBench>(
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let answer = ask::ask(case);
+                    let answer = ask::ask(case).and_then(|given| {
+                        let held = coverage::held(case)?;
+                        Ok((given, held))
+                    });
                     let mut answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
                     answers.push((*case, answer));
                     progress(answers.len(), cases.len() + plan.two);
@@ -103,7 +108,9 @@ pub fn run<H: TestBench>(
     answers.sort_by_key(|(case, _)| (case.seed, case.hidden));
     let mut test = BlindTest::default();
     for (case, answer) in answers {
-        test.note(&case, answer?);
+        let (given, held) = answer?;
+        test.coverage.add(&held);
+        test.note(&case, given);
     }
     for index in 0..plan.two {
         let seed = plan.seed.wrapping_add(2_000_000 + index as u64);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use ferntast_identification::Verdict;
 use serde::Serialize;
 
-use super::{super::TestBench, Case, ask::Given};
+use super::{super::TestBench, Case, ask::Given, coverage::Coverage};
 
 /// Within this factor of what the true model reaches on the same recording, an
 /// error has fallen as far as it can.
@@ -109,6 +109,8 @@ pub struct BlindTest {
     pub both_of_two: Count,
     /// The same, of which at least one was named.
     pub one_of_two: Count,
+    /// How often the 95 % intervals of the true model's parameters hold the true value.
+    pub coverage: Coverage,
     /// Every recording that was not answered rightly, also not after the
     /// experiment that was proposed.
     pub misses: Vec<Miss>,

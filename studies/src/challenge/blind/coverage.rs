@@ -1,0 +1,187 @@
+//! How often the intervals that the lab states hold the true value.
+//!
+//! The true model is fitted to recordings with one hidden effect, or none; of each
+//! parameter whose true value is known in the lab's terms it is noted whether its 95 %
+//! interval holds that. Sessions differ on a bench: the true value is that of the
+//! joint, around which sessions scatter. Of a single session, where nobody can know
+//! that scatter, nothing is scattered.
+
+use std::collections::BTreeMap;
+
+use ferntast_benches::bench::{BenchConfig, Hideable};
+use ferntast_identification::{ModelSpec, Term, compare};
+use serde::Serialize;
+
+use super::{super::TestBench, Case, tally::Count};
+
+/// How often intervals hold the true value.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Coverage {
+    /// Parameters that are fitted, in recordings of several sessions.
+    pub fitted: Count,
+    /// The same of parameters that are searched: speeds, places, widths, periods.
+    pub searched: Count,
+    /// Parameters of both kinds in a recording of one session.
+    pub one_session: Count,
+    /// By parameter, of several sessions.
+    pub by_parameter: BTreeMap<String, Count>,
+}
+
+impl Coverage {
+    pub(super) fn add(&mut self, held: &[Held]) {
+        for own in held {
+            match (own.of_one_session, own.is_searched) {
+                (true, _) => self.one_session.note(own.holds),
+                (false, true) => self.searched.note(own.holds),
+                (false, false) => self.fitted.note(own.holds),
+            }
+            if !own.of_one_session {
+                let count = self.by_parameter.entry(own.parameter.clone());
+                count.or_default().note(own.holds);
+            }
+        }
+    }
+}
+
+/// Whether the interval of one parameter holds its true value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Held {
+    parameter: String,
+    is_searched: bool,
+    of_one_session: bool,
+    holds: bool,
+}
+
+/// Intervals of the true model's parameters, of the case's recording and of one session.
+pub(super) fn held<H: TestBench>(case: &Case<H>) -> Result<Vec<Held>, String> {
+    let is_known = case.hidden.is_none_or(Hideable::in_catalogue);
+    if !is_known {
+        return Ok(Vec::new());
+    }
+    let mut all = of_sessions(case, H::SESSIONS, 1.0)?;
+    // One session may be too short for what is hidden between sessions.
+    all.extend(of_sessions(case, 1, 0.0).unwrap_or_default());
+    Ok(all)
+}
+
+fn of_sessions<H: TestBench>(
+    case: &Case<H>,
+    sessions: usize,
+    scatter: f64,
+) -> Result<Vec<Held>, String> {
+    let config = BenchConfig {
+        seed: case.seed,
+        hidden: case.hidden.into_iter().collect(),
+        strength: case.strength,
+        sessions,
+        scatter,
+        ..BenchConfig::default()
+    };
+    let bench = H::bench(&config).map_err(|error| error.to_string())?;
+    let recording = H::record(&bench).map_err(|error| error.to_string())?;
+    let mut model: ModelSpec = H::model(&recording);
+    let hidden = case.hidden.and_then(|own| own.accepted().first().copied());
+    model
+        .effects
+        .extend(hidden.map(|id| Term::Catalogue(id.to_owned())));
+    let found = compare(&H::dataset(&recording), &model).map_err(|error| error.to_string())?;
+    let own = H::truth(&recording)
+        .iter()
+        .filter(|own| own.effect.is_some());
+    let own: Vec<(&str, f64)> = own.map(|own| (own.name, own.value)).collect();
+    let there = H::truth(&recording)
+        .iter()
+        .filter(|own| own.effect.is_none());
+    let mut truths = values(hidden, &own);
+    if !changes_all(hidden) {
+        truths.extend(there.filter_map(|own| Some((always(own.name)?, own.value))));
+    }
+    let held = truths.into_iter().filter_map(|(name, truth)| {
+        let [low, high] = found.parameters.get(name)?.interval_95?;
+        Some(Held {
+            parameter: match hidden.filter(|id| found.parameters[name].effect == *id) {
+                Some(id) => format!("{id}.{name}"),
+                None => name.to_owned(),
+            },
+            is_searched: SEARCHED.contains(&name),
+            of_one_session: sessions == 1,
+            holds: (low..=high).contains(&truth),
+        })
+    });
+    Ok(held.collect())
+}
+
+/// Names of parameters that are searched, of those in [`values`].
+const SEARCHED: &[&str] = &["vs", "vsT", "k", "ql", "wl", "delta", "gap", "L"];
+
+/// Whether beside a hidden effect the parameters that are there anyway have other
+/// values in the lab's terms: it counts temperature from its own reference, or believes
+/// a channel that is wrong.
+fn changes_all(hidden: Option<&str>) -> bool {
+    let others = [
+        "temperature_coulomb",
+        "temperature_viscous",
+        "motor_constant",
+        "torque_sensor_gain",
+        "contact_wear",
+        "contact_spot",
+        "contact_compliance",
+    ];
+    hidden.is_some_and(|id| others.contains(&id))
+}
+
+/// The lab's name of a parameter that is there anyway.
+fn always(name: &str) -> Option<&'static str> {
+    let known = ["b0", "b0T", "b1", "b2", "b3"];
+    known.into_iter().find(|own| *own == name)
+}
+
+/// The hidden effect's parameters by the lab's names.
+fn values(hidden: Option<&str>, truth: &[(&str, f64)]) -> Vec<(&'static str, f64)> {
+    let of = |name: &str| {
+        truth
+            .iter()
+            .find(|own| own.0 == name)
+            .map_or(f64::NAN, |own| own.1)
+    };
+    match hidden.unwrap_or_default() {
+        "coulomb" => vec![("b0", of("b0"))],
+        "load_coulomb" | "contact_coulomb" => vec![("b0T", of("b0T"))],
+        "viscous" => vec![("b1", of("b1"))],
+        "quadratic_viscous" => vec![("b2", of("b2"))],
+        "cubic_viscous" => vec![("b3", of("b3"))],
+        "nonlinear_viscous" => vec![("b2", of("b2")), ("b3", of("b3"))],
+        "stribeck" => vec![("bs", of("bs")), ("vs", of("vs"))],
+        "load_stribeck" => vec![("bsT", of("bsT")), ("vsT", of("vs"))],
+        "contact_stribeck" => vec![("bsT", of("bs")), ("vs", of("vs"))],
+        "contact_viscous" => vec![("c", of("c"))],
+        "asymmetric_coulomb" => vec![("ba", of("ba"))],
+        "asymmetric_viscous" => vec![("bav", of("bav"))],
+        "local_friction" => vec![
+            ("bl", of("level")),
+            ("ql", of("centre")),
+            ("wl", of("width")),
+        ],
+        "ripple" => {
+            let (sine, cosine) = of("phase").sin_cos();
+            vec![
+                ("a_s", of("amplitude") * cosine),
+                ("a_c", of("amplitude") * sine),
+                ("k", of("rate")),
+            ]
+        }
+        "gravity" => {
+            let (sine, cosine) = of("phase").sin_cos();
+            vec![("g_s", of("g") * cosine), ("g_c", of("g") * sine)]
+        }
+        "cable_spring" => vec![("kc", of("kc")), ("k0", -of("kc") * of("q0"))],
+        "temperature_coulomb" => vec![("kT", of("kt"))],
+        "temperature_viscous" => vec![("kv", of("kv"))],
+        "wear_drift" => vec![("kw", of("kw"))],
+        "torque_sensor_offset" => vec![("os", -of("offset"))],
+        "backlash" => vec![("gap", of("gap"))],
+        "presliding_hysteresis" => vec![("delta", of("bristle"))],
+        "current_saturation" => vec![("L", of("limit"))],
+        _ => Vec::new(),
+    }
+}
