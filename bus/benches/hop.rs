@@ -51,6 +51,7 @@ fn main() {
         },
         domain_id: 0,
         node_name: "router".into(),
+        namespace: "/".into(),
     });
     match router {
         Ok(_router) => hop("ROS 2 over Zenoh, routed", || connected(process)),
@@ -110,6 +111,7 @@ fn connected(process: u32) -> Bus {
         },
         domain_id: 0,
         node_name: "hop".into(),
+        namespace: "/".into(),
     };
     Bus::Zenoh(ZenohBus::open(&config).expect("Zenoh"))
 }

@@ -14,9 +14,11 @@ pub mod foxglove;
 pub mod frames;
 pub mod mcap;
 pub mod memory;
+mod namespace;
 pub mod parameter;
 mod sequence_gaps;
 pub mod shared_memory;
+pub mod trigger;
 mod types;
 pub mod zenoh_ros;
 
@@ -28,7 +30,8 @@ pub use error::{
 };
 pub use foxglove::{FoxgloveBus, FoxgloveConfig};
 pub use memory::MemoryBus;
-pub use parameter::{Choice, ParameterNode};
+pub use parameter::{BusParameters, Choice, ParameterNode};
 pub use shared_memory::{SharedMemoryBus, SharedMemoryConfig};
+pub use trigger::{Call, TriggerService};
 pub use types::{Depth, Received, SubscriberCounts};
 pub use zenoh_ros::{ZenohBus, ZenohConfig, ZenohMode};

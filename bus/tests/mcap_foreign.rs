@@ -5,7 +5,7 @@
 
 use std::{collections::BTreeMap, fs, io::Cursor, path::Path};
 
-use ferntast_bus::mcap::{BagReader, OpenBagError, SelectTopicError, info, repair};
+use ferntast_bus::mcap::{BagReader, OpenBagError, RepairError, SelectTopicError, info, repair};
 use ferntast_msgs::{Time, sample::JointSample};
 use mcap::{Compression, WriteOptions, records::MessageHeader};
 
@@ -199,6 +199,26 @@ fn several_files_are_one_recording() {
     let old = "rosbag2_bagfile_information:\n  version: 4\n  storage_identifier: mcap\n  relative_file_paths:\n    - run/run_1.mcap\n  duration:\n    nanoseconds: 40\n";
     fs::write(path.join("metadata.yaml"), old).unwrap();
     assert_eq!(times(&path), [20, 30, 60]);
+}
+
+#[test]
+fn a_folder_of_unrelated_files_is_not_made_one_recording() {
+    let directory = tempfile::tempdir().unwrap();
+    for name in ["monday.mcap", "tuesday_0.mcap"] {
+        let path = directory.path().join(name);
+        fs::write(path, file(WriteOptions::new(), &[10])).unwrap();
+    }
+    for output in [None, Some(directory.path().join("out"))] {
+        let error = repair(directory.path(), output.as_deref()).unwrap_err();
+        assert!(
+            matches!(error, RepairError::Unrelated { files: 2, .. }),
+            "{error}"
+        );
+    }
+    assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2);
+    // Each by its own name.
+    let one = directory.path().join("monday.mcap");
+    assert_eq!(repair(&one, None).unwrap().messages, 1);
 }
 
 #[test]

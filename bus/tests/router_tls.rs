@@ -139,6 +139,7 @@ fn peers_are_let_in_by_certificate_and_do_what_its_name_may() {
         mode,
         domain_id,
         node_name: "router".to_owned(),
+        namespace: "/".to_owned(),
     })
     .unwrap();
     let name = TopicName::new(&format!("/w{}/state_command", process::id())).unwrap();

@@ -1,14 +1,14 @@
 //! `ferntast lockstep`.
 
-use std::{path::PathBuf, process::ExitCode, time::Instant};
+use std::{path::PathBuf, process::ExitCode, sync::atomic::Ordering, time::Instant};
 
 use ferntast_control::delay::Law;
 use ferntast_msgs::sample::FrictionCommand;
 use ferntast_nodes::{
-    config::UnknownLaw,
+    config::{HandSource, UnknownLaw},
     graph::Graph,
     lockstep::LockstepSession,
-    process::SessionContext,
+    process::{SessionContext, stop_on_signals},
     servo::FrictionSummary,
     session::{ContactSummary, LeaderSummary, LinkSummary, StateSummary},
     twin::TwinSummary,
@@ -27,7 +27,7 @@ use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
 )]
 pub struct Arguments {
     /// Scenario: a shipped one or a file.
-    #[arg(value_name = "NAME|FILE")]
+    #[arg(value_name = "NAME|FILE", conflicts_with = "scenario")]
     file: Option<String>,
 
     #[command(flatten)]
@@ -87,6 +87,12 @@ pub fn run(
         arguments.scenario.scenario = file;
     }
     let loaded = arguments.scenario.load()?;
+    if loaded.scenario.hand.source == HandSource::Crtk {
+        return Err(Failure::refused(
+            "lockstep has no hand on ROS 2 in its virtual time: give --hand scripted or --hand FILE.csv, or run \
+             ferntast session --hand crtk",
+        ));
+    }
     let duration = arguments.duration.unwrap_or(loaded.scenario.duration);
     if !(duration.is_finite() && duration > 0.0) {
         return Err(Failure::refused(format!(
@@ -127,6 +133,7 @@ pub fn run(
             .command_friction_at(seconds, command)
             .map_err(Failure::refused)?;
     }
+    let stop = stop_on_signals().map_err(Failure::failed)?;
     let bar = ProgressBar::new(duration.ceil() as u64);
     if let Ok(style) =
         ProgressStyle::with_template("{bar:30} {pos}/{len} s of virtual time, {eta} left")
@@ -135,7 +142,7 @@ pub fn run(
     }
     let begun = Instant::now();
     let mut done = 0.0;
-    while done < duration {
+    while done < duration && !stop.load(Ordering::Relaxed) {
         let slice = (duration - done).min(1.0);
         session.run(slice);
         done += slice;
@@ -147,9 +154,9 @@ pub fn run(
     let mut result = Result {
         scenario: context.loaded.scenario.name.clone(),
         seed: context.loaded.scenario.seed,
-        duration_s: duration,
+        duration_s: done,
         wall_s: wall,
-        real_time_factor: duration / wall,
+        real_time_factor: done / wall,
         link: monitor.link(),
         contact: monitor.contact(),
         leader: monitor.leader(),
@@ -165,8 +172,8 @@ pub fn run(
         print_json(&result)?;
     } else {
         println!(
-            "{} s of {} in {:.3} s: {:.0} times real time",
-            duration, result.scenario, wall, result.real_time_factor
+            "{done} s of {} in {:.3} s: {:.0} times real time",
+            result.scenario, wall, result.real_time_factor
         );
         println!(
             "contact {:.1} s, peak normal force {:.1} N; hand at most {:.1} N; round trip {:.3} ms",
@@ -180,9 +187,18 @@ pub fn run(
             result.friction.iter().for_each(|own| println!("{own}"));
         }
     }
-    recorded
-        .map(|()| ExitCode::SUCCESS)
-        .map_err(Failure::failed)
+    recorded.map_err(Failure::failed)?;
+    if done < duration {
+        let whole = if result.recording.is_some() {
+            ", the recording is whole up to there"
+        } else {
+            ""
+        };
+        return Err(Failure::failed(format!(
+            "stopped after {done} s of {duration} s{whole}"
+        )));
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Time \[s\] and law of `SECONDS=LAW`.

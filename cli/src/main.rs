@@ -2,6 +2,8 @@
 
 mod bag;
 mod challenge;
+mod completions;
+mod config;
 mod doctor;
 mod experiment;
 mod faults;
@@ -10,6 +12,7 @@ mod interfaces;
 mod lab;
 mod link;
 mod lockstep;
+mod man;
 mod node;
 mod output;
 mod page_options;
@@ -90,6 +93,12 @@ enum Command {
     Doctor(doctor::Arguments),
     /// List the topics' interfaces: type, RIHS01 hash, schema.
     Interfaces(interfaces::Arguments),
+    /// The arms, links and scenarios that come along: list, show, export to change them.
+    Config(config::Arguments),
+    /// Print completions for a shell.
+    Completions(completions::Arguments),
+    /// Write the manual pages.
+    Man(man::Arguments),
 }
 
 impl Command {
@@ -104,16 +113,15 @@ impl Command {
     }
 }
 
-/// Reads the command line; `node` knows the nodes of `graph`.
-fn parse(graph: &Graph) -> Result<Arguments, clap::Error> {
+/// The command line; `node` knows the nodes of `graph`.
+fn command_line(graph: &Graph) -> clap::Command {
     let names: Vec<PossibleValue> = graph
         .rows()
         .map(|row| PossibleValue::new(row.name).help(row.about))
         .collect();
-    let command = Arguments::command().mut_subcommand("node", |node| {
+    Arguments::command().mut_subcommand("node", |node| {
         node.mut_arg("node", |argument| argument.value_parser(names))
-    });
-    Arguments::from_arg_matches(&command.try_get_matches()?)
+    })
 }
 
 /// Runs the command line; gives the process's exit code: 0 when all is well,
@@ -128,7 +136,8 @@ fn main() -> ExitCode {
         let _ = Priority::Command.take();
     }
     let graph = session_graph(simulated::row());
-    let arguments = match parse(&graph) {
+    let matches = command_line(&graph).try_get_matches();
+    let arguments = match matches.and_then(|found| Arguments::from_arg_matches(&found)) {
         Ok(arguments) => arguments,
         Err(error) => error.exit(),
     };
@@ -158,6 +167,9 @@ fn main() -> ExitCode {
         Command::Twin(arguments) => twin::run(arguments, json),
         Command::Doctor(arguments) => doctor::run(arguments, json),
         Command::Interfaces(arguments) => interfaces::run(arguments, json),
+        Command::Config(arguments) => config::run(&arguments, json),
+        Command::Completions(arguments) => completions::run(&arguments, command_line(&graph)),
+        Command::Man(arguments) => man::run(&arguments, command_line(&graph), json),
     };
     match result {
         Ok(code) => code,

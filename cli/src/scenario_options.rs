@@ -49,6 +49,10 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "ID")]
     pub domain: Option<u32>,
 
+    /// Namespace of all topics, services and nodes on ROS 2, so that two sessions stand in one domain: /left.
+    #[arg(long, value_name = "NAME")]
+    pub namespace: Option<String>,
+
     /// Let peers on ROS 2 arm devices and choose law, friction, channel and recording; without it they may
     /// only pause and disable.
     #[arg(long)]
@@ -93,6 +97,9 @@ impl ScenarioOptions {
             scenario.gateway.domain_id = domain;
         } else if let Some(domain) = domain_of_environment()? {
             scenario.gateway.domain_id = domain;
+        }
+        if let Some(namespace) = &self.namespace {
+            scenario.gateway.namespace = format!("/{}", namespace.trim_matches('/'));
         }
         scenario.gateway.commands |= self.ros_commands;
         if let Some(law) = &self.law {

@@ -20,10 +20,12 @@ use ros2_client::{
 };
 
 pub use publisher::DdsPublisher;
+pub(crate) use qos::service_qos;
 pub use subscriber::DdsSubscriber;
 
 use crate::{
     error::{CreateError, OpenError},
+    namespace::within,
     types::Depth,
 };
 
@@ -39,7 +41,7 @@ pub struct DdsConfig {
     pub domain_id: u32,
     /// Name of the node, without namespace.
     pub node_name: String,
-    /// Namespace of the node, `/` or `/some/space`. Topic names are absolute and do not change with it.
+    /// Namespace of the node, its topics and services: `/` or `/some/space`.
     pub namespace: String,
 }
 
@@ -138,7 +140,8 @@ impl DdsBus {
         &self.context
     }
 
-    fn node(&self) -> MutexGuard<'_, Node> {
+    /// For services of this bus's node.
+    pub(crate) fn node(&self) -> MutexGuard<'_, Node> {
         self.node.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -158,7 +161,7 @@ fn create_topic<M: Message>(
     qos: &ros2_client::QosProfile,
     what: &'static str,
 ) -> Result<rustdds::Topic, CreateError> {
-    let name = Name::parse(&topic.name)
+    let name = Name::parse(&within(node.namespace(), &topic.name))
         .map_err(|error| middleware(&topic.name, what, format!("{error:?}")))?;
     node.create_topic(&name, type_name::<M>(), qos)
         .map_err(|error| middleware(&topic.name, what, error.to_string()))

@@ -54,3 +54,10 @@ pub(super) fn qos(delivery: Delivery) -> QosProfile {
             .history(History::KeepLast { depth: EVENT_QUEUE }),
     }
 }
+
+/// What a service and its callers have: as services of ROS 2 by default.
+pub(crate) fn service_qos() -> QosProfile {
+    QosProfile::subscription_default()
+        .reliability_reliable(WAIT)
+        .history(History::KeepLast { depth: 10 })
+}

@@ -64,6 +64,27 @@ fn found_files(directory: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
     Ok(files)
 }
 
+/// Whether files are those of one recording by their names: `NAME_0.mcap`, `NAME_1.mcap`, …, or a
+/// single file of any name.
+pub(super) fn are_one_recording(files: &[PathBuf]) -> bool {
+    let name = |file: &PathBuf| {
+        let stem = file.file_stem()?.to_str()?;
+        let (name, number) = stem.rsplit_once('_')?;
+        is_number(number).then(|| name.to_owned())
+    };
+    match files {
+        [] | [_] => true,
+        [first, rest @ ..] => {
+            let first = name(first);
+            first.is_some() && rest.iter().all(|file| name(file) == first)
+        }
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
 /// The rosbag2 directory that a file stands in: one with `metadata.yaml`, or
 /// of the name that the file has in front of its number.
 pub(super) fn bag_directory(file: &Path) -> Option<PathBuf> {
@@ -77,10 +98,8 @@ pub(super) fn bag_directory(file: &Path) -> Option<PathBuf> {
     let number = real
         .file_name()
         .and_then(|name| stem.strip_prefix(name.to_str()?)?.strip_prefix('_'));
-    let numbered = number.is_some_and(|number| {
-        !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
-    });
-    (numbered || directory.join(METADATA_FILE).exists()).then(|| directory.to_owned())
+    (number.is_some_and(is_number) || directory.join(METADATA_FILE).exists())
+        .then(|| directory.to_owned())
 }
 
 fn io_error(path: &Path, error: &io::Error) -> OpenBagError {

@@ -283,6 +283,21 @@ pub enum RepairError {
         /// The output.
         path: PathBuf,
     },
+    /// A folder of files that are not of one recording.
+    #[error(
+        "{}: {files} MCAP files whose names are not those of one recording (NAME_0.mcap, NAME_1.mcap, …), and no \
+        metadata.yaml that says so: repair each by its own name, as in ferntast bag repair {}",
+        path.display(),
+        path.join(first).display()
+    )]
+    Unrelated {
+        /// The folder.
+        path: PathBuf,
+        /// How many.
+        files: usize,
+        /// Name of the first.
+        first: PathBuf,
+    },
     /// The path names no file or directory.
     #[error("{} does not end in a name (UTF-8)", path.display())]
     NoName {

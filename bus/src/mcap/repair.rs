@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::{
     copy::{copy, join},
-    directory::{bag_directory, bag_files, bag_files_anyhow},
+    directory::{are_one_recording, bag_directory, bag_files, bag_files_anyhow},
     error::{FinishBagError, RepairError},
     info::Break,
     layout::Layout,
@@ -58,6 +58,13 @@ pub struct RepairedFile {
 pub fn repair(path: &Path, output: Option<&Path>) -> Result<RepairReport, RepairError> {
     if path.is_dir() {
         let files = bag_files_anyhow(path)?;
+        if !path.join(METADATA_FILE).exists() && !are_one_recording(&files) {
+            return Err(RepairError::Unrelated {
+                path: path.to_owned(),
+                files: files.len(),
+                first: file_name(&files[0]),
+            });
+        }
         let target = output.unwrap_or(path);
         if let Some(output) = output {
             begin_output(output)?;
@@ -65,8 +72,7 @@ pub fn repair(path: &Path, output: Option<&Path>) -> Result<RepairReport, Repair
         let sources: Vec<_> = files
             .into_iter()
             .map(|file| {
-                let name = file.file_name().map(PathBuf::from).unwrap_or_default();
-                let target = target.join(name);
+                let target = target.join(file_name(&file));
                 (file, target)
             })
             .collect();
@@ -100,6 +106,10 @@ pub fn repair(path: &Path, output: Option<&Path>) -> Result<RepairReport, Repair
         files: vec![repaired.file],
         metadata_written: false,
     })
+}
+
+fn file_name(file: &Path) -> PathBuf {
+    file.file_name().map(PathBuf::from).unwrap_or_default()
 }
 
 fn begin_output(output: &Path) -> Result<(), RepairError> {

@@ -7,15 +7,9 @@
 mod dds;
 mod zenoh;
 
-use std::{
-    sync::mpsc::{Receiver, SyncSender, sync_channel},
-    thread::{self, ThreadId},
-};
+use std::fmt;
 
-use crate::{Bus, error::OpenError};
-
-/// Wishes that may wait; past that, further ones are refused.
-const WAITING: usize = 16;
+use crate::{Bus, DdsBus, error::OpenError};
 
 /// A parameter and the node that it belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +18,7 @@ pub struct Choice {
     pub node: String,
     /// Name of the parameter.
     pub name: String,
-    /// What it is, for `ros2 param describe` (over DDS not passed on by the library).
+    /// What it is, for `ros2 param describe`.
     pub description: String,
     /// What may be chosen.
     pub choices: Vec<String>,
@@ -32,11 +26,25 @@ pub struct Choice {
     pub value: String,
 }
 
+impl Choice {
+    /// What may be chosen, in words.
+    fn constraint(&self) -> String {
+        format!("one of: {}", self.choices.join(", "))
+    }
+
+    /// Whether `value` may be chosen.
+    fn check(&self, value: Option<&str>) -> Result<(), String> {
+        match value.is_some_and(|own| self.choices.iter().any(|is| is == own)) {
+            true => Ok(()),
+            false => Err(format!("{} may be {}", self.name, self.constraint())),
+        }
+    }
+}
+
 /// The parameter, as long as it lives.
 #[derive(Debug)]
 pub struct ParameterNode {
     kind: Kind,
-    wishes: Receiver<String>,
 }
 
 #[derive(Debug)]
@@ -46,33 +54,30 @@ enum Kind {
 }
 
 impl ParameterNode {
-    /// Offers `choice` on the ROS 2 that `bus` is on; `None` on a bus that is
-    /// not ROS 2. Reported to by [`ParameterNode::tell`] from this thread.
+    /// Offers `choice` on the ROS 2 that `bus` is on; `None` on a bus that is not ROS 2. Over DDS
+    /// peers are answered when [`ParameterNode::wish`] is called. Reported to by
+    /// [`ParameterNode::tell`] from this thread.
     ///
     /// # Errors
     ///
     /// [`OpenError::BadName`], [`OpenError::Middleware`].
-    pub fn open(bus: &Bus, choice: Choice) -> Result<Option<ParameterNode>, OpenError> {
-        let (wish, wishes) = sync_channel(WAITING);
-        let judge = Judge {
-            name: choice.name.clone(),
-            choices: choice.choices.clone(),
-            teller: thread::current().id(),
-            wish,
-        };
+    pub fn open(bus: &Bus, choice: &Choice) -> Result<Option<ParameterNode>, OpenError> {
         let kind = match bus {
-            Bus::Dds(bus) => Kind::Dds(Box::new(dds::open(bus, &choice, judge)?)),
-            Bus::Zenoh(bus) => Kind::Zenoh(Box::new(zenoh::open(bus, &choice, judge)?)),
+            Bus::Dds(bus) => Kind::Dds(Box::new(dds::open(bus, choice)?)),
+            Bus::Zenoh(bus) => Kind::Zenoh(Box::new(zenoh::open(bus, choice)?)),
             Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) | Bus::Foxglove(_) => {
                 return Ok(None);
             }
         };
-        Ok(Some(ParameterNode { kind, wishes }))
+        Ok(Some(ParameterNode { kind }))
     }
 
     /// The last wish since the last call.
     pub fn wish(&mut self) -> Option<String> {
-        self.wishes.try_iter().last()
+        match &mut self.kind {
+            Kind::Dds(parameter) => parameter.wish(),
+            Kind::Zenoh(parameter) => parameter.wish(),
+        }
     }
 
     /// Publishes what is in effect. Gives the library's reason where it refuses.
@@ -88,39 +93,40 @@ impl ParameterNode {
     }
 }
 
-/// Says whether a new value is taken, and passes it on as a wish.
-struct Judge {
-    name: String,
-    choices: Vec<String>,
-    /// What this thread sets is the truth, not a wish.
-    teller: ThreadId,
-    wish: SyncSender<String>,
+/// The parameter services of a bus's own node, which has none but those of every node: who lists
+/// the parameters of all nodes, as `ros2 param list`, waits for an answer of each.
+pub struct BusParameters {
+    bus: DdsBus,
+    services: dds::ParameterServices,
 }
 
-impl Judge {
-    /// Whether `value` may be chosen for parameter `name`; other parameters are
-    /// the library's own.
-    fn check(&self, name: &str, value: Option<&str>) -> Result<(), String> {
-        if name != self.name || value.is_some_and(|own| self.choices.iter().any(|is| is == own)) {
-            return Ok(());
-        }
-        Err(format!(
-            "{} may be one of: {}",
-            self.name,
-            self.choices.join(", ")
-        ))
+impl BusParameters {
+    /// Offers them; `None` where the bus is not ROS 2 over DDS (over Zenoh they answer by themselves).
+    ///
+    /// # Errors
+    ///
+    /// [`OpenError::Middleware`].
+    pub fn open(bus: &Bus) -> Result<Option<BusParameters>, OpenError> {
+        let Bus::Dds(bus) = bus else {
+            return Ok(None);
+        };
+        let services = dds::ParameterServices::open(&mut bus.node(), None)?;
+        Ok(Some(BusParameters {
+            bus: bus.clone(),
+            services,
+        }))
     }
 
-    /// Takes what [`Judge::check`] found good.
-    fn take(&self, name: &str, value: Option<&str>) -> Result<(), String> {
-        let Some(value) = value.filter(|_| name == self.name) else {
-            return Ok(());
-        };
-        if thread::current().id() == self.teller {
-            return Ok(());
-        }
-        self.wish
-            .try_send(value.to_owned())
-            .map_err(|_| "busy with earlier wishes; try again".to_owned())
+    /// Answers who asked since the last call.
+    pub fn answer(&self) {
+        self.services.answer(&self.bus.node());
+    }
+}
+
+impl fmt::Debug for BusParameters {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BusParameters")
+            .field("bus", &self.bus)
+            .finish_non_exhaustive()
     }
 }

@@ -57,6 +57,8 @@ pub struct ZenohConfig {
     pub domain_id: u32,
     /// Name of the node, without namespace.
     pub node_name: String,
+    /// Namespace of the node, its topics and services: `/` or `/some/space`.
+    pub namespace: String,
 }
 
 /// The bus on ROS 2 over Zenoh. A clone is another handle to the same node.
@@ -64,6 +66,7 @@ pub struct ZenohConfig {
 pub struct ZenohBus {
     node: Arc<ZNode>,
     context: Arc<ZContext>,
+    namespace: Arc<str>,
 }
 
 impl ZenohBus {
@@ -79,6 +82,7 @@ impl ZenohBus {
         Ok(ZenohBus {
             node: Arc::new(node),
             context: Arc::new(context),
+            namespace: config.namespace.as_str().into(),
         })
     }
 
@@ -95,6 +99,16 @@ impl ZenohBus {
     /// For further nodes of this session.
     pub(crate) fn context(&self) -> &ZContext {
         &self.context
+    }
+
+    /// Where its topics and services are.
+    pub(crate) fn namespace(&self) -> &str {
+        &self.namespace
+    }
+
+    /// For services of this bus's node.
+    pub(crate) fn node(&self) -> &ZNode {
+        &self.node
     }
 
     /// The topics that discovery has found so far, each with its type.

@@ -11,6 +11,7 @@ use super::{
 use crate::{
     cdr,
     error::{CreateError, PublishError},
+    namespace::within,
 };
 
 /// Sends on one topic over Zenoh.
@@ -32,7 +33,7 @@ impl<M: Message> ZenohPublisher<M> {
         let type_info = type_info::<M>().map_err(failed)?;
         let port = bus
             .node
-            .create_pub_impl::<Raw>(&topic.name, Some(type_info))
+            .create_pub_impl::<Raw>(&within(bus.namespace(), &topic.name), Some(type_info))
             .with_qos(qos(topic.delivery, places(topic.delivery)))
             .build()
             .map_err(|error| failed(error.to_string()))?;

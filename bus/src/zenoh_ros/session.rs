@@ -28,6 +28,7 @@ pub(super) fn open(config: &ZenohConfig) -> Result<(ZContext, ZNode), OpenError>
         });
     }
     check_name(&config.node_name)?;
+    check_namespace(&config.namespace)?;
     let settings = settings(&config.mode)?;
     let endpoint = match &config.mode {
         ZenohMode::Router { listen: endpoint } | ZenohMode::Connect { endpoint } => {
@@ -43,7 +44,7 @@ pub(super) fn open(config: &ZenohConfig) -> Result<(ZContext, ZNode), OpenError>
         .map_err(|error| endpoint::open_error(&endpoint, "Zenoh", &error))?;
     let node = context
         .create_node(&config.node_name)
-        .without_parameters()
+        .with_namespace(&config.namespace)
         .build()
         .map_err(middleware)?;
     if let ZenohMode::Connect { endpoint } = &config.mode {
@@ -97,13 +98,28 @@ fn wait_for_router(node: &ZNode, endpoint: &str) -> Result<(), OpenError> {
 
 /// Node names as ROS 2 has them.
 fn check_name(name: &str) -> Result<(), OpenError> {
+    check_word("node", name, name)
+}
+
+/// A namespace: `/`, or such names behind slashes.
+fn check_namespace(namespace: &str) -> Result<(), OpenError> {
+    let names = namespace.strip_prefix('/').unwrap_or_default();
+    if namespace == "/" {
+        return Ok(());
+    }
+    let mut names = names.split('/');
+    names.try_for_each(|name| check_word("namespace", namespace, name))
+}
+
+/// One word of the `name` of `what`.
+fn check_word(what: &'static str, name: &str, word: &str) -> Result<(), OpenError> {
     let allowed = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
-    if name.is_empty()
-        || name.starts_with(|c: char| c.is_ascii_digit())
-        || !name.bytes().all(allowed)
+    if word.is_empty()
+        || word.starts_with(|c: char| c.is_ascii_digit())
+        || !word.bytes().all(allowed)
     {
         return Err(OpenError::BadName {
-            what: "node",
+            what,
             name: name.into(),
             reason: "use letters, digits and _, not beginning with a digit".into(),
         });

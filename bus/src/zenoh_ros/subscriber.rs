@@ -17,6 +17,7 @@ use super::{
 use crate::{
     cdr,
     error::{CreateError, DecodeError},
+    namespace::within,
     sequence_gaps::{self, SequenceGaps},
     types::{Depth, Received, SubscriberCounts},
 };
@@ -50,7 +51,7 @@ impl<M: Message> ZenohSubscriber<M> {
         let type_info = type_info::<M>().map_err(failed)?;
         let port = bus
             .node
-            .create_sub_impl::<Raw>(&topic.name, Some(type_info))
+            .create_sub_impl::<Raw>(&within(bus.namespace(), &topic.name), Some(type_info))
             .with_qos(qos(topic.delivery, depth.places()))
             // For types with unbounded byte arrays; ours have none.
             .with_buffer_group(BufferGroup::Off)

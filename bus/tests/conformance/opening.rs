@@ -15,6 +15,7 @@ fn zenoh(mode: ZenohMode, domain_id: u32, node_name: &str) -> Result<ZenohBus, O
         mode,
         domain_id,
         node_name: node_name.into(),
+        namespace: "/".to_owned(),
     })
 }
 

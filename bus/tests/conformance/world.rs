@@ -72,6 +72,7 @@ impl World {
                 },
                 domain_id,
                 node_name: format!("router_{name}"),
+                namespace: "/".to_owned(),
             })
             .unwrap()
         });
@@ -145,6 +146,7 @@ impl World {
                     },
                     domain_id: self.domain_id,
                     node_name: self.name.clone(),
+                    namespace: "/".to_owned(),
                 })
                 .unwrap(),
             ),

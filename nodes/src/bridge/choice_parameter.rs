@@ -108,7 +108,7 @@ impl ChoiceParameter {
     ) -> Result<ChoiceParameter, NodeError> {
         Ok(ChoiceParameter {
             does: Text::new(&choice.value),
-            node: ParameterNode::open(ros, choice)?,
+            node: ParameterNode::open(ros, &choice)?,
             pass_on,
             heard,
             wished: None,

@@ -3,13 +3,14 @@
 //! It is the only process that touches ROS 2, so that no 1 kHz loop shares a
 //! process with DDS or a Zenoh router.
 
-use ferntast_bus::{Bus, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
+use ferntast_bus::{Bus, BusParameters, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
 use ferntast_msgs::topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch};
 
 use super::{
     choice_parameter::ChoiceParameter,
     forwarder::{Forwarder, Forwarding, Stamp},
     forwarding_loop::ForwardingLoop,
+    state_services::StateServices,
 };
 use crate::{
     config::{GatewaySection, HandSource, Middleware, Scenario},
@@ -26,12 +27,13 @@ pub fn open_ros(section: &GatewaySection) -> Result<Bus, ferntast_bus::OpenError
         Middleware::Dds => Bus::Dds(DdsBus::open(&DdsConfig {
             domain_id: section.domain_id,
             node_name: section.node_name.clone(),
-            namespace: "/".to_owned(),
+            namespace: section.namespace.clone(),
         })?),
         Middleware::Zenoh => Bus::Zenoh(ZenohBus::open(&ZenohConfig {
             mode: router(section),
             domain_id: section.domain_id,
             node_name: section.node_name.clone(),
+            namespace: section.namespace.clone(),
         })?),
     })
 }
@@ -135,9 +137,15 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     if !section.commands {
         parameters.iter_mut().for_each(ChoiceParameter::forbid);
     }
+    let own_parameters = BusParameters::open(&ros)?;
+    let mut states = StateServices::open(&process.bus, &ros, section.commands)?;
     let mut forwarding = ForwardingLoop::new(process)?;
     forwarding.begin(forwarder);
     process.run(|wake| {
+        if let Some(own) = &own_parameters {
+            own.answer();
+        }
+        states.round(wake.now);
         for parameter in &mut parameters {
             parameter.round(wake.now);
         }

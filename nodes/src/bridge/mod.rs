@@ -8,3 +8,4 @@ pub mod foxglove;
 pub mod gateway;
 pub mod player;
 pub mod recorder;
+mod state_services;

@@ -6,7 +6,7 @@ mod file;
 mod laws;
 mod load;
 mod scenario;
-mod shipped;
+pub mod shipped;
 
 use ferntast_model::ArmModel;
 use ferntast_msgs::sample::{JointNames, MAX_JOINTS};

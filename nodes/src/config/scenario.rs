@@ -131,6 +131,9 @@ parameters! {
         pub domain_id: u32 [0.0..=232.0, "-"] = 0,
         /// Name of the node on ROS 2.
         pub node_name: String = "ferntast".to_owned(),
+        /// Namespace on ROS 2 of all topics, services and nodes: `/`, or `/left`.
+        #[serde(skip_serializing_if = "is_root")]
+        pub namespace: String = "/".to_owned(),
         /// Endpoint of our own Zenoh router.
         pub router_endpoint: String = "tcp/127.0.0.1:7447".to_owned(),
         /// Settings of that router, in a file of Zenoh's own format, in place of the endpoint.
@@ -149,6 +152,11 @@ parameters! {
         #[serde(skip_serializing_if = "is_off")]
         pub servo_jp: bool = false,
     }
+}
+
+/// The root is not written into recordings, which had no namespace before.
+fn is_root(namespace: &str) -> bool {
+    namespace == "/"
 }
 
 /// A switch that is off is not written into recordings, which had none before.

@@ -55,6 +55,143 @@ fn rclpy_lists_every_topic_with_its_type() {
     process.wait(PATIENCE).success();
 }
 
+/// What `ros2 node`, `topic`, `service` and `param list` show: nothing without a node, nothing that
+/// does not answer, and all of it within the namespace.
+#[test]
+fn the_graph_is_what_it_says() {
+    let session = Session::new();
+    let mut process = start(&session, &["--namespace", "left"]);
+    await_enabled(&session, &mut process);
+    let graph = Process::spawn(session.peer("ros_graph.py", &["/left/follower/measured_js"]));
+    let graph = graph.wait(PATIENCE).success().json();
+    let nodes = ["/left/ferntast", "/left/link", "/left/servo"];
+    assert_eq!(graph["nodes"], serde_json::json!(nodes), "{graph:#}");
+    assert_eq!(graph["nameless"], serde_json::json!([]), "{graph:#}");
+
+    // ROS 2's own beside ours.
+    let keys = |map: &serde_json::Value| -> Vec<String> {
+        map.as_object()
+            .into_iter()
+            .flatten()
+            .map(|(key, _)| key.clone())
+            .collect()
+    };
+    let foreign = |name: &&String| {
+        !name.starts_with("/left/") && !["/parameter_events", "/rosout"].contains(&name.as_str())
+    };
+    let topics = keys(&graph["topics"]);
+    assert_eq!(topics.iter().filter(foreign).count(), 0, "{graph:#}");
+    let services: Vec<(String, String)> = keys(&graph["services"])
+        .into_iter()
+        .map(|name| {
+            (
+                graph["services"][&name][0]
+                    .as_str()
+                    .unwrap_or_default()
+                    .to_owned(),
+                name,
+            )
+        })
+        .map(|(kind, name)| (name, kind))
+        .collect();
+    let mut golden = Vec::new();
+    for node in nodes {
+        for (name, kind) in [
+            ("describe_parameters", "DescribeParameters"),
+            ("get_parameter_types", "GetParameterTypes"),
+            ("get_parameters", "GetParameters"),
+            ("list_parameters", "ListParameters"),
+            ("set_parameters", "SetParameters"),
+            ("set_parameters_atomically", "SetParametersAtomically"),
+        ] {
+            golden.push((
+                format!("{node}/{name}"),
+                format!("rcl_interfaces/srv/{kind}"),
+            ));
+        }
+    }
+    for device in ["follower", "leader"] {
+        for word in ["enable", "disable", "pause", "resume"] {
+            golden.push((
+                format!("/left/{device}/{word}"),
+                "std_srvs/srv/Trigger".to_owned(),
+            ));
+        }
+    }
+    golden.push(("/left/stop".to_owned(), "std_srvs/srv/Trigger".to_owned()));
+    golden.sort();
+    assert_eq!(services, golden, "{graph:#}");
+
+    let of_link = &graph["parameters"]["/left/link"];
+    let law = of_link["law"].as_str().unwrap_or_default();
+    assert!(law.contains("delay law"), "{graph:#}");
+    assert_eq!(
+        keys(&graph["parameters"]["/left/ferntast"]),
+        ["use_sim_time"],
+        "{graph:#}"
+    );
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+/// Calls these services; gives success and message of each.
+fn trigger(session: &Session, services: &[&str]) -> Vec<(bool, String)> {
+    let called = Process::spawn(session.peer("call_trigger.py", services));
+    let called = called.wait(PATIENCE).success().json();
+    let answers = called.as_array().into_iter().flatten();
+    answers
+        .map(|own| {
+            let message = own["message"].as_str().unwrap_or_default();
+            (own["success"] == true, message.to_owned())
+        })
+        .collect()
+}
+
+#[test]
+fn operating_states_are_services() {
+    let session = Session::new();
+    let mut process = start(&session, &["--ros-commands", "--no-rearm"]);
+    await_enabled(&session, &mut process);
+    let calls = [
+        "/follower/pause",
+        "/follower/resume",
+        "/stop",
+        "/follower/enable",
+    ];
+    let answers = trigger(&session, &calls);
+    let begins = [
+        "follower PAUSED",
+        "follower ENABLED",
+        "follower DISABLED",
+        "follower ENABLED",
+    ];
+    for ((answer, begin), service) in answers.iter().zip(begins).zip(calls) {
+        assert!(
+            answer.0 && answer.1.starts_with(begin),
+            "{service}: {answers:#?}"
+        );
+    }
+    assert!(answers[2].1.contains("leader DISABLED"), "{answers:#?}");
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn a_service_arms_nothing_where_peers_may_stop_only() {
+    let session = Session::new();
+    let mut process = start(&session, &["--no-rearm"]);
+    await_enabled(&session, &mut process);
+    let answers = trigger(&session, &["/follower/pause", "/follower/resume"]);
+    assert!(answers[0].0, "{answers:#?}");
+    assert!(
+        !answers[1].0 && answers[1].1.contains("--ros-commands"),
+        "{answers:#?}"
+    );
+    assert_eq!(ferntast_tests::state(&session, "follower"), "PAUSED");
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
 /// What Ctrl-Z and `fg` do, or a debugger that looks at it.
 #[test]
 fn a_gateway_that_was_stopped_is_seen_again() {
