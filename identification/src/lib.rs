@@ -16,6 +16,7 @@
 //! fit/           parameters with standard errors; the model with one more effect
 //! comparison/    the model against the recordings: residual maps, noise, simulation
 //! diagnosis/     which effect is missing, which others explain as much, what to record next
+//! discovery/     a formula for what no effect of the catalogue explains
 //! twin/          the model held against the joint while it moves
 //! experiments/   single regressions of the papers, apart from the pipeline
 //! ```
@@ -29,6 +30,7 @@ pub mod comparison;
 pub mod data;
 pub mod design;
 pub mod diagnosis;
+pub mod discovery;
 pub mod effects;
 pub mod experiments;
 pub mod fit;
@@ -47,6 +49,7 @@ pub use data::{
 };
 pub use design::PreparedModel;
 pub use diagnosis::{Diagnosis, Suspect, Verdict, diagnose, diagnose_at_cutoffs};
+pub use discovery::{Discovery, Formula, discover};
 pub use effects::EffectDescription;
 pub use ferntast_model::friction::Proposal;
 pub use fit::addition::{Addition, add};

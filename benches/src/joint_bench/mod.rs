@@ -27,6 +27,7 @@
 mod config;
 mod effect;
 mod hidden;
+mod law;
 mod motion;
 mod parameters;
 mod plant;

@@ -117,6 +117,11 @@ impl Kernel {
         Self { taps }
     }
 
+    /// Its weights, around the sample in their middle.
+    pub(crate) fn taps(&self) -> &[f64] {
+        &self.taps
+    }
+
     /// Samples on either side that a Gaussian of `sigma` \[samples\] looks at.
     #[must_use]
     pub fn reach(sigma: f64) -> usize {

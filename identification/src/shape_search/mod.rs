@@ -117,7 +117,7 @@ pub fn polish(
 
 /// Puts the best value between `low` and `high` at place `at` of `shape`, which
 /// leaves `error` as it is; the error that is left then.
-fn golden_section(
+pub(crate) fn golden_section(
     shape: &mut [f64],
     at: usize,
     [low, high]: [f64; 2],

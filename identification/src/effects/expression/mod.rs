@@ -363,6 +363,14 @@ impl Effect for Compiled {
     }
 }
 
+/// The value of an expression where `value` gives those of its names.
+#[cfg(test)]
+pub(crate) fn evaluate(expression: &str, value: &dyn Fn(&str) -> f64) -> Result<f64, String> {
+    let formula = Formula::parse(expression)?;
+    let values: Vec<f64> = formula.names().iter().map(|name| value(name)).collect();
+    Ok(formula.value(&values))
+}
+
 fn quantity(name: &str) -> Quantity {
     Quantity {
         name: name.to_owned(),

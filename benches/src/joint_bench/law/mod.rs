@@ -1,0 +1,301 @@
+//! Laws that no catalogue has, drawn by a grammar of their own: a product of functions
+//! of one, two or three quantities, or the sum of two products.
+//!
+//! To be judged by: whoever searches for a formula knows neither these functions nor
+//! how they are put together.
+
+mod function;
+
+use ferntast_emulation::random::Random;
+
+use super::effect::{Effect, Friction, State};
+use super::{Bench, BenchConfig, BenchError, BenchRecording};
+use crate::bench::{Stream, about, differentiate, random};
+use function::Function;
+
+/// Own part of a law at full strength over the filtered sensor noise, as most
+/// effects of the catalogue have it.
+const VISIBILITY: f64 = 8.0;
+/// Smallest share of a law that equation (4) does not take over, as rms: what
+/// looks like its terms is not outside the catalogue.
+const MIN_OWN_SHARE: f64 = 0.45;
+/// Laws drawn until one is far enough from equation (4), at most.
+const DRAWS: usize = 60;
+/// Below this no sign of the velocity is known \[rad/s\].
+const REST: f64 = 0.01;
+
+/// What a law is about, with its usual size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Quantity {
+    Velocity,
+    Load,
+    Position,
+    Acceleration,
+    Temperature,
+}
+
+use Quantity::{Acceleration, Load, Position, Temperature, Velocity};
+
+impl Quantity {
+    /// Its value over its usual size.
+    fn of(self, state: &State) -> f64 {
+        match self {
+            Velocity => state.velocity / 0.7,
+            Load => state.load / 15.0,
+            Position => (state.position + 0.12) / 0.7,
+            Acceleration => state.acceleration / 3.0,
+            Temperature => (state.temperature + 10.0) / 36.0,
+        }
+    }
+
+    const fn word(self) -> &'static str {
+        match self {
+            Velocity => "velocity",
+            Load => "load",
+            Position => "position",
+            Acceleration => "acceleration",
+            Temperature => "temperature",
+        }
+    }
+}
+
+/// A product of functions, each of one quantity.
+#[derive(Clone, Debug, PartialEq)]
+struct Product {
+    size: f64,
+    /// Whether bristles carry it, so that it opposes motion.
+    opposes: bool,
+    functions: Vec<(Quantity, Function)>,
+}
+
+impl Product {
+    fn draw(random: &mut Random) -> Self {
+        let first = match (random.uniform() * 10.0) as usize {
+            0..3 => Velocity,
+            3..6 => Load,
+            6..9 => Position,
+            _ => Acceleration,
+        };
+        let mut about = vec![first];
+        if random.chance(0.75) {
+            let second = match (random.uniform() * 8.0) as usize {
+                0..2 => Velocity,
+                2..4 => Load,
+                4..6 => Position,
+                6 => Acceleration,
+                _ => Temperature,
+            };
+            if second != first {
+                about.push(second);
+            }
+        }
+        let turns = about.contains(&Velocity);
+        let opposes = !turns && random.chance(0.5);
+        let mut functions = Vec::new();
+        for quantity in about {
+            let placed = matches!(quantity, Position | Temperature);
+            let odd = !placed && (quantity == Velocity || random.chance(0.4));
+            functions.push((quantity, Function::draw(odd, placed, random)));
+        }
+        Self {
+            size: 0.5 + random.uniform(),
+            opposes,
+            functions,
+        }
+    }
+
+    fn value(&self, state: &State) -> f64 {
+        let functions = self.functions.iter();
+        let product: f64 = functions
+            .map(|(quantity, function)| function.value(quantity.of(state)))
+            .product();
+        self.size * product
+    }
+}
+
+/// A law that no catalogue has.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Law {
+    /// \[Nm\]
+    size: f64,
+    products: Vec<Product>,
+}
+
+impl Law {
+    fn draw(random: &mut Random) -> Self {
+        let count = if random.chance(0.25) { 2 } else { 1 };
+        Self {
+            size: if random.chance(0.5) { 1.0 } else { -1.0 },
+            products: (0..count).map(|_| Product::draw(random)).collect(),
+        }
+    }
+
+    /// Its torque where bristles are bent as far as the direction says \[Nm\].
+    fn sliding(&self, state: &State) -> f64 {
+        let sign = state.velocity.signum();
+        let each = self.products.iter().map(|own| {
+            let value = own.value(state);
+            if own.opposes { sign * value } else { value }
+        });
+        self.size * each.sum::<f64>()
+    }
+
+    fn words(&self) -> String {
+        let each = self.products.iter().map(|own| {
+            let functions = own.functions.iter();
+            let functions =
+                functions.map(|(quantity, function)| format!("{function:?} of {}", quantity.word()));
+            let words: Vec<String> = functions.collect();
+            let opposes = if own.opposes { ", against motion" } else { "" };
+            format!("{}{opposes}", words.join(" times "))
+        });
+        each.collect::<Vec<_>>().join("; and ")
+    }
+}
+
+impl Effect for Law {
+    fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
+        vec![("size", self.size, "Nm")]
+    }
+
+    fn friction(&self, state: &State, friction: &mut Friction) {
+        for own in &self.products {
+            let torque = self.size * own.value(state);
+            match own.opposes {
+                true => friction.level += torque,
+                false => friction.torque += torque,
+            }
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Effect> {
+        Box::new(self.clone())
+    }
+}
+
+impl Bench {
+    /// A bench that hides a law that no catalogue has, drawn from the seed of
+    /// `config`; and the law in words. Beside it nothing is hidden, and all of
+    /// equation (4) is believed. At full strength it stands out from the filtered
+    /// noise by 8, and no less than 45 % of it is not like equation (4).
+    ///
+    /// # Errors
+    ///
+    /// A value is out of bounds, or the joint runs away.
+    pub fn with_law(config: &BenchConfig) -> Result<(Self, String), BenchError> {
+        let mut bench = Self::new(&BenchConfig {
+            hidden: Vec::new(),
+            ..config.clone()
+        })?;
+        let plain = bench.record()?;
+        let states = states(&plain);
+        let mut random = random(config.seed, Stream::Effect, usize::from(u16::MAX));
+        let mut best: Option<(f64, f64, Law)> = None;
+        for _ in 0..DRAWS {
+            let law = Law::draw(&mut random);
+            let torques: Vec<f64> = states.iter().map(|state| law.sliding(state)).collect();
+            let whole = rms(&torques);
+            let own = rms(&beyond_equation_4(&states, torques)) / whole.max(1e-12);
+            let is_far = own > MIN_OWN_SHARE;
+            if whole > 1e-6 && best.as_ref().is_none_or(|(most, ..)| own > *most) {
+                best = Some((own, whole, law));
+            }
+            if is_far {
+                break;
+            }
+        }
+        let Some((_, whole, mut law)) = best else {
+            return Ok((bench, String::new()));
+        };
+        let size = about(VISIBILITY, &mut random) * plain.noise_rms();
+        law.size *= config.strength * size / whole;
+        let words = law.words();
+        bench.effects = vec![Box::new(law)];
+        Ok((bench, words))
+    }
+}
+
+/// The states of a recording in which the joint slides.
+fn states(recording: &BenchRecording) -> Vec<State> {
+    let sessions = recording.sessions.iter();
+    let each = sessions.flat_map(|session| {
+        let truth = &session.truth;
+        let accelerations = differentiate(&truth.velocity);
+        (0..session.time.len()).step_by(7).map(move |at| State {
+            time: session.time[at],
+            temperature: truth.temperature[at],
+            position: truth.position[at],
+            velocity: truth.velocity[at],
+            acceleration: accelerations[at],
+            load: truth.joint_torque[at],
+            ..State::default()
+        })
+    });
+    each.filter(|state| state.velocity.abs() > REST).collect()
+}
+
+/// What is left of `torques` when the terms of equation (4) have taken what they can.
+fn beyond_equation_4(states: &[State], mut torques: Vec<f64>) -> Vec<f64> {
+    let terms: [fn(&State) -> f64; 5] = [
+        |s| s.velocity.signum(),
+        |s| s.load.abs() * s.velocity.signum(),
+        |s| s.velocity,
+        |s| s.velocity * s.velocity.abs(),
+        |s| s.velocity.powi(3),
+    ];
+    let along = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let take_out = |basis: &[Vec<f64>], of: &mut Vec<f64>| {
+        for own in basis {
+            let share = along(own, of);
+            of.iter_mut().zip(own).for_each(|(x, own)| *x -= share * own);
+        }
+    };
+    for term in terms {
+        let mut column: Vec<f64> = states.iter().map(term).collect();
+        take_out(&basis, &mut column);
+        let length = along(&column, &column).sqrt().max(1e-300);
+        column.iter_mut().for_each(|x| *x /= length);
+        basis.push(column);
+    }
+    take_out(&basis, &mut torques);
+    torques
+}
+
+fn rms(values: &[f64]) -> f64 {
+    crate::bench::rms(values.iter().copied())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recorded(seed: u64) -> (BenchRecording, String) {
+        let config = BenchConfig {
+            seed,
+            sessions: 2,
+            ..BenchConfig::default()
+        };
+        let (bench, words) = Bench::with_law(&config).unwrap();
+        (bench.record().unwrap(), words)
+    }
+
+    #[test]
+    fn a_law_stands_out_as_far_as_it_says() {
+        for seed in 1..5 {
+            let (recording, words) = recorded(seed);
+            let visibility = recording.visibility();
+            assert!((5.0..11.0).contains(&visibility), "{words}: {visibility}");
+            // Taken out, nothing of it is left.
+            let without = recording.without_hidden().visibility();
+            assert!(without < 0.5, "{words}: {without}");
+        }
+    }
+
+    #[test]
+    fn seeds_draw_different_laws_and_the_same_seed_the_same() {
+        let (first, again, other) = (recorded(3), recorded(3), recorded(4));
+        assert_eq!(first, again);
+        assert_ne!(first.1, other.1);
+    }
+}

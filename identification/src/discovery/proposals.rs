@@ -1,0 +1,322 @@
+//! Which of the formulas found are proposed: judged as they are printed, on rows left
+//! out with shared parameters.
+
+use std::collections::BTreeMap;
+
+use ferntast_model::friction::Proposal;
+
+use super::constants::errors;
+use super::results::Formula;
+use super::rows::{Kind, Rows};
+use super::search::{SIGNIFICANCE, State};
+use super::term::{
+    Signal, Term as FormulaTerm, coefficient_names, constant, constant_names, constants, rounded,
+    set, text,
+};
+use crate::data::{CustomEffect, ModelSpec, Subject, Term};
+use crate::design::{Design, PreparedModel};
+use crate::diagnosis::NamedCandidate;
+use crate::fit::addition::{Addition, add_to};
+use crate::fit::{Fit, Parameter};
+use crate::numerics::statistics::f_tail;
+use crate::preparation::Filtered;
+use crate::validation::left_out::LeftOut;
+
+/// Formulas of so many terms that are judged.
+const JUDGED: [usize; 3] = [4, 4, 3];
+/// Smallest share of the mean square that a formula explains.
+const MIN_SHARE: f64 = 0.01;
+/// A simpler formula that leaves at most this error, as a ratio, is as good, …
+const EQUAL: f64 = 1.015;
+/// … and so is one that leaves at most this one where the difference is not certain.
+const NEARLY_EQUAL: f64 = 1.04;
+/// A more complex formula is proposed beside a simpler one where it leaves less than this.
+const CLEARLY_LESS: f64 = 0.99;
+/// Formulas that are named as not to be told from one, at most.
+const MAX_RIVALS: usize = 4;
+/// Name under which a formula is judged.
+const NAME: &str = "formula";
+
+/// What formulas are judged by.
+pub(super) struct Judge<'a> {
+    pub(super) filtered: &'a Filtered<'a>,
+    pub(super) spec: &'a ModelSpec,
+    pub(super) prepared: &'a PreparedModel,
+    pub(super) base: &'a Fit,
+    pub(super) rows: &'a Rows,
+}
+
+/// A formula as it is printed, in the model.
+struct Judged {
+    formula: Formula,
+    left_out: LeftOut,
+    signals: Vec<usize>,
+}
+
+impl Judge<'_> {
+    /// The formulas to propose, best first; where an effect is `named`, those that are
+    /// certainly better than it.
+    pub(super) fn best(
+        &self,
+        found: Vec<State>,
+        named: Option<&NamedCandidate>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Vec<Formula> {
+        let mut chosen: Vec<State> = Vec::new();
+        for (fewer, most) in JUDGED.into_iter().enumerate() {
+            let of_length = found.iter().filter(|own| own.terms.len() == fewer + 1);
+            chosen.extend(of_length.take(most).cloned());
+        }
+        let count = chosen.len().max(1) as f64;
+        let named = named.and_then(|own| {
+            let (_, left_out) = self.with(&Term::Catalogue(own.effect.clone()))?;
+            Some(left_out)
+        });
+        let mut judged: Vec<Judged> = Vec::new();
+        for (number, state) in chosen.iter().enumerate() {
+            let own = self.judge(state);
+            let is_better = |own: &Judged| {
+                (named.as_ref()).is_none_or(|named| {
+                    let decrease = own.left_out.decrease_from(named);
+                    decrease.is_certain() && decrease.after < CLEARLY_LESS * decrease.before
+                })
+            };
+            judged.extend(own.filter(is_better));
+            progress((number + 1) as f64 / count);
+        }
+        judged.sort_by(|a, b| {
+            let error = |own: &Judged| own.formula.held_out_after;
+            error(a).total_cmp(&error(b))
+        });
+        self.ranked(judged)
+    }
+
+    /// The model with one more effect, and what it leaves of rows left out.
+    fn with(&self, effect: &Term) -> Option<(Addition, LeftOut)> {
+        let both = (self.prepared, self.base);
+        let (addition, extended) = add_to(self.filtered, self.spec, both, effect).ok()?;
+        let left_out = LeftOut::new(&extended, &Design::new(&extended));
+        Some((addition, left_out))
+    }
+
+    /// A formula as it is printed, where it lowers the error and is no chance.
+    fn judge(&self, state: &State) -> Option<Judged> {
+        let signals = self.rows.signals();
+        let errors = errors(self.rows, &state.terms)?;
+        let (of_coefficients, of_constants) = errors.split_at(state.terms.len());
+        let mut terms = state.terms.clone();
+        let order = constants(&terms);
+        let mut texts = Vec::new();
+        for (at, error) in order.iter().zip(of_constants) {
+            let value = constant(&terms, *at);
+            let (text, number) = rounded(value, digits(value, *error));
+            set(&mut terms, *at, number);
+            texts.push(text);
+        }
+        let coefficients = coefficient_names(terms.len(), &signals);
+        let names = constant_names(&terms, &signals);
+        let expression = text(&terms, &signals, &coefficients, &texts);
+        let effect = Term::Custom(CustomEffect {
+            name: NAME.to_owned(),
+            expression: expression.clone(),
+            bounds: BTreeMap::new(),
+        });
+        let (addition, left_out) = self.with(&effect)?;
+        let decrease = addition.decrease;
+        let share = decrease.mean_square / decrease.before.powi(2).max(1e-300);
+        let mut parameters = BTreeMap::new();
+        let mut p_value = state.p_value;
+        let own = addition.parameters.values();
+        let own = own.filter(|parameter| parameter.effect == NAME);
+        for (((name, term), fitted), error) in
+            coefficients.iter().zip(&terms).zip(own).zip(of_coefficients)
+        {
+            let conditional = fitted.std_error.unwrap_or(0.0);
+            p_value = p_value.max(self.p_value_between_sessions(term, fitted));
+            let parameter = Parameter {
+                // What places and scales may be makes a coefficient less certain.
+                std_error: Some(conditional.max(*error)),
+                unit: term.unit(&signals).text(self.prepared.facts.joint),
+                ..fitted.clone()
+            };
+            parameters.insert(name.clone(), parameter);
+        }
+        for ((at, name), error) in order.iter().zip(&names).zip(of_constants) {
+            let parameter = Parameter {
+                value: constant(&terms, *at),
+                std_error: Some(*error),
+                unit: self.unit_of_constant(&terms, at, &signals),
+                effect: NAME.to_owned(),
+            };
+            parameters.insert(name.clone(), parameter);
+        }
+        let read = read_by(&terms);
+        let named = read.iter().filter_map(|at| signals.get(*at));
+        let formula = Formula {
+            form: text(&terms, &signals, &coefficients, &names),
+            expression,
+            parameters,
+            signals: named.map(|own| own.of_results.clone()).collect(),
+            held_out_before: addition.held_out_before,
+            held_out_after: addition.held_out_after,
+            share,
+            share_std_error: decrease.std_error / decrease.before.powi(2).max(1e-300),
+            p_value,
+            complexity: state.complexity(),
+            cannot_be_told_from: Vec::new(),
+            next_experiment: Proposal::LoadSteps,
+            separate_by: String::new(),
+        };
+        let is_certain = addition.lowers_error && p_value <= SIGNIFICANCE && share > MIN_SHARE;
+        is_certain.then_some(Judged {
+            formula,
+            left_out,
+            signals: read,
+        })
+    }
+
+    /// What hardly varies within a session has as many values as there are sessions:
+    /// its coefficient has to hold from one to the other, too.
+    fn p_value_between_sessions(&self, term: &FormulaTerm, fitted: &Parameter) -> f64 {
+        let kind = |signal: usize| self.rows.channels.get(signal).map(|own| own.kind);
+        if term.signals().all(|own| kind(own) != Some(Kind::Slow)) {
+            return 0.0;
+        }
+        let error = fitted.std_error.unwrap_or(f64::INFINITY).max(1e-300);
+        let freedom = self.prepared.facts.sessions as f64 - 1.0;
+        f_tail((fitted.value / error).powi(2), 1.0, freedom)
+    }
+
+    fn unit_of_constant(
+        &self,
+        terms: &[FormulaTerm],
+        at: &super::term::At,
+        signals: &[Signal],
+    ) -> String {
+        let factor = terms.get(at.term).and_then(|own| own.factors.get(at.factor));
+        let signal = factor.and_then(|own| signals.get(own.signal));
+        match signal.and_then(|own| own.place_unit) {
+            Some(unit) if at.which == 0 => unit.to_owned(),
+            _ => signal.map_or_else(String::new, |own| {
+                own.unit.text(self.prepared.facts.joint)
+            }),
+        }
+    }
+
+    /// The simplest of the best first; then those that are simpler or explain more.
+    fn ranked(&self, judged: Vec<Judged>) -> Vec<Formula> {
+        let Some(best) = judged.first() else {
+            return Vec::new();
+        };
+        let first = (judged.iter().enumerate())
+            .filter(|(_, own)| as_good(best, own))
+            .min_by_key(|(at, own)| (own.formula.complexity, *at))
+            .map_or(0, |(at, _)| at);
+        let is_on_front = |at: usize| {
+            let own = &judged[at].formula;
+            at == first
+                || judged.iter().enumerate().all(|(other_at, other)| {
+                    let other = &other.formula;
+                    other_at == at
+                        || own.complexity < other.complexity
+                        || own.held_out_after < CLEARLY_LESS * other.held_out_after
+                })
+        };
+        let mut order: Vec<usize> = (0..judged.len()).filter(|at| is_on_front(*at)).collect();
+        order.sort_by_key(|at| (*at != first, *at));
+        order
+            .into_iter()
+            .map(|at| self.with_rivals(&judged, at))
+            .collect()
+    }
+
+    /// A formula with what cannot be told from it, and what would decide.
+    fn with_rivals(&self, judged: &[Judged], at: usize) -> Formula {
+        let own = &judged[at];
+        let others = judged.iter().enumerate();
+        let rivals: Vec<&Judged> = others
+            .filter(|(other, rival)| *other != at && (as_good(own, rival) && as_good(rival, own)))
+            .map(|(_, rival)| rival)
+            .take(MAX_RIVALS)
+            .collect();
+        let next_experiment = self.deciding(own, &rivals);
+        let expressions = rivals.iter().map(|own| own.formula.expression.clone());
+        Formula {
+            cannot_be_told_from: expressions.collect(),
+            separate_by: format!(
+                "{}: {}",
+                next_experiment.id(),
+                next_experiment.instruction()
+            ),
+            next_experiment,
+            ..own.formula.clone()
+        }
+    }
+
+    /// The recording that varies what only one of two formulas reads, for as many of
+    /// the rivals as one recording can; of formulas over the same signals what varies
+    /// these most.
+    fn deciding(&self, own: &Judged, rivals: &[&Judged]) -> Proposal {
+        let mut votes: Vec<usize> = Vec::new();
+        for rival in rivals {
+            let only = |a: &[usize], b: &[usize]| -> Vec<usize> {
+                a.iter().filter(|signal| !b.contains(signal)).copied().collect()
+            };
+            let mut apart = only(&own.signals, &rival.signals);
+            apart.extend(only(&rival.signals, &own.signals));
+            votes.extend(if apart.is_empty() { own.signals.clone() } else { apart });
+        }
+        if votes.is_empty() {
+            votes.clone_from(&own.signals);
+        }
+        let subject = self.prepared.facts.joint.subject();
+        let varied = votes.iter().map(|signal| {
+            let channel = self.rows.channels.get(*signal);
+            let name = channel.map_or("", |own| own.signal.name.as_str());
+            varied_by(subject, name)
+        });
+        let varied: Vec<Proposal> = varied.collect();
+        let count = |proposal: &Proposal| varied.iter().filter(|own| *own == proposal).count();
+        let all = Proposal::ALL.iter().rev();
+        let most = all.max_by_key(|proposal| count(proposal));
+        most.copied().unwrap_or(Proposal::LoadSteps)
+    }
+}
+
+/// The recording that varies a signal of formulas most.
+fn varied_by(subject: Subject, signal: &str) -> Proposal {
+    match (subject, signal) {
+        (_, "T") => Proposal::TemperatureSweep,
+        (Subject::Joint, "q") => Proposal::WidePosition,
+        (Subject::Joint, "qd") => Proposal::WideSpeedRange,
+        (Subject::Joint, "tau") => Proposal::LoadSteps,
+        (Subject::Joint, _) => Proposal::Accelerations,
+        (Subject::Contact, "r") => Proposal::ContactSweep,
+        (Subject::Contact, "F_N") => Proposal::ContactForces,
+        (Subject::Contact, _) => Proposal::ContactSpeeds,
+    }
+}
+
+/// Whether `other` explains rows left out as well as `best` does.
+fn as_good(best: &Judged, other: &Judged) -> bool {
+    let ratio = other.formula.held_out_after / best.formula.held_out_after.max(1e-300);
+    let is_certain = || best.left_out.decrease_from(&other.left_out).is_certain();
+    ratio < EQUAL || (ratio < NEARLY_EQUAL && !is_certain())
+}
+
+/// The signals that terms read, each once.
+fn read_by(terms: &[FormulaTerm]) -> Vec<usize> {
+    let mut all: Vec<usize> = terms.iter().flat_map(FormulaTerm::signals).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// As many significant digits as a constant with this standard error is worth.
+fn digits(value: f64, error: f64) -> usize {
+    let enough = |digits: &usize| {
+        let (_, number) = rounded(value, *digits);
+        (number - value).abs() <= 0.2 * error
+    };
+    (2..5).find(enough).unwrap_or(5)
+}
