@@ -101,7 +101,8 @@ impl Score {
 
 /// Gram matrices of the extra columns, block by block, less what each session's own
 /// parameters of the model explain of them; and their sum.
-fn reduced(design: &Design, grams: &BlockGrams) -> (BlockGrams, Gram) {
+#[must_use]
+pub fn reduced(design: &Design, grams: &BlockGrams) -> (BlockGrams, Gram) {
     let reduced: BlockGrams = grams
         .iter()
         .map(|session| {
@@ -146,10 +147,17 @@ pub fn beside(design: &Design, grams: &BlockGrams, first: usize) -> f64 {
 /// Scores extra columns within sessions.
 #[must_use]
 pub fn within(design: &Design, grams: &BlockGrams) -> Score {
-    let (reduced, total) = reduced(design, grams);
-    let columns = total.columns();
+    within_folds(&design.folds, &reduced(design, grams).0)
+}
+
+/// Scores columns that are `reduced` already by what each session's own parameters
+/// explain of them: block by block, y the last.
+#[must_use]
+pub fn within_folds(folds: &[Vec<(usize, usize)>], reduced: &BlockGrams) -> Score {
+    let columns = reduced.iter().flatten().next().map_or(0, Gram::columns);
+    let total = Gram::sum(reduced.iter().flatten(), columns);
     let (mut gains, mut slope) = (Vec::new(), Slope::default());
-    for fold in &design.folds {
+    for fold in folds {
         let left_out: Vec<&Gram> = fold
             .iter()
             .filter_map(|(s, b)| reduced.get(*s).and_then(|r| r.get(*b)))
@@ -164,7 +172,7 @@ pub fn within(design: &Design, grams: &BlockGrams) -> Score {
         }
     }
     let estimate = total.solve();
-    let p_value = jackknife_wald(&estimate, &without_each(&reduced, &total));
+    let p_value = jackknife_wald(&estimate, &without_each(reduced, &total));
     Score::new(
         &estimate,
         gains,

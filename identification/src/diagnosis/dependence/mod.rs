@@ -10,7 +10,7 @@ use basis::{Channel, basis, channels};
 use serde::Serialize;
 
 use crate::design::{Design, PreparedModel};
-use crate::effects::{Direction, EffectHandle};
+use crate::effects::{Direction, EffectHandle, JointCoupling, VELOCITY_OF};
 use crate::numerics::statistics::{f_tail, quantile_or_zero};
 use crate::validation::{Score, between, within};
 
@@ -53,7 +53,9 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
     for i in 0..channels.len() {
         for j in 0..i {
             // Two slow signals have as many values together as sessions.
-            if !(channels[i].slow && channels[j].slow) {
+            // Other joints' motions go with this joint's own, not with each other.
+            let slow = channels[i].slow && channels[j].slow;
+            if !slow && goes_with(&channels[j], &channels[i]) {
                 choices.push(vec![j, i]);
             }
         }
@@ -100,6 +102,21 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
         dependence.map = draw(prepared, &chosen, &residuals);
     }
     found
+}
+
+/// Whether a map over both is tried.
+fn goes_with(a: &Channel, b: &Channel) -> bool {
+    /// Own signals that a map over another joint's velocity may have, too.
+    const OWN: [&str; 3] = ["position", "velocity", "load"];
+    let pair = |other: &Channel, own: &Channel| {
+        other.name.starts_with(VELOCITY_OF) && OWN.contains(&own.name.as_str())
+    };
+    match [a, b].map(|channel| JointCoupling::is_signal(&channel.name)) {
+        [false, false] => true,
+        [true, true] => false,
+        [true, false] => pair(a, b),
+        [false, true] => pair(b, a),
+    }
 }
 
 /// Mean square \[Nm²\] that a free map over an effect's own signals, with the
@@ -211,7 +228,8 @@ fn rank(found: &mut Vec<Dependence>) {
 }
 
 /// p-value of a one-sided t-test.
-fn one_sided(t: f64, clusters: usize) -> f64 {
+#[must_use]
+pub fn one_sided(t: f64, clusters: usize) -> f64 {
     if t <= 0.0 {
         return 1.0;
     }
