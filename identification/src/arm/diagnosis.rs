@@ -52,7 +52,7 @@ pub struct ArmSuspect {
 }
 
 /// A dependence of a joint's residual. Signals of other joints are called
-/// `velocity_NAME` and `load_NAME`.
+/// `position_NAME`, `velocity_NAME` and `load_NAME`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmDependence {
     /// The joint.

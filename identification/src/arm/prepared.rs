@@ -14,7 +14,7 @@ use crate::data::error::PrepareError;
 use crate::data::stated_filter::StatedFilter;
 use crate::data::{Dataset, ModelSpec, RecordedSession};
 use crate::design::{Design, PreparedModel};
-use crate::effects::{LOAD_OF, VELOCITY_OF};
+use crate::effects::{LOAD_OF, POSITION_OF, VELOCITY_OF};
 use crate::preparation::prepare;
 use crate::validation::left_out::LeftOut;
 
@@ -146,6 +146,8 @@ impl<'a> PreparedArm<'a> {
         let mut sessions = each.zip(torques).map(|((session, states), torques)| {
             let mut extra = BTreeMap::new();
             for (other, name) in names.iter().enumerate().filter(|(other, _)| *other != joint) {
+                let position = session.position.get(other).cloned().unwrap_or_default();
+                extra.insert(format!("{POSITION_OF}{name}"), position);
                 let velocity = states.qd.iter().map(|own| own[other]).collect();
                 extra.insert(format!("{VELOCITY_OF}{name}"), velocity);
                 extra.insert(format!("{LOAD_OF}{name}"), torques[other].clone());

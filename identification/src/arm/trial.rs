@@ -10,7 +10,7 @@ use super::shared::{self, ArmColumns, SharedFit, weighted_decrease};
 use crate::diagnosis::dependence::one_sided;
 use crate::fit::Parameter;
 use crate::validation::left_out::Decrease;
-use crate::validation::{Score, within_folds};
+use crate::validation::{Score, gain_of_folds};
 
 /// Rounds in which an effect is linearised again.
 const ROUNDS: usize = 3;
@@ -82,7 +82,7 @@ pub(super) fn try_one(
         fit = shared::fit(&arm.joints, &columns, &weights);
     }
     let folds = arm.joints.first().map_or(&[][..], |joint| &joint.design.folds);
-    let score = within_folds(folds, &columns.reduced(&arm.joints, &weights, known));
+    let score = gain_of_folds(folds, &columns.reduced(&arm.joints, &weights, known));
     let size = effect.columns();
     Tried {
         effect,

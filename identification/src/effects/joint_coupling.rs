@@ -7,7 +7,9 @@ use super::{Effect, EffectDescription, Memory, Point, free, sign};
 
 /// Its id.
 pub const COUPLING: &str = "joint_coupling";
-/// What the extra signal with another joint's velocity \[rad/s\] is called, before its name.
+/// What the extra signal with another joint's position \[rad\] is called, before its name.
+pub const POSITION_OF: &str = "position_";
+/// The same of its velocity \[rad/s\].
 pub const VELOCITY_OF: &str = "velocity_";
 /// The same of the torque \[Nm\] that moves its links.
 pub const LOAD_OF: &str = "load_";
@@ -57,12 +59,6 @@ impl JointCoupling {
             signals: with(VELOCITY_OF).chain(with(LOAD_OF)).collect(),
             others: names.len(),
         })
-    }
-
-    /// Whether an extra signal is another joint's.
-    #[must_use]
-    pub fn is_signal(name: &str) -> bool {
-        name.starts_with(VELOCITY_OF) || name.starts_with(LOAD_OF)
     }
 
     /// The other joint that a shape names, and which of the coefficients it has.

@@ -147,13 +147,22 @@ pub fn beside(design: &Design, grams: &BlockGrams, first: usize) -> f64 {
 /// Scores extra columns within sessions.
 #[must_use]
 pub fn within(design: &Design, grams: &BlockGrams) -> Score {
-    within_folds(&design.folds, &reduced(design, grams).0)
+    let (reduced, total) = reduced(design, grams);
+    let mut score = gain_of_folds(&design.folds, &reduced);
+    score.p_value = jackknife_wald(&total.solve(), &without_each(&reduced, &total));
+    score
 }
 
-/// Scores columns that are `reduced` already by what each session's own parameters
+/// The same without the test of the coefficients: p-value 1.
+#[must_use]
+pub fn gain_within(design: &Design, grams: &BlockGrams) -> Score {
+    gain_of_folds(&design.folds, &reduced(design, grams).0)
+}
+
+/// The same of columns that are `reduced` already by what each session's own parameters
 /// explain of them: block by block, y the last.
 #[must_use]
-pub fn within_folds(folds: &[Vec<(usize, usize)>], reduced: &BlockGrams) -> Score {
+pub fn gain_of_folds(folds: &[Vec<(usize, usize)>], reduced: &BlockGrams) -> Score {
     let columns = reduced.iter().flatten().next().map_or(0, Gram::columns);
     let total = Gram::sum(reduced.iter().flatten(), columns);
     let (mut gains, mut slope) = (Vec::new(), Slope::default());
@@ -171,16 +180,8 @@ pub fn within_folds(folds: &[Vec<(usize, usize)>], reduced: &BlockGrams) -> Scor
             gains.push(gain);
         }
     }
-    let estimate = total.solve();
-    let p_value = jackknife_wald(&estimate, &without_each(reduced, &total));
-    Score::new(
-        &estimate,
-        gains,
-        &slope,
-        total.square(),
-        total.rows,
-        p_value,
-    )
+    let (before, rows) = (total.square(), total.rows);
+    Score::new(&total.solve(), gains, &slope, before, rows, 1.0)
 }
 
 /// Scores extra columns between sessions: all parameters come from the other folds.
