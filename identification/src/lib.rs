@@ -18,6 +18,7 @@
 //! diagnosis/     which effect is missing, which others explain as much, what to record next
 //! discovery/     a formula for what no effect of the catalogue explains
 //! twin/          the model held against the joint while it moves
+//! arm/           all of that for the joints of an arm together, and effects of the arm
 //! experiments/   single regressions of the papers, apart from the pipeline
 //! ```
 //!
@@ -26,6 +27,7 @@
 //! depends on F_N as τ_F on the load ([`JointType::Contact`]). Pure: no file, clock, thread or randomness; the same recordings
 //! give the same answer.
 
+pub mod arm;
 pub mod comparison;
 pub mod data;
 pub mod design;

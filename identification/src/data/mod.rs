@@ -44,6 +44,10 @@ pub struct RecordedSession {
     /// there is nothing but the link, so that the sensor's zero can be read.
     #[serde(default)]
     pub unloaded: bool,
+    /// Whether `joint_torque` is what a model of the arm says that its links take,
+    /// rather than what a sensor feels.
+    #[serde(default)]
+    pub torque_is_modelled: bool,
 }
 
 /// The recordings of one joint, or of one contact.

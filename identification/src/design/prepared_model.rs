@@ -1,8 +1,10 @@
 //! Recordings and model put together, as the regression needs them.
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 
-use crate::effects::{BoundTerm, Facts, with_columns};
+use crate::effects::{BoundTerm, EffectHandle, Facts, JointCoupling, with_columns};
 use crate::numerics::filter::Kernel;
 use crate::signals::{Filters, Signals};
 
@@ -41,6 +43,14 @@ impl PreparedModel {
         let mut terms = with_columns(&self.terms);
         let (term, columns) = terms.find(|(t, _)| t.effect.description().id == id)?;
         Some((term, columns.start))
+    }
+
+    /// The effect that other joints of the arm have on this one, where their motions
+    /// are recorded.
+    #[must_use]
+    pub fn coupling(&self) -> Option<EffectHandle> {
+        let coupling = JointCoupling::among(self.sessions.first()?.extra.keys())?;
+        Some(Arc::new(coupling))
     }
 
     /// The same model with the rows near rest and just after reversals; of a

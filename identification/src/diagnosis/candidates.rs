@@ -87,6 +87,7 @@ pub fn missing(prepared: &PreparedModel) -> Vec<EffectHandle> {
     let has_part = |whole: &Row| whole.is_sum && whole.parts().any(|p| prepared.has(p));
     effects::for_subject(prepared.facts.joint.subject())
         .into_iter()
+        .chain(prepared.coupling())
         .filter(|effect| {
             let row = effect.row();
             let there = prepared.has(row.id) || has_whole(row) || has_part(row);

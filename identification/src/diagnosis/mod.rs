@@ -26,6 +26,7 @@ use crate::data::check::check;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, ModelSpec, RecordedSession};
 use crate::design::{Design, PreparedModel};
+use crate::effects::COUPLING;
 use crate::fit::addition::Addition;
 use crate::fit::{Parameter, Rms};
 use crate::preparation::Filtered;
@@ -135,6 +136,10 @@ fn describe_all(dataset: &Dataset, found: &Examination) -> Diagnosis {
         soundness: base.soundness.clone(),
         residual_depends_on: depends_on,
         tried: trial.variants + trial.variants_between,
+        not_tested: match prepared.coupling().is_some() || dataset.joint.is_contact() {
+            true => Vec::new(),
+            false => vec![COUPLING.to_owned()],
+        },
     }
 }
 

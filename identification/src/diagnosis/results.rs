@@ -157,6 +157,9 @@ pub struct Diagnosis {
     pub residual_depends_on: Vec<Dependence>,
     /// Effects and shapes tried.
     pub tried: usize,
+    /// Effects that these recordings cannot show, whatever the verdict: coupling
+    /// with joints whose motion is not among them.
+    pub not_tested: Vec<String>,
 }
 
 impl Diagnosis {

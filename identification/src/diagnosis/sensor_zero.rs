@@ -21,7 +21,7 @@ const MIN_OFFSET: f64 = 4.0;
 /// (q̈) and its damping (q̇).
 #[must_use]
 pub fn reading(prepared: &PreparedModel) -> Option<(f64, f64)> {
-    if !prepared.facts.joint_torque {
+    if prepared.facts.no_torque_sensor().is_some() {
         return None;
     }
     let zeros: Vec<f64> = prepared

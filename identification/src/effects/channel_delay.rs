@@ -84,7 +84,7 @@ impl Effect for ChannelDelay {
     }
 
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
-        let channels: &[f64] = if facts.joint_torque {
+        let channels: &[f64] = if facts.no_torque_sensor().is_none() {
             &[0.0, 1.0, 2.0]
         } else {
             &[0.0, 3.0]
@@ -113,13 +113,17 @@ impl Effect for ChannelDelay {
         let ([channel, ..], [delay, ..]) = (shape, coefficients) else {
             return 0;
         };
-        let late = match channel.round() as i64 {
-            0 => &mut channels.motor_torque,
-            1 => &mut channels.joint_torque,
-            _ => &mut channels.position,
+        // A torque that is modelled from the position is late with it.
+        let late: &mut [&mut Vec<f64>] = match channel.round() as i64 {
+            0 => &mut [&mut channels.motor_torque],
+            1 => &mut [&mut channels.joint_torque],
+            2 => &mut [&mut channels.position],
+            _ => &mut [&mut channels.position, &mut channels.joint_torque],
         };
         let samples = delay / period;
-        *late = advanced(late, samples);
+        for late in late {
+            **late = advanced(late, samples);
+        }
         samples.abs().ceil() as usize + 1
     }
 

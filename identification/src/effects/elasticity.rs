@@ -66,7 +66,7 @@ impl Effect for Elasticity {
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        (!facts.joint_torque).then(|| "no joint torque sensor".to_owned())
+        facts.no_torque_sensor()
     }
 
     fn compensate(

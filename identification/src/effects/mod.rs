@@ -19,6 +19,7 @@ mod elasticity;
 mod exact;
 pub mod expression;
 mod inertia;
+mod joint_coupling;
 mod motor_constant;
 mod presliding_hysteresis;
 mod static_law;
@@ -41,6 +42,7 @@ pub use description::{EffectDescription, Quantity};
 pub use exact::ExactSignal;
 pub(crate) use exact::{constant_of, parts_of};
 pub use inertia::Inertia;
+pub use joint_coupling::{COUPLING, JointCoupling, LOAD_OF, POSITION_OF, VELOCITY_OF};
 pub use term::{BoundTerm, with_columns};
 
 /// Largest number of columns of one effect.

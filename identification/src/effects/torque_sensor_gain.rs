@@ -29,7 +29,7 @@ impl Effect for TorqueSensorGain {
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        (!facts.joint_torque).then(|| "no joint torque sensor".to_owned())
+        facts.no_torque_sensor()
     }
 
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {

@@ -30,6 +30,6 @@ impl Effect for TorqueSensorOffset {
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        (!facts.joint_torque).then(|| "no joint torque sensor".to_owned())
+        facts.no_torque_sensor()
     }
 }

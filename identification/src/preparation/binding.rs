@@ -54,7 +54,9 @@ impl PreparedModel {
 
     fn in_catalogue(&self, id: &str) -> Result<EffectHandle, PrepareError> {
         let subject = self.facts.joint.subject();
-        match effects::find(id) {
+        let coupling = self.coupling();
+        let coupling = coupling.filter(|effect| effect.description().id == id);
+        match effects::find(id).or(coupling) {
             Some(effect) if effect.description().of == subject => Ok(effect),
             Some(effect) => Err(PrepareError::OtherSubject {
                 id: id.to_owned(),

@@ -204,7 +204,7 @@ impl Filters {
     }
 
     /// Smoothing of states by this `width`, and their first two derivatives.
-    pub(super) fn state_kernels(&self, width: f64, period: f64) -> [Kernel; 3] {
+    pub(crate) fn state_kernels(&self, width: f64, period: f64) -> [Kernel; 3] {
         match &self.stated {
             Some(filter) => filter.states(period),
             None => [0, 1, 2].map(|order| Kernel::sharp(width, order, period)),

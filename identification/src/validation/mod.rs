@@ -101,7 +101,8 @@ impl Score {
 
 /// Gram matrices of the extra columns, block by block, less what each session's own
 /// parameters of the model explain of them; and their sum.
-fn reduced(design: &Design, grams: &BlockGrams) -> (BlockGrams, Gram) {
+#[must_use]
+pub fn reduced(design: &Design, grams: &BlockGrams) -> (BlockGrams, Gram) {
     let reduced: BlockGrams = grams
         .iter()
         .map(|session| {
@@ -147,9 +148,25 @@ pub fn beside(design: &Design, grams: &BlockGrams, first: usize) -> f64 {
 #[must_use]
 pub fn within(design: &Design, grams: &BlockGrams) -> Score {
     let (reduced, total) = reduced(design, grams);
-    let columns = total.columns();
+    let mut score = gain_of_folds(&design.folds, &reduced);
+    score.p_value = jackknife_wald(&total.solve(), &without_each(&reduced, &total));
+    score
+}
+
+/// The same without the test of the coefficients: p-value 1.
+#[must_use]
+pub fn gain_within(design: &Design, grams: &BlockGrams) -> Score {
+    gain_of_folds(&design.folds, &reduced(design, grams).0)
+}
+
+/// The same of columns that are `reduced` already by what each session's own parameters
+/// explain of them: block by block, y the last.
+#[must_use]
+pub fn gain_of_folds(folds: &[Vec<(usize, usize)>], reduced: &BlockGrams) -> Score {
+    let columns = reduced.iter().flatten().next().map_or(0, Gram::columns);
+    let total = Gram::sum(reduced.iter().flatten(), columns);
     let (mut gains, mut slope) = (Vec::new(), Slope::default());
-    for fold in &design.folds {
+    for fold in folds {
         let left_out: Vec<&Gram> = fold
             .iter()
             .filter_map(|(s, b)| reduced.get(*s).and_then(|r| r.get(*b)))
@@ -163,16 +180,8 @@ pub fn within(design: &Design, grams: &BlockGrams) -> Score {
             gains.push(gain);
         }
     }
-    let estimate = total.solve();
-    let p_value = jackknife_wald(&estimate, &without_each(&reduced, &total));
-    Score::new(
-        &estimate,
-        gains,
-        &slope,
-        total.square(),
-        total.rows,
-        p_value,
-    )
+    let (before, rows) = (total.square(), total.rows);
+    Score::new(&total.solve(), gains, &slope, before, rows, 1.0)
 }
 
 /// Scores extra columns between sessions: all parameters come from the other folds.

@@ -91,8 +91,10 @@ pub struct Facts {
     pub inertia: Option<f64>,
     /// Motor turns in one turn of the joint.
     pub gear_ratio: Option<f64>,
-    /// Whether τ is measured.
+    /// Whether τ is recorded.
     pub joint_torque: bool,
+    /// Whether that is the torque of a model of the arm, not that of a sensor.
+    pub torque_is_modelled: bool,
     /// Whether the temperature is measured.
     pub temperature: bool,
     /// T₀ \[degC\], the mean.
@@ -127,6 +129,12 @@ impl Facts {
     pub fn no_temperature(&self) -> Option<String> {
         (!self.temperature || self.temperature_range < 2.0)
             .then(|| "the temperature is not measured or varies by less than 2 K".to_owned())
+    }
+
+    /// Why nothing can be said of a joint torque sensor, if nothing can.
+    #[must_use]
+    pub fn no_torque_sensor(&self) -> Option<String> {
+        (!self.joint_torque || self.torque_is_modelled).then(|| "no joint torque sensor".to_owned())
     }
 
     /// Length \[rad\] of the range of positions.

@@ -7,7 +7,10 @@ use crate::numerics::statistics::quantile_or_zero;
 /// Knots of a map over one signal, …
 const KNOTS_ALONE: usize = 7;
 /// … and of each signal of a map over two.
-const KNOTS_PAIR: usize = 4;
+pub(super) const KNOTS_PAIR: usize = 4;
+/// The same where the sessions' paths through the plane of two joints have little in
+/// common: one slope over each signal, and their product.
+pub(super) const KNOTS_PRODUCT: usize = 2;
 
 /// A signal at the rows of every session.
 pub(super) struct Channel {
@@ -111,10 +114,11 @@ pub(super) fn basis(
     prepared: &PreparedModel,
     chosen: &[&Channel],
     direction: Direction,
+    knots_of_pair: usize,
 ) -> Vec<Vec<Vec<f64>>> {
     let fast: Vec<&&Channel> = chosen.iter().filter(|c| !c.slow).collect();
     let count = if fast.len() > 1 {
-        KNOTS_PAIR
+        knots_of_pair
     } else {
         KNOTS_ALONE
     };

@@ -6,13 +6,13 @@
 
 mod basis;
 
-use basis::{Channel, basis, channels};
+use basis::{Channel, KNOTS_PAIR, KNOTS_PRODUCT, basis, channels};
 use serde::Serialize;
 
 use crate::design::{Design, PreparedModel};
-use crate::effects::{Direction, EffectHandle};
+use crate::effects::{Direction, EffectHandle, LOAD_OF, POSITION_OF, VELOCITY_OF};
 use crate::numerics::statistics::{f_tail, quantile_or_zero};
-use crate::validation::{Score, between, within};
+use crate::validation::{Score, between, gain_within};
 
 /// A dependence of the residual on one signal or two.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -53,7 +53,9 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
     for i in 0..channels.len() {
         for j in 0..i {
             // Two slow signals have as many values together as sessions.
-            if !(channels[i].slow && channels[j].slow) {
+            // Other joints' motions go with this joint's own, not with each other.
+            let slow = channels[i].slow && channels[j].slow;
+            if !slow && goes_with(&channels[j], &channels[i]) {
                 choices.push(vec![j, i]);
             }
         }
@@ -62,8 +64,9 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
     let mut found: Vec<Dependence> = Vec::new();
     for choice in choices {
         let chosen: Vec<&Channel> = choice.iter().map(|i| &channels[*i]).collect();
-        let columns = basis(prepared, &chosen, Direction::Either);
-        let grams = design.with(&columns);
+        let with_knots =
+            |knots| design.with(&basis(prepared, &chosen, Direction::Either, knots));
+        let grams = with_knots(KNOTS_PAIR);
         // The model's own parameters, one set a session, can absorb what changes
         // with temperature or date only; shared ones cannot, but the variation of
         // all parameters between sessions masks it.
@@ -72,7 +75,11 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
             scores.push(between(design, &grams));
         }
         if chosen.iter().any(|c| !c.slow) {
-            scores.push(within(design, &grams));
+            scores.push(gain_within(design, &grams));
+        }
+        let motions = |c: &&&Channel| Origin::of(&c.name) == Origin::Motion;
+        if chosen.len() > 1 && chosen.iter().any(|c| motions(&c)) {
+            scores.push(gain_within(design, &with_knots(KNOTS_PRODUCT)));
         }
         let names: Vec<String> = chosen.iter().map(|c| c.name.clone()).collect();
         let best = scores
@@ -102,6 +109,40 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
     found
 }
 
+/// Whether a map over both is tried: with another joint's position or velocity another
+/// such, or this joint's; its torque alone.
+fn goes_with(a: &Channel, b: &Channel) -> bool {
+    const OWN: [&str; 3] = ["position", "velocity", "load"];
+    let [of_a, of_b] = [a, b].map(|channel| Origin::of(&channel.name));
+    let counts = |origin: Origin, channel: &Channel| match origin {
+        Origin::Motion => true,
+        Origin::Torque => false,
+        Origin::Own => OWN.contains(&channel.name.as_str()),
+    };
+    (of_a == Origin::Own && of_b == Origin::Own) || (counts(of_a, a) && counts(of_b, b))
+}
+
+/// Whose a signal is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// This joint's, or an extra signal.
+    Own,
+    /// Another joint's position or velocity.
+    Motion,
+    /// Another joint's torque.
+    Torque,
+}
+
+impl Origin {
+    fn of(name: &str) -> Self {
+        match name {
+            name if name.starts_with(LOAD_OF) => Self::Torque,
+            name if name.starts_with(POSITION_OF) || name.starts_with(VELOCITY_OF) => Self::Motion,
+            _ => Self::Own,
+        }
+    }
+}
+
 /// Mean square \[Nm²\] that a free map over an effect's own signals, with the
 /// effect's own symmetry, still explains; 0 if no map is significant.
 #[must_use]
@@ -123,12 +164,12 @@ pub fn on_own_signals(prepared: &PreparedModel, design: &Design, effect: &Effect
     choices
         .iter()
         .filter_map(|chosen| {
-            let grams = design.with(&basis(prepared, chosen, own.direction));
+            let grams = design.with(&basis(prepared, chosen, own.direction, KNOTS_PAIR));
             let slow = chosen.iter().any(|c| c.slow);
             let score = if slow {
                 between(design, &grams)
             } else {
-                within(design, &grams)
+                gain_within(design, &grams)
             };
             dependence(&[], &score, tried).map(|d| d.gain)
         })
@@ -193,10 +234,11 @@ fn slow_variation(prepared: &PreparedModel, design: &Design) -> Score {
                 .collect()
         })
         .collect();
-    within(design, &design.with(&columns))
+    gain_within(design, &design.with(&columns))
 }
 
-/// Sorts by gain; keeps a pair only where it explains clearly more than its parts.
+/// Sorts by gain; keeps a pair only where it explains clearly more than its parts, or
+/// leaves clearly less.
 fn rank(found: &mut Vec<Dependence>) {
     let all = found.clone();
     found.retain(|d| {
@@ -205,13 +247,15 @@ fn rank(found: &mut Vec<Dependence>) {
                 part.signals.len() == 1
                     && d.signals.contains(&part.signals[0])
                     && part.gain > 0.9 * d.gain
+                    && 1.0 - d.strength > 0.5 * (1.0 - part.strength)
             })
     });
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
 }
 
 /// p-value of a one-sided t-test.
-fn one_sided(t: f64, clusters: usize) -> f64 {
+#[must_use]
+pub fn one_sided(t: f64, clusters: usize) -> f64 {
     if t <= 0.0 {
         return 1.0;
     }

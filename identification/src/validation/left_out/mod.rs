@@ -23,11 +23,20 @@ impl LeftOut {
         if prepared.held_out.is_empty() {
             return Self::of_folds(design);
         }
+        Self::of_held_out(prepared, |_, session| session.residual(&design.shared))
+    }
+
+    /// Of the recordings that are held out, whose residuals `residual` returns: it is
+    /// given each with its number.
+    pub fn of_held_out(
+        prepared: &PreparedModel,
+        residual: impl Fn(usize, &SessionDesign) -> Vec<f64>,
+    ) -> Self {
         let count = Design::blocks_per_session(prepared.held_out.len());
         let mut blocks = Vec::new();
-        for signals in &prepared.held_out {
+        for (at, signals) in prepared.held_out.iter().enumerate() {
             let session = SessionDesign::new(prepared, signals, &signals.rows, count);
-            let residual = session.residual(&design.shared);
+            let residual = residual(at, &session);
             let each = session.blocks.iter();
             blocks.extend(each.map(|block| judged(&session, &residual, *block)));
         }
@@ -38,11 +47,23 @@ impl LeftOut {
     #[must_use]
     pub fn of_folds(design: &Design) -> Self {
         let total = design.total();
-        let mut blocks = Vec::new();
-        for fold in &design.left_out {
+        Self::of_folds_by(design, |fold| {
             let gram = |(s, b): &(usize, usize)| design.sessions.get(*s)?.grams.get(*b);
             let out = Gram::sum(fold.iter().filter_map(gram), design.base);
             let coefficients = total.without(&out).solve();
+            move |_: usize, session: &SessionDesign| session.residual(&coefficients)
+        })
+    }
+
+    /// The same, where `without` fits to all but a fold: it returns the residuals of a
+    /// session, which it is given with its number.
+    pub fn of_folds_by<R: Fn(usize, &SessionDesign) -> Vec<f64>>(
+        design: &Design,
+        mut without: impl FnMut(&[(usize, usize)]) -> R,
+    ) -> Self {
+        let mut blocks = Vec::new();
+        for fold in &design.left_out {
+            let residual_of = without(fold);
             let mut last = None;
             for (s, b) in fold {
                 let Some(session) = design.sessions.get(*s) else {
@@ -50,7 +71,7 @@ impl LeftOut {
                 };
                 let residual = match last.take() {
                     Some((of, residual)) if of == *s => residual,
-                    _ => session.residual(&coefficients),
+                    _ => residual_of(*s, session),
                 };
                 blocks.extend((session.blocks.get(*b)).map(|at| judged(session, &residual, *at)));
                 last = Some((*s, residual));

@@ -1,0 +1,353 @@
+//! Which effect is missing in an arm, in which of its joints or in the arm itself.
+//!
+//! Every joint is diagnosed by itself, and every effect of the arm is tried on all joints
+//! together. What lowers the error of the whole arm most, each joint weighted by its
+//! noise, comes first; the others are named only where they still pass with that in the
+//! model.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::comparison::{fit, name_partner, samples, used};
+use super::contest::{Contender, Contest};
+use super::data::{ArmDataset, ArmError, ArmSpec, ArmTerm};
+use super::effects::ArmEffect;
+use super::prepared::{ArmJoint, PreparedArm};
+use super::shared::{SharedFit, weighted, weighted_decrease};
+use super::trial::{Tried, try_all, try_one};
+use crate::comparison::noise_floor::NoiseFloor;
+use crate::data::Term;
+use crate::diagnosis::dependence::Dependence;
+use crate::diagnosis::{self, Diagnosis, NamedCandidate, Suspect, Verdict};
+use crate::effects::COUPLING;
+use crate::fit::Rms;
+use ferntast_model::friction::Proposal;
+
+/// Share of the work that the first look at all joints is.
+const FIRST_LOOK: f64 = 0.6;
+
+/// An effect that passes all tests, of a joint or of the arm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmCandidate {
+    /// Its joint (of a link: the joint that carries it); `None` for one of the arm.
+    pub joint: Option<String>,
+    /// Of a coupling: the joint that it comes from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub partner: Option<String>,
+    /// The effect. Errors are those of its joint, of an effect of the arm those of
+    /// all joints, each weighted by its noise.
+    #[serde(flatten)]
+    pub named: NamedCandidate,
+}
+
+/// An effect that is suspected in a joint.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmSuspect {
+    /// The joint.
+    pub joint: String,
+    /// The effect.
+    #[serde(flatten)]
+    pub suspect: Suspect,
+}
+
+/// A dependence of a joint's residual. Signals of other joints are called
+/// `position_NAME`, `velocity_NAME` and `load_NAME`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmDependence {
+    /// The joint.
+    pub joint: String,
+    /// On what.
+    #[serde(flatten)]
+    pub dependence: Dependence,
+}
+
+/// How one joint fares.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointDiagnosis {
+    /// Whether an effect is missing in this joint's torque, of its own or of the arm.
+    pub verdict: Verdict,
+    /// Its error \[Nm\].
+    pub rms: Rms,
+    /// RMS between repeats \[Nm\], where anything was repeated.
+    pub noise_floor: Option<f64>,
+    /// The same, and variation between sessions.
+    pub noise: NoiseFloor,
+    /// Rows of its regression.
+    pub used: usize,
+}
+
+/// Result of a diagnosis of an arm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmDiagnosis {
+    /// Samples in the recordings, of each joint.
+    pub samples: usize,
+    /// Rows of the regressions of all joints.
+    pub used: usize,
+    /// Whether an effect is missing, and whether it is known.
+    pub verdict: Verdict,
+    /// Errors over all joints, each weighted by its noise \[Nm\].
+    pub rms: Rms,
+    /// Effects that pass all tests, best first.
+    pub candidates: Vec<ArmCandidate>,
+    /// Effects that show between sessions, where nothing passes.
+    pub suspected: Vec<ArmSuspect>,
+    /// Signals on which residuals depend, strongest first.
+    pub residual_depends_on: Vec<ArmDependence>,
+    /// Every joint.
+    pub joints: BTreeMap<String, JointDiagnosis>,
+    /// Effects that these recordings cannot show, whatever the verdict.
+    pub not_tested: Vec<String>,
+    /// Effects and shapes tried.
+    pub tried: usize,
+}
+
+/// Tries every effect that the model lacks, of every joint and of the arm.
+///
+/// `progress` is called with the share done, 0 … 1.
+///
+/// # Errors
+///
+/// See [`ArmError`].
+pub fn diagnose(
+    dataset: &ArmDataset,
+    spec: &ArmSpec,
+    progress: &mut dyn FnMut(f64),
+) -> Result<ArmDiagnosis, ArmError> {
+    let arm = PreparedArm::new(dataset, spec)?;
+    let all: Vec<usize> = (0..arm.joints.len()).collect();
+    let each = look(&arm, &all, &mut |done| progress(FIRST_LOOK * done))?;
+    let before = fit(&arm);
+    let tried = try_all(&arm, &before, &mut |done| progress(FIRST_LOOK + 0.2 * done));
+    let contest = Contest::new(&arm, &each, &tried);
+    let weights = contest.weights.clone();
+    let told = Told {
+        arm: &arm,
+        weights: &weights,
+    };
+    let mut candidates = Vec::new();
+    let mut helped = vec![false; all.len()];
+    let last = &mut |done| progress(FIRST_LOOK + 0.2 + 0.2 * done);
+    match contest.winner() {
+        Some(Contender::Arm(winner)) => {
+            candidates.push(told.of_arm(winner, contest.alike(winner)));
+            for (helped, decrease) in helped.iter_mut().zip(&winner.decreases) {
+                *helped = decrease.is_certain();
+            }
+            // With it in the model: what is left is a second effect, or nothing.
+            let more = with(spec, told.term(winner.effect));
+            let then = PreparedArm::new(dataset, &more)?;
+            let open: Vec<usize> = (all.iter().copied())
+                .filter(|at| each[*at].verdict != Verdict::Complete)
+                .collect();
+            let left = look(&then, &open, last)?;
+            for (at, left) in open.iter().zip(&left) {
+                candidates.extend(told.of_joint(*at, left));
+                helped[*at] |= left.verdict == Verdict::Complete;
+            }
+        }
+        Some(Contender::Joint(winner)) => {
+            let others = all.iter().filter(|at| **at != winner);
+            candidates.extend(told.of_joint(winner, &each[winner]));
+            candidates.extend(others.flat_map(|at| told.of_joint(*at, &each[*at])));
+            let passing: Vec<&Tried> = tried.iter().filter(|own| own.passes(&weights)).collect();
+            if let (Some(first), false) = (each[winner].candidates.first(), passing.is_empty()) {
+                let term = ArmTerm {
+                    effect: Term::Catalogue(first.effect.clone()),
+                    joint: arm.joints.get(winner).map(|joint| joint.name.clone()),
+                };
+                let more = with(spec, term);
+                candidates.extend(still_passing(dataset, &more, &passing, &weights, &told)?);
+            }
+        }
+        Some(Contender::Unexplained) | None => {
+            candidates.extend(all.iter().flat_map(|at| told.of_joint(*at, &each[*at])));
+        }
+    }
+    let joints = joints(&arm, &each, &helped);
+    let verdict = match candidates.is_empty() {
+        false => Verdict::Missing,
+        true if joints.values().any(|own| own.verdict == Verdict::Unexplained) => {
+            Verdict::Unexplained
+        }
+        true => Verdict::Complete,
+    };
+    progress(1.0);
+    Ok(ArmDiagnosis {
+        samples: samples(dataset),
+        used: used(&arm.joints),
+        verdict,
+        rms: Rms {
+            train: weighted(&before.train, &weights),
+            held_out: weighted(&before.held_out(), &weights),
+        },
+        suspected: match candidates.is_empty() {
+            true => suspected(&arm, &each),
+            false => Vec::new(),
+        },
+        candidates,
+        residual_depends_on: depends_on(&arm, &each),
+        joints,
+        not_tested: match all.len() > 1 {
+            true => Vec::new(),
+            false => vec![COUPLING.to_owned()],
+        },
+        tried: each.iter().map(|own| own.tried).sum::<usize>() + tried.len(),
+    })
+}
+
+/// Diagnoses these joints one by one.
+fn look(
+    arm: &PreparedArm<'_>,
+    which: &[usize],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<Diagnosis>, ArmError> {
+    let count = which.len().max(1) as f64;
+    let each = which.iter().enumerate().map(|(done, at)| {
+        let joint = &arm.joints[*at];
+        let own = &mut |share: f64| progress((done as f64 + share) / count);
+        diagnosis::diagnose(&joint.dataset, &joint.spec, own).map_err(|source| ArmError::Joint {
+            joint: joint.name.clone(),
+            source: Box::new(source),
+        })
+    });
+    each.collect()
+}
+
+/// The model with one more effect.
+fn with(spec: &ArmSpec, term: ArmTerm) -> ArmSpec {
+    let mut more = spec.clone();
+    more.effects.push(term);
+    more
+}
+
+/// Of effects of the arm those that pass in a model with one more effect, too.
+fn still_passing(
+    dataset: &ArmDataset,
+    more: &ArmSpec,
+    passing: &[&Tried],
+    weights: &[f64],
+    told: &Told<'_>,
+) -> Result<Vec<ArmCandidate>, ArmError> {
+    let then = PreparedArm::new(dataset, more)?;
+    let before: SharedFit = fit(&then);
+    let count = ArmEffect::all(then.joints.len()).len();
+    let again = passing.iter();
+    let again = again.map(|own| try_one(&then, own.effect, &before, count));
+    let mut again: Vec<Tried> = again.filter(|own| own.passes(weights)).collect();
+    let gain = |own: &Tried| weighted_decrease(&own.decreases, weights).mean_square;
+    again.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+    // The others are the same torque in other words.
+    again.truncate(1);
+    Ok(again.iter().map(|own| told.of_arm(own, Vec::new())).collect())
+}
+
+fn joints(
+    arm: &PreparedArm<'_>,
+    each: &[Diagnosis],
+    helped: &[bool],
+) -> BTreeMap<String, JointDiagnosis> {
+    let each = arm.joints.iter().zip(each).zip(helped);
+    each.map(|((joint, own), helped)| {
+        let told = JointDiagnosis {
+            verdict: match helped {
+                true => Verdict::Missing,
+                false => own.verdict,
+            },
+            rms: own.rms,
+            noise_floor: own.noise_floor,
+            noise: own.noise,
+            used: own.used,
+        };
+        (joint.name.clone(), told)
+    })
+    .collect()
+}
+
+fn suspected(arm: &PreparedArm<'_>, each: &[Diagnosis]) -> Vec<ArmSuspect> {
+    let both = arm.joints.iter().zip(each);
+    both.flat_map(|(joint, own)| {
+        let suspect = |suspect: &Suspect| ArmSuspect {
+            joint: joint.name.clone(),
+            suspect: suspect.clone(),
+        };
+        own.suspected.iter().map(suspect)
+    })
+    .collect()
+}
+
+fn depends_on(arm: &PreparedArm<'_>, each: &[Diagnosis]) -> Vec<ArmDependence> {
+    let both = arm.joints.iter().zip(each);
+    let own = both.flat_map(|(joint, own)| {
+        let told = |dependence: &Dependence| ArmDependence {
+            joint: joint.name.clone(),
+            dependence: dependence.clone(),
+        };
+        own.residual_depends_on.iter().map(told)
+    });
+    let mut all: Vec<ArmDependence> = own.collect();
+    all.sort_by(|a, b| b.dependence.strength.total_cmp(&a.dependence.strength));
+    all
+}
+
+/// What is told of candidates.
+struct Told<'a> {
+    arm: &'a PreparedArm<'a>,
+    weights: &'a [f64],
+}
+
+impl Told<'_> {
+    fn joint(&self, at: usize) -> Option<&ArmJoint> {
+        self.arm.joints.get(at)
+    }
+
+    fn term(&self, effect: ArmEffect) -> ArmTerm {
+        let joint = effect.joint().and_then(|at| self.joint(at));
+        ArmTerm {
+            effect: Term::Catalogue(effect.id().to_owned()),
+            joint: joint.map(|joint| joint.name.clone()),
+        }
+    }
+
+    /// The candidates of joint number `at`.
+    fn of_joint(&self, at: usize, diagnosis: &Diagnosis) -> Vec<ArmCandidate> {
+        let Some(joint) = self.joint(at) else {
+            return Vec::new();
+        };
+        let each = diagnosis.candidates.iter().map(|named| {
+            let mut named = named.clone();
+            let partner = name_partner(&mut named.parameters, joint);
+            ArmCandidate {
+                joint: Some(joint.name.clone()),
+                partner,
+                named,
+            }
+        });
+        each.collect()
+    }
+
+    /// An effect of the arm, and those that explain as much.
+    fn of_arm(&self, tried: &Tried, alike: Vec<&Tried>) -> ArmCandidate {
+        let decrease = weighted_decrease(&tried.decreases, self.weights);
+        let square = decrease.before.powi(2).max(1e-300);
+        let term = self.term(tried.effect);
+        ArmCandidate {
+            joint: term.joint,
+            partner: None,
+            named: NamedCandidate {
+                effect: tried.effect.id().to_owned(),
+                held_out_before: decrease.before,
+                held_out_after: decrease.after,
+                p_value: tried.p_value(),
+                share: decrease.mean_square / square,
+                share_std_error: decrease.std_error / square,
+                parameters: tried.parameters(),
+                indistinguishable_from: (alike.iter())
+                    .map(|own| self.term(own.effect).to_string())
+                    .collect(),
+                separate_by: tried.effect.excited_by().to_owned(),
+                next_experiment: Proposal::WidePosition,
+            },
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! A whole arm: every joint's model, with the torque of its rigid bodies as the load.
+//!
+//! To the pipeline each joint is a joint whose load is known: τ_m = J q̈ + τ + τ_F, J the
+//! armature (motor and gear) and τ what the links take, by inverse dynamics of all
+//! joints' motions ([`mod@motion`], [`rigid_body`]). The other joints' velocities and
+//! torques come along as extra signals, so that coupling is one of the effects that
+//! are tried ([`JointCoupling`](crate::effects::JointCoupling)). What τ lacks is an
+//! effect of the arm ([`ArmEffect`]): a payload, a base that is not level, a link's
+//! inertial parameters. Its coefficients are shared by all joints, each weighted by its
+//! noise, and are fitted together with all joints' own ([`shared`]).
+
+mod addition;
+mod comparison;
+mod contest;
+mod data;
+mod diagnosis;
+mod effects;
+mod motion;
+mod prepared;
+mod rigid_body;
+mod shared;
+mod trial;
+#[cfg(test)]
+mod tests;
+
+pub use addition::{ArmAddition, add};
+pub use comparison::{ArmComparison, compare};
+pub use data::{ArmDataset, ArmError, ArmSession, ArmSpec, ArmTerm};
+pub use diagnosis::{
+    ArmCandidate, ArmDependence, ArmDiagnosis, ArmSuspect, JointDiagnosis, diagnose,
+};
+pub use effects::ArmEffect;
+pub use prepared::{ArmJoint, PreparedArm};

@@ -1,0 +1,206 @@
+//! An arm's model bound to recordings: one model a joint, and the effects of the arm with
+//! the coefficients reached.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+
+use super::data::{ArmDataset, ArmError, ArmSpec};
+use super::effects::ArmEffect;
+use super::motion::Motion;
+use super::rigid_body::RigidBody;
+use super::shared::{self, ArmColumns};
+use crate::data::error::PrepareError;
+use crate::data::stated_filter::StatedFilter;
+use crate::data::{Dataset, ModelSpec, RecordedSession};
+use crate::design::{Design, PreparedModel};
+use crate::effects::{LOAD_OF, POSITION_OF, VELOCITY_OF};
+use crate::preparation::prepare;
+use crate::validation::left_out::LeftOut;
+
+/// Fits of the effects of the arm, at most, …
+const MAX_FITS: usize = 5;
+/// … and none after one that moves no coefficient by this share of itself and of its
+/// standard error.
+const MIN_STEP: f64 = 0.01;
+
+/// One joint of an arm, as the pipeline takes it.
+pub struct ArmJoint {
+    /// Its name.
+    pub name: String,
+    /// Its recordings, with the torque of its links as the load and the other joints'
+    /// motions as extra signals.
+    pub dataset: Dataset,
+    /// Its model.
+    pub spec: ModelSpec,
+    /// Both put together.
+    pub prepared: PreparedModel,
+    /// The regression.
+    pub design: Design,
+    /// RMS on rows left out, with the coefficients of the arm as they are \[Nm\].
+    pub held_out: f64,
+}
+
+/// An effect of the arm that is in the model, with its coefficients.
+#[derive(Clone)]
+pub(super) struct Correction {
+    pub(super) effect: ArmEffect,
+    pub(super) value: Vec<f64>,
+    pub(super) covariance: DMatrix<f64>,
+}
+
+/// A model bound to the recordings of an arm.
+pub struct PreparedArm<'a> {
+    /// From the base on.
+    pub joints: Vec<ArmJoint>,
+    pub(super) spec: &'a ArmSpec,
+    pub(super) motion: Motion,
+    pub(super) corrections: Vec<Correction>,
+}
+
+impl<'a> PreparedArm<'a> {
+    /// Binds the model `spec` to `dataset`.
+    ///
+    /// # Errors
+    ///
+    /// [`ArmError`]: what recordings or model lack.
+    pub fn new(dataset: &ArmDataset, spec: &'a ArmSpec) -> Result<Self, ArmError> {
+        spec.check(dataset)?;
+        let corrections = spec.arm_effects(&dataset.joints)?.into_iter();
+        let corrections = corrections.map(|effect| Correction {
+            effect,
+            value: vec![0.0; effect.columns()],
+            covariance: DMatrix::zeros(effect.columns(), effect.columns()),
+        });
+        let mut arm = Self {
+            joints: Vec::new(),
+            spec,
+            motion: Motion::new(dataset, |joint| spec.joint_type(joint)),
+            corrections: corrections.collect(),
+        };
+        arm.bind(&dataset.joints, dataset.filter)?;
+        for _ in 0..MAX_FITS {
+            if arm.corrections.is_empty() || arm.step() < MIN_STEP {
+                break;
+            }
+            arm.bind(&dataset.joints, dataset.filter)?;
+        }
+        Ok(arm)
+    }
+
+    /// Links and gravity with all corrections.
+    fn body(&self) -> RigidBody<'a> {
+        let mut body = RigidBody::new(&self.spec.chain, self.spec.gravity);
+        for own in &self.corrections {
+            own.effect.apply(&mut body, &own.value);
+        }
+        body
+    }
+
+    /// The same without one effect.
+    pub(super) fn body_without(&self, effect: ArmEffect) -> RigidBody<'a> {
+        let mut body = RigidBody::new(&self.spec.chain, self.spec.gravity);
+        for own in self.corrections.iter().filter(|own| own.effect != effect) {
+            own.effect.apply(&mut body, &own.value);
+        }
+        body
+    }
+
+    /// Makes every joint's recordings and binds its model to them.
+    fn bind(&mut self, names: &[String], filter: Option<StatedFilter>) -> Result<(), ArmError> {
+        let body = self.body();
+        let torques: Vec<Vec<Vec<f64>>> = (self.motion.states.iter())
+            .map(|states| body.torques(states))
+            .collect();
+        let mut joints = Vec::new();
+        for (at, name) in names.iter().enumerate() {
+            let dataset = self.dataset_of(at, names, filter, &torques);
+            let spec = self.spec.of_joint(at, names)?;
+            let refuse = |source: PrepareError| ArmError::Joint {
+                joint: name.clone(),
+                source: Box::new(source),
+            };
+            let prepared = prepare(&dataset, &spec).map_err(refuse)?;
+            let design = Design::new(&prepared);
+            joints.push(ArmJoint {
+                name: name.clone(),
+                held_out: LeftOut::new(&prepared, &design).rms(),
+                dataset,
+                spec,
+                prepared,
+                design,
+            });
+        }
+        self.joints = joints;
+        Ok(())
+    }
+
+    fn dataset_of(
+        &self,
+        joint: usize,
+        names: &[String],
+        filter: Option<StatedFilter>,
+        torques: &[Vec<Vec<f64>>],
+    ) -> Dataset {
+        let each = self.motion.sessions.iter().zip(&self.motion.states);
+        let mut sessions = each.zip(torques).map(|((session, states), torques)| {
+            let mut extra = BTreeMap::new();
+            for (other, name) in names.iter().enumerate().filter(|(other, _)| *other != joint) {
+                let position = session.position.get(other).cloned().unwrap_or_default();
+                extra.insert(format!("{POSITION_OF}{name}"), position);
+                let velocity = states.qd.iter().map(|own| own[other]).collect();
+                extra.insert(format!("{VELOCITY_OF}{name}"), velocity);
+                extra.insert(format!("{LOAD_OF}{name}"), torques[other].clone());
+            }
+            RecordedSession {
+                name: session.name.clone(),
+                start: session.start,
+                period: session.period,
+                position: session.position[joint].clone(),
+                motor_torque: session.motor_torque[joint].clone(),
+                joint_torque: torques.get(joint).cloned(),
+                torque_is_modelled: true,
+                extra,
+                ..RecordedSession::default()
+            }
+        });
+        Dataset {
+            sessions: sessions.by_ref().take(self.motion.fitted).collect(),
+            held_out: sessions.collect(),
+            joint: self.spec.joint_type(joint),
+            filter,
+        }
+    }
+
+    /// One over the mean square of each joint's error on rows left out \[1/Nm²\].
+    pub(super) fn weights(&self) -> Vec<f64> {
+        let each = self.joints.iter().map(|joint| joint.held_out);
+        each.map(|error| error.max(1e-12).powi(-2)).collect()
+    }
+
+    /// Effects of the arm with the coefficients reached.
+    pub(super) fn effects(&self) -> Vec<(ArmEffect, Vec<f64>)> {
+        let each = self.corrections.iter();
+        each.map(|own| (own.effect, own.value.clone())).collect()
+    }
+
+    /// One Gauss-Newton step of the corrections; the largest change, as a share of the
+    /// coefficient and its standard error.
+    fn step(&mut self) -> f64 {
+        let columns = ArmColumns::new(self, &self.effects());
+        let fitted = shared::fit(&self.joints, &columns, &self.weights());
+        let (mut at, mut largest) = (0, 0.0);
+        for own in &mut self.corrections {
+            let count = own.value.len();
+            own.covariance = fitted.covariance.view((at, at), (count, count)).into_owned();
+            for (k, value) in own.value.iter_mut().enumerate() {
+                let step = fitted.shared[at + k];
+                let error = own.covariance[(k, k)].max(0.0).sqrt();
+                *value += step;
+                largest = f64::max(largest, step.abs() / (value.abs() + error).max(1e-300));
+            }
+            at += count;
+        }
+        largest
+    }
+}
