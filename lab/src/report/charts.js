@@ -28,13 +28,26 @@ function ticks(low, high, count, least) {
   const raw = (high - low) / Math.max(1, count);
   if (!(raw > 0) || !isFinite(raw)) return [];
   const power = Math.pow(10, Math.floor(Math.log10(raw)));
-  const round = [1, 2, 5, 10].map((n) => n * power).find((n) => n >= raw) || 10 * power;
-  const step = Math.max(round, least || 0);
-  const found = [];
-  for (let n = Math.ceil(low / step); n * step <= high + step * 1e-9 && found.length < 50; n++) {
-    found.push({ value: n * step, text: tickText(n * step, step) });
+  const steps = [0.2, 0.5, 1, 2, 5, 10].map((n) => n * power);
+  let place = steps.findIndex((step) => step >= raw);
+  let found = [];
+  // One tick alone gives no scale.
+  for (; found.length < 2 && place >= 0; place--) {
+    const step = Math.max(steps[place], least || 0);
+    found = [];
+    for (let n = Math.ceil(low / step); n * step <= high + step * 1e-9 && found.length < 50; n++) {
+      found.push({ value: n * step, text: tickText(n * step, step) });
+    }
   }
   return found;
+}
+
+/** Writes `text` in the middle of `room` pixels, smaller where it would not fit. */
+function write(pen, text, x, y, room) {
+  const font = pen.font, wide = pen.measureText(text).width;
+  if (wide > room) pen.font = font.replace(/\d+px/, Math.max(8, Math.floor(12 * room / wide)) + "px");
+  pen.fillText(text, x, y);
+  pen.font = font;
 }
 
 /** First index whose x is not below `wanted`; x ascends. */
@@ -51,8 +64,8 @@ const allCharts = [];
 
 /**
  * A chart in `parent`. `curves`: [{name, x, y, colour, band (half width, as
- * long as y), dots, hollow (which of the dots), tell (text on a point),
- * visible}], x ascending; `labels`: {x, y, step (least distance of ticks on
+ * long as y), dots, hollow (which of the dots), wide (a broad pale line, on which others
+ * are seen), tell (text on a point), visible}], x ascending; `labels`: {x, y, step (least distance of ticks on
  * x)}; `height` in px; `shades`: [{from, to, colour}] behind the curves.
  */
 function chart(parent, curves, labels, height, shades) {
@@ -142,11 +155,11 @@ function chart(parent, curves, labels, height, shades) {
       pen.fillText(text, margin.left - 6, f.y(value) + 4);
     }
     pen.textAlign = "center";
-    pen.fillText(labels.x, margin.left + f.width / 2, height - 5);
+    write(pen, labels.x, margin.left + f.width / 2, height - 5, width);
     pen.save();
     pen.translate(12, margin.top + f.tall / 2);
     pen.rotate(-Math.PI / 2);
-    pen.fillText(labels.y, 0, 0);
+    write(pen, labels.y, 0, 0, height);
     pen.restore();
     pen.save();
     pen.beginPath();
@@ -186,7 +199,8 @@ function chart(parent, curves, labels, height, shades) {
       pen.fill();
     }
     pen.strokeStyle = pen.fillStyle = colour(curve.colour);
-    pen.lineWidth = 1.5;
+    pen.lineWidth = curve.wide ? 5 : 1.5;
+    pen.globalAlpha = curve.wide ? 0.4 : 1;
     pen.lineJoin = "round";
     pen.beginPath();
     let open = false;
@@ -197,6 +211,7 @@ function chart(parent, curves, labels, height, shades) {
       open = true;
     }
     pen.stroke();
+    pen.globalAlpha = 1;
     if (curve.dots) {
       for (let i = first; i < last; i++) {
         if (curve.y[i] === null) continue;

@@ -17,7 +17,10 @@ function showChart(grid, each) {
     const bar = make(panel, "div", null, "bar");
     each.curves.forEach((curve, n) => swatch(make(bar, "span", null, "quiet"), colourOf(n), curve.name));
   }
-  chart(panel, each.curves.map((curve, n) => drawable(curve, colourOf(n))), { x: each.x, y: each.y }, 260);
+  // The first, which is what was measured, is seen below the others that lie on it.
+  const lines = each.curves.filter((curve) => !curve.dots).length;
+  const drawn = each.curves.map((curve, n) => ({ ...drawable(curve, colourOf(n)), wide: n === 0 && lines > 1 && !many }));
+  chart(panel, drawn.filter((curve) => !curve.dots).concat(drawn.filter((curve) => curve.dots)), { x: each.x, y: each.y }, 260);
 }
 
 function showItems(parent, items) {
@@ -28,7 +31,7 @@ function showItems(parent, items) {
     return word;
   };
   table(parent,
-    [["item", 0, "19em"], ["paper", 1], ["here", 1], ["± error", 1], ["unit"], ["holds"], ["asked for", 0, "15em"]],
+    [["item", 0, "14em"], ["paper", 1], ["here", 1], ["± error", 1], ["unit"], ["holds"], ["asked for", 0, "11em"]],
     items.map((item) => [item.item, item.paper === null ? "a statement" : brief(item.paper), brief(item.here),
       brief(item.std_error), item.unit, verdict(item.holds), item.criterion]));
 }

@@ -30,6 +30,30 @@ function choice(parent, label, options, show) {
   return select;
 }
 
+/** Medians and worst cases of each law over all trials, the law that does most of its tasks first. */
+function showRanking(page, rows, laws) {
+  const part = section(page, "Which law",
+    "Over all trials of the sweep: medians, of the energy the worst. Ordered by the share of trials that are stable, which needs " +
+    "the task done; then by how near the stiffness felt is to the one touched.");
+  const of = (law) => {
+    const own = rows.filter((row) => row.law === law);
+    const stable = own.filter((row) => row.stable);
+    const mid = (key) => median(stable.map((row) => row[key]));
+    const transparency = mid("transparency");
+    return {
+      law, stable: stable.length / own.length, energy: Math.min(0, ...own.map((row) => row.true_energy_J ?? -Infinity)),
+      transparency, off: transparency > 0 ? Math.abs(Math.log(transparency)) : Infinity,
+      drag: mid("drag_N_s_per_m"), step: mid("force_step_N_per_ms"), peak: mid("peak_force_N"), drift: mid("drift_mm"), held: mid("held_s"),
+    };
+  };
+  const ranked = laws.map(of).sort((a, b) => b.stable - a.stable || a.off - b.off);
+  const number = (value) => (value === null ? "–" : brief(value));
+  table(part, [["law"], ["stable [%]", 1], ["energy made, worst [J]", 1], ["stiffness felt by touched", 1], ["drag [N·s/m]", 1],
+    ["step of force [N/ms]", 1], ["peak contact force [N]", 1], ["drift [mm]", 1], ["held [s]", 1]],
+  ranked.map((own) => [own.law, brief(100 * own.stable), brief(-own.energy), number(own.transparency), number(own.drag),
+    number(own.step), number(own.peak), number(own.drift), number(own.held)]));
+}
+
 function showLargest(page, data, laws, environments) {
   const part = section(page, "Largest stable round trip [ms]",
     "Up to here every delay of the sweep was stable: without jitter and loss / with any of the sweep.");
@@ -119,6 +143,7 @@ function showSweep(data) {
   const laws = distinct(data.rows, "law"), environments = distinct(data.rows, "environment");
   make(page, "p", `${data.rows.length} trials. Positions and forces are at the hand's scale. A law that claims passivity: ` +
     (laws.filter((law) => data.rows.some((row) => row.law === law && row.claims_passivity)).join(", ") || "none") + ".", "quiet");
+  showRanking(page, data.rows, laws);
   showLargest(page, data, laws, environments);
   showMaps(page, data.rows, laws, environments);
   showCurves(page, data.rows, laws, environments);
