@@ -7,6 +7,7 @@ mod faults;
 mod lab;
 mod lab_contact;
 mod lab_new;
+mod lab_trend;
 mod laws;
 mod lockstep;
 mod long;
