@@ -55,8 +55,7 @@ pub fn diagnose(
 ) -> Result<Diagnosis, PrepareError> {
     check(dataset, spec)?;
     let filtered = Filtered::new(dataset);
-    let mut share = |done: f64| progress(done);
-    let found = examination::examine(&filtered, spec, None, &mut share)?;
+    let found = examination::examine(&filtered, spec, None, progress)?;
     progress(1.0);
     Ok(describe_all(dataset, &found))
 }

@@ -34,9 +34,10 @@ pub struct Parameter {
     /// allows for autocorrelation; `None` for what is chosen, not measured, or
     /// searched by its influence on the measured channels.
     pub std_error: Option<f64>,
+    /// Degrees of freedom of the standard error: sessions (or blocks of time), less one.
+    pub freedom: Option<f64>,
     /// Interval that holds the true value with a probability of 95 %, by Student's
-    /// distribution with as many degrees of freedom as there are sessions (or blocks
-    /// of time), less one.
+    /// distribution.
     pub interval_95: Option<[f64; 2]>,
     /// Unit of all.
     pub unit: String,
@@ -57,6 +58,7 @@ impl Parameter {
         Self {
             value,
             std_error: Some(std_error),
+            freedom: Some(freedom),
             interval_95: Some([value - half, value + half]),
             unit: unit.to_owned(),
             effect: effect.to_owned(),
@@ -182,6 +184,7 @@ fn name(prepared: &PreparedModel, coefficients: &DVector<f64>, uncertainty: &Unc
                 None => Parameter {
                     value: *value,
                     std_error: None,
+                    freedom: None,
                     interval_95: None,
                     unit: unit.to_owned(),
                     effect: effect.clone(),

@@ -1,11 +1,14 @@
 //! Standard errors of all parameters, those that are searched among them.
 //!
-//! Sessions, or blocks of time, are left out in turn (jackknife). Shape parameters
+//! Sessions are left out in turn (jackknife), since their parameters differ. Of fewer
+//! than three, blocks of time take their place, whose residuals are made up for what
+//! each block pulls the fit to itself (CR2: Bell and McCaffrey 2002): left out in turn,
+//! the blocks in which a parameter shows most would make its error too large. Shape parameters
 //! take part by the derivatives of their effects' columns: near the best shape s the
 //! model c φ(s) is c φ + c ∂φ/∂s Δs, linear in c and Δs (Gauss–Newton). A coefficient
 //! whose effect has a shape is less certain than it would be were the shape known.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::design::{Design, PreparedModel, columns};
 use crate::effects::{BoundTerm, with_columns};
@@ -17,6 +20,12 @@ use crate::signals::Signals;
 const STEP: f64 = 1e-4;
 /// … and at least as a share of its bounds.
 const LEAST_STEP: f64 = 1e-6;
+
+/// Eigenvalues below this share of the largest are directions without information.
+const SMALLEST: f64 = 1e-9;
+/// Share of what is known of a direction that a single block may hold; beyond, nothing
+/// could be said without it.
+const MOST_SHARE: f64 = 0.99;
 
 /// How uncertain coefficients and shape parameters are, and how they go together.
 pub struct Uncertainty {
@@ -42,15 +51,20 @@ impl Uncertainty {
         let columns = design.base + shapes.len();
         let gram = Gram::sum(grams.iter().flatten(), columns);
         let best = gram.solve();
-        let without: Vec<DVector<f64>> = (design.folds.iter())
-            .map(|fold| {
-                let block = |(s, b): &(usize, usize)| grams.get(*s)?.get(*b);
-                let out = Gram::sum(fold.iter().filter_map(block), columns);
-                gram.without(&out).solve()
-            })
-            .collect();
+        let outs = design.folds.iter().map(|fold| {
+            let block = |(s, b): &(usize, usize)| grams.get(*s)?.get(*b);
+            Gram::sum(fold.iter().filter_map(block), columns)
+        });
+        let covariance = match design.folds.len() > design.sessions.len() {
+            true => covariance_by_blocks(&gram, &best, outs),
+            false => {
+                let without: Vec<DVector<f64>> =
+                    outs.map(|out| gram.without(&out).solve()).collect();
+                jackknife_covariance(&best, &without)
+            }
+        };
         Self {
-            covariance: jackknife_covariance(&best, &without),
+            covariance,
             gram,
             shapes,
             freedom: (design.folds.len() as f64 - 1.0).max(1.0),
@@ -69,6 +83,46 @@ impl Uncertainty {
         let at = self.shapes.iter().position(|own| *own == (term, place))?;
         Some(self.gram.columns() - self.shapes.len() + at)
     }
+}
+
+/// Σ Δᵢ Δᵢᵀ with Δᵢ = A⁻¹ (I − Aᵢ A⁻¹)^(−½) Xᵢᵀ eᵢ, A = XᵀX, Aᵢ = XᵢᵀXᵢ, e the residual.
+fn covariance_by_blocks(
+    gram: &Gram,
+    best: &DVector<f64>,
+    blocks: impl Iterator<Item = Gram>,
+) -> DMatrix<f64> {
+    let n = gram.columns();
+    let scale = DVector::from_fn(n, |i, _| match gram.products[(i, i)] {
+        square if square > 0.0 => square.sqrt().recip(),
+        _ => 0.0,
+    });
+    let scaled =
+        |gram: &Gram| DMatrix::from_fn(n, n, |i, j| gram.products[(i, j)] * scale[i] * scale[j]);
+    let half = turned(&scaled(gram), |own, most| match own > SMALLEST * most {
+        true => own.sqrt().recip(),
+        false => 0.0,
+    });
+    let mut covariance = DMatrix::zeros(n, n);
+    for block in blocks {
+        let own = block.products.view((0, 0), (n, n)) * best;
+        let pull = block.products.view((0, n), (n, 1)).column(0) - own;
+        let share = &half * scaled(&block) * &half;
+        let made_up = turned(&share, |own, _| {
+            (1.0 - own.clamp(0.0, MOST_SHARE)).sqrt().recip()
+        });
+        let moved = &half * made_up * &half * pull.component_mul(&scale);
+        let moved = moved.component_mul(&scale);
+        covariance += &moved * moved.transpose();
+    }
+    covariance
+}
+
+/// The symmetric matrix with its eigenvalues turned by `of`, which is told the largest, too.
+fn turned(matrix: &DMatrix<f64>, of: impl Fn(f64, f64) -> f64) -> DMatrix<f64> {
+    let eigen = SymmetricEigen::new(matrix.clone());
+    let most = eigen.eigenvalues.max();
+    let values = eigen.eigenvalues.map(|own| of(own, most));
+    &eigen.eigenvectors * DMatrix::from_diagonal(&values) * eigen.eigenvectors.transpose()
 }
 
 /// Shape parameters of terms that act on torque, within bounds that leave them room.

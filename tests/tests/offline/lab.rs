@@ -56,7 +56,10 @@ fn a_hidden_effect_is_named_and_the_error_falls() {
         let rest = rest.success().json();
         assert_eq!(rest["verdict"], "complete", "{effect}");
         // Of an experiment file the one result stands at the top, too.
-        assert_eq!(rest["joints"]["second.toml"]["verdict"], "complete", "{rest:#}");
+        assert_eq!(
+            rest["joints"]["second.toml"]["verdict"], "complete",
+            "{rest:#}"
+        );
         let used = number(&rest, "used.share");
         assert!((0.05..0.95).contains(&used), "{used}");
         let all = rest["used"]["by_reason"].as_object().expect("reasons");

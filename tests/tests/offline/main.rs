@@ -8,6 +8,7 @@ mod installed;
 mod lab;
 mod lab_contact;
 mod lab_new;
+mod lab_trend;
 mod laws;
 mod lockstep;
 mod long;
