@@ -86,6 +86,7 @@ pub fn run(
     if let Some(file) = arguments.file.take() {
         arguments.scenario.scenario = file;
     }
+    let driver = arguments.scenario.driver();
     let loaded = arguments.scenario.load()?;
     if loaded.scenario.hand.source == HandSource::Crtk {
         return Err(Failure::refused(
@@ -100,6 +101,7 @@ pub fn run(
         )));
     }
     let mut context = SessionContext::in_virtual_time(loaded);
+    context.driver = driver;
     context.twins = arguments.twin;
     context.bag = arguments.record;
     let mut session = LockstepSession::new(graph, &context).map_err(Failure::refused)?;

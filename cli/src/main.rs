@@ -29,7 +29,6 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, builder::PossibleValue};
 
-use ferntast_drivers::simulated;
 use ferntast_nodes::{graph::Graph, process::Priority, session_graph};
 
 use output::Failure;
@@ -135,7 +134,7 @@ fn main() -> ExitCode {
         // busy. Where that is not allowed it goes on without.
         let _ = Priority::Command.take();
     }
-    let graph = session_graph(simulated::row());
+    let graph = session_graph(ferntast_drivers::row());
     let matches = command_line(&graph).try_get_matches();
     let arguments = match matches.and_then(|found| Arguments::from_arg_matches(&found)) {
         Ok(arguments) => arguments,

@@ -1,4 +1,5 @@
-//! The simulated arm, trials of teleoperation; seeded.
+//! Simulated arms, trials of teleoperation; seeded.
 
 pub mod arm;
+pub mod serial_arm;
 pub mod teleoperation;

@@ -76,7 +76,7 @@ impl TrueFriction {
     }
 
     /// The gear as it is on `day` of the mission.
-    pub(super) fn on_day(&self, day: f64) -> Gear {
+    pub(crate) fn on_day(&self, day: f64) -> Gear {
         let friction = self.wear.map_or(*self, |wear| wear.worn(self, day));
         Gear {
             friction,
@@ -103,7 +103,7 @@ impl TrueFriction {
 
 /// The friction of one gear on one day.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Gear {
+pub(crate) struct Gear {
     friction: TrueFriction,
     temperature: Option<TemperatureShare>,
 }
@@ -116,7 +116,7 @@ impl Gear {
     /// Friction can stop the motor but never turn it round: where the impulse
     /// of Coulomb friction suffices the velocity becomes exactly zero. The
     /// viscous part is implicit, so it takes energy at any step size.
-    pub(super) fn brake(
+    pub(crate) fn brake(
         &self,
         velocity: f64,
         inertia: f64,

@@ -17,7 +17,7 @@ mod friction;
 mod noise;
 mod parameters;
 mod plant;
-mod sensors;
+pub(crate) mod sensors;
 mod temperature;
 mod thermal;
 mod torque_sensor;
@@ -36,11 +36,13 @@ pub use wear::{GearWear, SurfaceWear};
 use ferntast_model::contour::Surface;
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{ParameterError, Vector2};
-use noise::Noise;
+// Parts of which an arm of any joints is made too.
+pub(crate) use friction::Gear;
+pub(crate) use noise::Noise;
 use plant::Plant;
-use sensors::Encoder;
-use thermal::Thermal;
-use torque_sensor::TorqueSensor;
+pub(crate) use sensors::Encoder;
+pub(crate) use thermal::Thermal;
+pub(crate) use torque_sensor::TorqueSensor;
 
 /// Joints of the simulated arm: ROKVISS has two.
 pub const JOINTS: usize = 2;

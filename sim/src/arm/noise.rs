@@ -5,13 +5,13 @@ use rand_pcg::rand_core::{RngCore, SeedableRng};
 
 /// A stream of standard normal numbers; the same seed gives the same stream.
 #[derive(Clone, Debug)]
-pub(super) struct Noise {
+pub(crate) struct Noise {
     generator: Pcg64,
     spare: Option<f64>,
 }
 
 impl Noise {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self {
             generator: Pcg64::seed_from_u64(seed),
             spare: None,
@@ -26,7 +26,7 @@ impl Noise {
 
     /// Normally distributed with mean 0 and standard deviation `deviation`,
     /// by Marsaglia's polar method.
-    pub(super) fn normal(&mut self, deviation: f64) -> f64 {
+    pub(crate) fn normal(&mut self, deviation: f64) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare * deviation;
         }

@@ -29,7 +29,7 @@ parameters! {
 
 /// One joint's encoder and the velocity that the drive takes from it.
 #[derive(Clone, Debug)]
-pub(super) struct Encoder {
+pub(crate) struct Encoder {
     step: f64,
     time_constant: f64,
     position: f64,
@@ -38,7 +38,7 @@ pub(super) struct Encoder {
 
 impl Encoder {
     /// An encoder at rest at `position` \[rad\], on the joint side.
-    pub(super) fn new(parameters: &SensorParameters, gear_ratio: f64, position: f64) -> Self {
+    pub(crate) fn new(parameters: &SensorParameters, gear_ratio: f64, position: f64) -> Self {
         let step = std::f64::consts::TAU / (parameters.encoder_counts * gear_ratio);
         Self {
             step,
@@ -49,7 +49,7 @@ impl Encoder {
     }
 
     /// Position \[rad\] and velocity \[rad/s\], `elapsed` \[s\] after the last call.
-    pub(super) fn measure(&mut self, truth: f64, elapsed: f64) -> (f64, f64) {
+    pub(crate) fn measure(&mut self, truth: f64, elapsed: f64) -> (f64, f64) {
         let position = quantise(truth, self.step);
         if elapsed > 0.0 {
             let difference = (position - self.position) / elapsed;
@@ -63,7 +63,7 @@ impl Encoder {
 
 /// Joint torque \[Nm\] as the sensor with range ±`range` gives what it `feels`, and whether it is
 /// at the end of it.
-pub(super) fn joint_torque(
+pub(crate) fn joint_torque(
     feels: f64,
     parameters: &SensorParameters,
     range: f64,
@@ -77,7 +77,7 @@ pub(super) fn joint_torque(
 }
 
 /// Motor current \[A\] as it is measured.
-pub(super) fn current(truth: f64, parameters: &SensorParameters, noise: &mut Noise) -> f64 {
+pub(crate) fn current(truth: f64, parameters: &SensorParameters, noise: &mut Noise) -> f64 {
     quantise(
         truth + noise.normal(parameters.current_noise),
         parameters.current_step,

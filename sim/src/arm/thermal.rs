@@ -55,7 +55,7 @@ enum Ambient {
 
 /// One joint's temperature and its sensors.
 #[derive(Clone, Debug)]
-pub(super) struct Thermal {
+pub(crate) struct Thermal {
     parameters: ThermalParameters,
     ambient: Ambient,
     temperature: f64,
@@ -71,50 +71,66 @@ const SOAK_STEP: f64 = 20.0;
 
 impl Thermal {
     /// Joint `joint` at rest in `environment`.
-    pub(super) fn new(
+    pub(crate) fn new(
         parameters: &ThermalParameters,
         environment: &Environment,
         joint: usize,
         noise: &mut Noise,
     ) -> Self {
-        let offsets = std::array::from_fn(|_| noise.normal(parameters.sensor_offset));
         let held = environment
             .temperature
             .and_then(|both| both.get(joint).copied());
-        let (ambient, temperature) = match held {
-            Some(temperature) => (Ambient::Held(temperature), temperature),
-            None => {
-                let outside = Ambient::Outside {
-                    sun: environment.sun,
-                    seconds: environment.day * SECONDS_PER_DAY - SOAK,
-                    heats: false,
-                };
-                (outside, parameters.heater_off)
-            }
+        if let Some(temperature) = held {
+            return Self::held(parameters, temperature, noise);
+        }
+        let outside = Ambient::Outside {
+            sun: environment.sun,
+            seconds: environment.day * SECONDS_PER_DAY - SOAK,
+            heats: false,
         };
-        let mut thermal = Self {
-            parameters: *parameters,
-            ambient,
-            temperature,
-            offsets,
-            reading: 0.0,
-            since_reading: 0.0,
-        };
-        if held.is_none() {
-            for _ in 0..(SOAK / SOAK_STEP) as usize {
-                thermal.advance(0.0, SOAK_STEP);
-            }
+        let mut thermal = Self::begin(parameters, outside, parameters.heater_off, noise);
+        for _ in 0..(SOAK / SOAK_STEP) as usize {
+            thermal.advance(0.0, SOAK_STEP);
         }
         thermal.read(noise);
         thermal
     }
 
-    pub(super) fn temperature(&self) -> f64 {
+    /// A joint whose surroundings keep one temperature \[degC\].
+    pub(crate) fn held(
+        parameters: &ThermalParameters,
+        temperature: f64,
+        noise: &mut Noise,
+    ) -> Self {
+        let ambient = Ambient::Held(temperature);
+        let mut thermal = Self::begin(parameters, ambient, temperature, noise);
+        thermal.read(noise);
+        thermal
+    }
+
+    /// Before the first reading.
+    fn begin(
+        parameters: &ThermalParameters,
+        ambient: Ambient,
+        temperature: f64,
+        noise: &mut Noise,
+    ) -> Self {
+        Self {
+            parameters: *parameters,
+            ambient,
+            temperature,
+            offsets: std::array::from_fn(|_| noise.normal(parameters.sensor_offset)),
+            reading: 0.0,
+            since_reading: 0.0,
+        }
+    }
+
+    pub(crate) fn temperature(&self) -> f64 {
         self.temperature
     }
 
     /// Takes in `heat` \[J\] and moves on by `dt` \[s\].
-    pub(super) fn advance(&mut self, heat: f64, dt: f64) {
+    pub(crate) fn advance(&mut self, heat: f64, dt: f64) {
         let p = &self.parameters;
         let (around, power) = match &mut self.ambient {
             Ambient::Held(temperature) => (*temperature, 0.0),
@@ -135,7 +151,7 @@ impl Thermal {
     }
 
     /// Mean of the sensors \[degC\], held between readings.
-    pub(super) fn measure(&mut self, noise: &mut Noise) -> f64 {
+    pub(crate) fn measure(&mut self, noise: &mut Noise) -> f64 {
         // Half a microsecond of slack: periods are sums of rounded steps.
         if self.since_reading + 5e-7 >= self.parameters.sensor_period {
             self.read(noise);

@@ -31,7 +31,7 @@ parameters! {
 
 /// The body and the amplifier of one joint's torque sensor.
 #[derive(Clone, Debug)]
-pub(super) struct TorqueSensor {
+pub(crate) struct TorqueSensor {
     errors: TorqueSensorErrors,
     /// The torque behind the lag \[Nm\].
     felt: f64,
@@ -41,7 +41,7 @@ pub(super) struct TorqueSensor {
 
 impl TorqueSensor {
     /// A sensor that has felt `torque` \[Nm\] for long, and no other before.
-    pub(super) fn new(errors: TorqueSensorErrors, torque: f64) -> Self {
+    pub(crate) fn new(errors: TorqueSensorErrors, torque: f64) -> Self {
         Self {
             errors,
             felt: torque,
@@ -51,7 +51,7 @@ impl TorqueSensor {
 
     /// Takes in the true torque \[Nm\], `elapsed` \[s\] after the last one; what is
     /// felt of it \[Nm\].
-    pub(super) fn feel(&mut self, truth: f64, elapsed: f64) -> f64 {
+    pub(crate) fn feel(&mut self, truth: f64, elapsed: f64) -> f64 {
         let errors = &self.errors;
         let felt = if errors.lag > 0.0 {
             truth + (self.felt - truth) * (-elapsed / errors.lag).exp()

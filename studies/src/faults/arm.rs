@@ -6,7 +6,7 @@ use std::{
 };
 
 use ferntast_bus::SubscriberCounts;
-use ferntast_drivers::simulated::{ArmInput, ArmNode, ArmOutput, ArmPorts};
+use ferntast_drivers::{ArmInput, ArmNode, ArmOutput, ArmPorts, simulated::Simulated};
 use ferntast_msgs::{
     Time,
     sample::{JointNames, JointSample},
@@ -75,8 +75,9 @@ impl Mechanics {
     /// A topic that cannot be opened.
     pub fn driver(self: &Rc<Self>, build: Build) -> Result<Box<dyn Ticking>, NodeError> {
         let model = &build.session.loaded.arm.model;
+        let arm = Simulated::of(self.arm.borrow().clone(), model);
         let driver = Driver {
-            node: ArmNode::of(self.arm.borrow().clone(), model).planted(build.session.planted),
+            node: ArmNode::new(Box::new(arm))?.planted(build.session.planted),
             mechanics: self.clone(),
             last: None,
         };
@@ -98,7 +99,9 @@ impl Node for Driver {
 
     fn step(&mut self, now: Time, input: &ArmInput, output: &mut ArmOutput) {
         self.node.step(now, input, output);
-        self.mechanics.truth.set(self.node.arm().truth());
+        if let Some(simulated) = self.node.driver::<Simulated>() {
+            self.mechanics.truth.set(simulated.arm().truth());
+        }
         let motors = output.motor_js.map_or([0.0; 2], |own| own.effort());
         self.mechanics.driven.set(motors);
         let Some(sensor) = self.mechanics.sensor.get() else {
@@ -131,7 +134,9 @@ impl Node for Driver {
 
 impl Drop for Driver {
     fn drop(&mut self) {
-        self.mechanics.arm.replace(self.node.arm().clone());
+        if let Some(simulated) = self.node.driver::<Simulated>() {
+            self.mechanics.arm.replace(simulated.arm().clone());
+        }
     }
 }
 
