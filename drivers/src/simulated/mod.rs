@@ -3,6 +3,9 @@
 
 mod config;
 mod description;
+pub mod serial;
+mod serial_description;
+mod serial_node;
 
 pub use config::{arm_file, load_arm, load_config};
 
@@ -54,6 +57,9 @@ pub const fn row() -> NodeRow {
 
 fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
+    if let Some(serial) = loaded.arm.model.serial() {
+        return serial_node::make(build, serial);
+    }
     let node = ArmNode::new(&loaded.arm.whole()?, loaded.scenario.seed).map_err(NodeError::own)?;
     let ports = ArmPorts::connect(build.bus, &build.session.joints())?;
     build.join(node, ports)
