@@ -91,6 +91,7 @@ pub fn run(
     if let Some(file) = arguments.file.take() {
         arguments.scenario.scenario = file;
     }
+    let driver = arguments.scenario.driver();
     let loaded = arguments.scenario.load()?;
     let duration = arguments.duration.unwrap_or(loaded.scenario.duration);
     if !(duration.is_finite() && duration > 0.0) {
@@ -99,6 +100,7 @@ pub fn run(
         )));
     }
     let mut context = SessionContext::in_virtual_time(loaded);
+    context.driver = driver;
     context.twins = arguments.twin;
     context.bag = arguments.record;
     let mut session = LockstepSession::new(graph, &context).map_err(Failure::refused)?;

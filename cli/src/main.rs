@@ -26,7 +26,6 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, builder::PossibleValue};
 
-use ferntast_drivers::simulated;
 use ferntast_nodes::{graph::Graph, process::Priority, session_graph};
 
 use output::Failure;
@@ -127,7 +126,7 @@ fn main() -> ExitCode {
         // busy. Where that is not allowed it goes on without.
         let _ = Priority::Command.take();
     }
-    let graph = session_graph(simulated::row());
+    let graph = session_graph(ferntast_drivers::row());
     let arguments = match parse(&graph) {
         Ok(arguments) => arguments,
         Err(error) => error.exit(),

@@ -54,10 +54,12 @@ pub fn run(graph: &Graph, arguments: Arguments) -> Result<ExitCode, Failure> {
     let context = match &arguments.session_file {
         Some(path) => SessionContext::read(path).map_err(Failure::refused)?,
         None => {
+            let driver = arguments.scenario.driver();
             let loaded = arguments.scenario.load()?;
             let mut context =
                 SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
             context.link_access.peer = arguments.scenario.link_peer;
+            context.driver = driver;
             context.bag = arguments.bag;
             context.twins = arguments.twin;
             context

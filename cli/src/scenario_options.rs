@@ -1,9 +1,9 @@
 //! The options by which a scenario is chosen and changed.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, str::FromStr};
 
 use clap::Args;
-use ferntast_drivers::simulated;
+use ferntast_drivers::{Choice, UnknownDriver, simulated};
 use ferntast_msgs::sample::JointNames;
 use ferntast_nodes::{
     config::{self, HandSource, Loaded, Middleware},
@@ -42,6 +42,11 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "scripted|crtk|FILE")]
     pub hand: Option<String>,
 
+    /// What is behind the arm's topics: simulated (the arm's file says what is true of it), or process:COMMAND,
+    /// a plant in a program of its own, stepped over a pipe (docs/process_driver.md).
+    #[arg(long, value_name = "simulated|process:COMMAND")]
+    pub driver: Option<Driver>,
+
     /// Seed of everything that is random.
     #[arg(long)]
     pub seed: Option<u64>,
@@ -79,6 +84,11 @@ pub struct ScenarioOptions {
 }
 
 impl ScenarioOptions {
+    /// The driver, as a session's context has it.
+    pub fn driver(&self) -> Option<String> {
+        self.driver.as_ref().map(|own| own.0.clone())
+    }
+
     /// Loads the scenario with all that it names.
     ///
     /// # Errors
@@ -137,6 +147,18 @@ impl ScenarioOptions {
         }
         loaded.complete().map_err(Failure::refused)?;
         Ok(loaded)
+    }
+}
+
+/// A driver as it is written, which is one that there is.
+#[derive(Clone, Debug)]
+pub struct Driver(pub String);
+
+impl FromStr for Driver {
+    type Err = UnknownDriver;
+
+    fn from_str(text: &str) -> Result<Driver, UnknownDriver> {
+        text.parse::<Choice>().map(|_| Driver(text.to_owned()))
     }
 }
 

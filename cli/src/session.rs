@@ -79,8 +79,10 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
             "--duration {duration}: give a positive number of seconds"
         )));
     }
+    let driver = arguments.scenario.driver();
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
+    context.driver = driver;
     context.link_access.secret = Some(link_end::draw_secret().map_err(Failure::failed)?);
     context.bag = arguments.record;
     let page = arguments.page.console()?;

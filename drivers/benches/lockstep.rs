@@ -44,7 +44,7 @@ fn run(record: Option<&Path>) -> Result<f64, String> {
     loaded.complete().map_err(|error| error.to_string())?;
     let mut context = SessionContext::in_virtual_time(loaded);
     context.bag = record.map(Path::to_owned);
-    let graph = session_graph(simulated::row());
+    let graph = session_graph(ferntast_drivers::row());
     let begun = Instant::now();
     let mut session = LockstepSession::new(&graph, &context).map_err(|error| error.to_string())?;
     session.run(SECONDS);

@@ -2,7 +2,17 @@
 //! publishes `/follower/measured_js`, `/follower/motor_js`, temperatures and
 //! the robot's description.
 //!
-//! A driver is a row of the graph of nodes, and a function that reads its kind
-//! of arm's file. Vendor signs and offsets are turned here, once.
+//! [`ArmNode`] is the node, a [`Driver`] the arm behind it: one file or folder each. A
+//! driver turns vendor signs, units and offsets, once, and comes with a function that
+//! makes it of its kind of arm's file.
 
+mod choice;
+mod driver;
+mod node;
+pub mod process;
+pub mod serial_arm;
 pub mod simulated;
+
+pub use choice::{Choice, UnknownDriver, row};
+pub use driver::{Driver, DriverCommand, Measures, Reading};
+pub use node::{ArmInput, ArmNode, ArmOutput, ArmPorts};

@@ -1,6 +1,5 @@
 //! The table of topics against the ports of the nodes: who publishes what.
 
-use ferntast_drivers::simulated;
 use ferntast_msgs::{
     Message,
     sample::JointNames,
@@ -25,7 +24,7 @@ fn the_publishers_in_the_table_are_those_of_the_graph() {
     let joints = JointNames::new(["shoulder", "elbow", "wrist"]).unwrap();
     let mut table = Table::default();
     topics::visit(&joints, &mut table).unwrap();
-    let graph = session_graph(simulated::row());
+    let graph = session_graph(ferntast_drivers::row());
     for node in graph.rows() {
         // A service goes by the table itself.
         let Make::Step { .. } = node.make else {

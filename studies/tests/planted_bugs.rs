@@ -9,7 +9,6 @@ use std::sync::{
 };
 
 use ferntast_control::planted::Rule;
-use ferntast_drivers::simulated;
 use ferntast_nodes::session_graph;
 use ferntast_studies::faults::{
     Kits, Outcome, Plan, RunError, Schedule, load, run_many, shrink_where, violates,
@@ -25,7 +24,7 @@ const FAULTS: usize = 5;
 
 fn kits() -> Kits {
     let loaded = load("rokviss").expect("a shipped scenario");
-    let graph = session_graph(simulated::row());
+    let graph = session_graph(ferntast_drivers::row());
     Kits::new(&graph, &loaded, "rokviss").expect("it can be run under faults")
 }
 

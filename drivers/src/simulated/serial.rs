@@ -1,11 +1,21 @@
 //! What is true of a simulated serial arm: what its file says, else what is believed of it.
 
-use ferntast_model::{joint::JointParameters, serial_arm::Plane};
-use ferntast_nodes::config::{ArmFile, ConfigError, serial::SerialFile};
+use ferntast_control::estimator::Form;
+use ferntast_model::{Joints, joint::JointParameters, serial_arm::Plane};
+use ferntast_nodes::{
+    config::{
+        ArmFile, ConfigError,
+        serial::{Serial, SerialFile},
+    },
+    process::NodeError,
+};
 use ferntast_sim::{
     arm::{SensorParameters, TrueSurface},
     serial_arm::{ObjectParameters, SerialArmParameters, SerialJointParameters, Shape},
 };
+
+use super::serial_description::describe_serial;
+use crate::{driver::Measures, serial_arm::SimulatedSerialArm};
 
 /// A gear that is believed to be as stiff as this is rigid \[Nm/rad\].
 const RIGID: f64 = 9e5;
@@ -43,6 +53,32 @@ pub fn truth(arm: &ArmFile) -> Result<SerialArmParameters, ConfigError> {
         truth.joint = file.joint.iter().map(joint).collect();
     }
     Ok(truth)
+}
+
+/// The simulated arm of `file`; joints whose torques are to be found from the motors' currents
+/// have no torque sensors.
+pub(super) fn simulated(
+    file: &ArmFile,
+    serial: &Serial,
+    seed: u64,
+) -> Result<SimulatedSerialArm, NodeError> {
+    let arm = &serial.arm;
+    let limit = |joint: usize| arm.joints()[joint].motor_torque_limit;
+    let limits = Joints::from_fn(arm.count(), limit);
+    let description = Some(describe_serial(serial));
+    let simulated = SimulatedSerialArm::new(
+        serial.joints,
+        arm.chain(),
+        &limits,
+        &truth(file)?,
+        seed,
+        description,
+    );
+    Ok(simulated.map_err(NodeError::own)?.measuring(Measures {
+        joint_torque: file.estimator.form != Form::MotorCurrent,
+        motor_torque: true,
+        temperature: true,
+    }))
 }
 
 /// The plane as a thing to touch.

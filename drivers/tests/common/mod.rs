@@ -8,7 +8,7 @@ use std::{
 };
 
 use ferntast_bus::{Depth, Subscriber};
-use ferntast_drivers::simulated::{self, arm_file, load_arm};
+use ferntast_drivers::simulated::{arm_file, load_arm};
 use ferntast_emulation::hand::Motion;
 use ferntast_msgs::{Message, topics::Topic};
 use ferntast_nodes::{
@@ -102,7 +102,8 @@ pub fn session(loaded: &Loaded, bag: Option<&Path>, twins: Vec<PathBuf>) -> Lock
     let mut context = SessionContext::in_virtual_time(loaded.clone());
     context.bag = bag.map(Path::to_owned);
     context.twins = twins;
-    LockstepSession::new(&session_graph(simulated::row()), &context).expect("a session in lockstep")
+    LockstepSession::new(&session_graph(ferntast_drivers::row()), &context)
+        .expect("a session in lockstep")
 }
 
 /// A session of `loaded` with a twin of joint 2, fitted to 40 s of `fitted_to` with another seed.

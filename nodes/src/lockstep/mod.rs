@@ -163,7 +163,8 @@ impl LockstepSession {
         Ok(())
     }
 
-    /// Runs `seconds` \[s\] of virtual time.
+    /// Runs `seconds` \[s\] of virtual time, less where a node fails on the way:
+    /// [`finish`](Self::finish) tells then.
     pub fn run(&mut self, seconds: f64) {
         let mut left = seconds;
         // The monitor's queues hold half a second.
@@ -194,23 +195,25 @@ impl LockstepSession {
     ///
     /// # Errors
     ///
-    /// The recording cannot be closed, or lacks messages.
+    /// A node that failed on the way; a recording that cannot be closed, or lacks messages.
     pub fn finish(self) -> Result<(), RunError> {
         let LockstepSession {
-            time,
+            mut time,
             recording,
             lost,
             ..
         } = self;
+        let failure = time.take_failure();
         drop(time);
         if let Some(recording) = recording {
             recording
                 .finish()
                 .map_err(|error| RunError::Recording(error.to_string()))?;
         }
-        match lost.get() {
-            0 => Ok(()),
-            lost => Err(RunError::Lost { lost }),
+        match (failure, lost.get()) {
+            (Some(failure), _) => Err(failure.into()),
+            (None, 0) => Ok(()),
+            (None, lost) => Err(RunError::Lost { lost }),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Nodes of the graph on a bus in memory, in virtual time.
 
+use std::{cell::RefCell, rc::Rc};
+
 use ferntast_bus::{
     Bus, MemoryBus,
     frames::{self, Door, FrameReceiver, FrameSender, LinkDirection},
@@ -45,6 +47,8 @@ pub struct VirtualTime {
     now: Time,
     tasks: Vec<Task>,
     bus: Bus,
+    /// The node that can do no more, and why.
+    failure: Rc<RefCell<Option<NodeError>>>,
 }
 
 struct Task {
@@ -68,6 +72,7 @@ impl VirtualTime {
             now: start,
             tasks: Vec::new(),
             bus: Bus::Memory(MemoryBus::new()),
+            failure: Rc::default(),
         })
     }
 
@@ -94,7 +99,14 @@ impl VirtualTime {
                 open_link: &mut |sends| link.open(sends),
                 meter: HealthMeter::new(row.name, 0, row.period_nanos, Faults::default()),
             })?;
-            self.add_every(row.period_nanos, move |now| node.tick(now, 0, 0))?;
+            let failure = Rc::clone(&self.failure);
+            self.add_every(row.period_nanos, move |now| {
+                node.tick(now, 0, 0);
+                if let Some(reason) = node.failure() {
+                    let failed = NodeError::Broken(reason);
+                    failure.borrow_mut().get_or_insert(failed);
+                }
+            })?;
         }
         Ok(())
     }
@@ -138,10 +150,19 @@ impl VirtualTime {
         now
     }
 
-    /// As many steps as fit into `seconds` \[s\], rounded.
+    /// Why a node can do no more, told once.
+    pub fn take_failure(&mut self) -> Option<NodeError> {
+        self.failure.take()
+    }
+
+    /// As many steps as fit into `seconds` \[s\], rounded; none after one in which a node
+    /// failed.
     pub fn run(&mut self, seconds: f64) {
         let steps = (seconds * 1e9 / STEP_NANOS as f64).round() as i64;
         for _ in 0..steps {
+            if self.failure.borrow().is_some() {
+                return;
+            }
             self.tick();
         }
     }
@@ -195,8 +216,6 @@ impl MemoryLink {
 
 #[cfg(test)]
 mod tests {
-    use std::{cell::RefCell, rc::Rc};
-
     use super::*;
 
     const START: Time = Time::from_nanos(1_700_000_000_000_000_000);

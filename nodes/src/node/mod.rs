@@ -36,6 +36,11 @@ pub trait Node {
     /// One step at time `now`. Does not fail, allocate, block or read a clock;
     /// what goes wrong is a value in `output`.
     fn step(&mut self, now: Time, input: &Self::Input, output: &mut Self::Output);
+
+    /// Why it can do no more; virtual time ends then.
+    fn failure(&self) -> Option<String> {
+        None
+    }
 }
 
 /// What every node's output has beside its messages.

@@ -11,6 +11,9 @@ pub trait Ticking {
     /// periods skipped before it: reads, steps and publishes. Takes from the
     /// heap no more than the node's own step does.
     fn tick(&mut self, now: Time, late_nanos: i64, missed: u64);
+
+    /// Why the node can do no more.
+    fn failure(&self) -> Option<String>;
 }
 
 /// A node, its ports and its health. The same runner serves a process of its
@@ -52,6 +55,10 @@ impl<P: Ports> Runner<P> {
 }
 
 impl<P: Ports> Ticking for Runner<P> {
+    fn failure(&self) -> Option<String> {
+        self.node.failure()
+    }
+
     fn tick(&mut self, now: Time, late_nanos: i64, missed: u64) {
         self.ports.read(now, &mut self.input);
         self.output.clear();

@@ -36,6 +36,10 @@ pub struct SessionContext {
     pub console: Option<ConsoleOptions>,
     /// Where the topics are shown to Foxglove; `None` without that.
     pub foxglove: Option<SocketAddr>,
+    /// Which driver the arm's node has, as `--driver` has it; that of the arm's file, or
+    /// the simulated one, without.
+    #[serde(default)]
+    pub driver: Option<String>,
     /// Whose frames the ends of the link take.
     pub link_access: LinkAccess,
     /// A safety rule that is taken out; in virtual time only, and only in builds for
@@ -135,6 +139,7 @@ impl SessionContext {
             console: None,
             foxglove: None,
             twins: Vec::new(),
+            driver: None,
             link_access: LinkAccess::default(),
             planted: Planted::NONE,
         }

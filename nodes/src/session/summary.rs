@@ -70,7 +70,10 @@ impl ArmSummary {
                 None => loaded.scenario.arm.clone(),
             },
             joints: loaded.arm.model.joints().len(),
-            driver: "simulated".to_owned(),
+            driver: match &session.driver {
+                Some(driver) => driver.clone(),
+                None => "simulated".to_owned(),
+            },
         }
     }
 }

@@ -16,9 +16,9 @@ use super::{
 /// Rounds at most; three do where gears are soft against the links.
 const ROUNDS: usize = 30;
 /// The change of friction from which on there is another round, in parts of itself.
-const ACCURACY: f64 = 1e-9;
+const ACCURACY: f64 = 1e-7;
 /// Friction that does not count \[Nm\] or \[N\].
-const NOTHING: f64 = 1e-12;
+const NOTHING: f64 = 1e-10;
 
 /// What the friction of a substep is found from.
 pub(super) struct Braking<'a> {
@@ -45,12 +45,9 @@ impl Braking<'_> {
         link: &mut Joints<f64>,
     ) {
         let count = friction.count();
-        // How link velocities in the middle give way to each motor's friction.
-        let columns = Joints::from_fn(count, |joint| {
-            let mut unit = Joints::filled(count, 0.0);
-            unit[joint] = self.shares[joint].follows;
-            self.factor.solve(&unit)
-        });
+        // How link velocities in the middle give way to torques on the links.
+        let inverse = self.factor.inverse();
+        let follows = self.shares.map(|share| share.follows);
         let mut stands = Joints::filled(count, false);
         for _ in 0..ROUNDS {
             let mut settled = true;
@@ -59,7 +56,7 @@ impl Braking<'_> {
                     continue;
                 };
                 let share = &self.shares[joint];
-                let gives = share.own + share.follows * columns[joint][joint];
+                let gives = share.own + share.follows * share.follows * inverse[joint][joint];
                 let had = friction[joint];
                 // At the end of the step, without friction.
                 let free = 2.0 * (motor[joint] + gives * had) - self.before[joint];
@@ -76,10 +73,11 @@ impl Braking<'_> {
                 settled &= more.abs() <= ACCURACY * found.abs() + NOTHING;
                 stands[joint] = braked == 0.0;
                 friction[joint] = found;
+                let torque = share.follows * more;
                 for other in 0..count.get() {
-                    let slower = columns[joint][other] * more;
+                    let slower = inverse[joint][other] * torque;
                     link[other] -= slower;
-                    motor[other] -= self.shares[other].follows * slower;
+                    motor[other] -= follows[other] * slower;
                 }
                 motor[joint] -= share.own * more;
             }

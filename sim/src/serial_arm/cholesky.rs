@@ -52,6 +52,35 @@ impl Factor {
     }
 }
 
+impl Factor {
+    /// A⁻¹: the upper left part is that of the matrix.
+    pub(super) fn inverse(&self) -> [[f64; MAX_JOINTS]; MAX_JOINTS] {
+        let count = self.count.get();
+        // The columns of L⁻¹, each in a row of this.
+        let mut columns = [[0.0; MAX_JOINTS]; MAX_JOINTS];
+        for column in 0..count {
+            columns[column][column] = self.rows[column][column];
+            for row in column + 1..count {
+                let mut left = 0.0;
+                for inner in column..row {
+                    left -= self.rows[row][inner] * columns[column][inner];
+                }
+                columns[column][row] = left * self.rows[row][row];
+            }
+        }
+        let mut inverse = [[0.0; MAX_JOINTS]; MAX_JOINTS];
+        for row in 0..count {
+            for column in 0..=row {
+                let pairs = columns[row].iter().zip(&columns[column]);
+                let value = pairs.map(|(a, b)| a * b).sum();
+                inverse[row][column] = value;
+                inverse[column][row] = value;
+            }
+        }
+        inverse
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -70,7 +99,10 @@ mod tests {
             let count = JointCount::new(count).unwrap();
             let right = Joints::from_places(count, right);
             let x = Factor::new(&matrix, count).solve(&right);
+            let inverse = Factor::new(&matrix, count).inverse();
             for row in 0..count.get() {
+                let again: f64 = (0..count.get()).map(|column| inverse[row][column] * right[column]).sum();
+                prop_assert!((again - x[row]).abs() < 1e-9 * (1.0 + x[row].abs()));
                 let told: f64 = (0..count.get()).map(|column| matrix[(row, column)] * x[column]).sum();
                 prop_assert!((told - right[row]).abs() < 1e-9);
             }

@@ -6,7 +6,7 @@ use std::{
 };
 
 use ferntast_bus::SubscriberCounts;
-use ferntast_drivers::simulated::{ArmInput, ArmNode, ArmOutput, ArmPorts};
+use ferntast_drivers::{ArmInput, ArmNode, ArmOutput, ArmPorts, simulated::Simulated};
 use ferntast_msgs::{
     Time,
     sample::{JointNames, JointSample},
@@ -78,8 +78,9 @@ impl Mechanics {
         let model = model.ok_or_else(|| {
             NodeError::Broken("schedules of faults are for the planar arm".into())
         })?;
+        let arm = Simulated::of(self.arm.borrow().clone(), model);
         let driver = Driver {
-            node: ArmNode::of(self.arm.borrow().clone(), model).planted(build.session.planted),
+            node: ArmNode::new(Box::new(arm))?.planted(build.session.planted),
             mechanics: self.clone(),
             last: None,
         };
@@ -101,7 +102,9 @@ impl Node for Driver {
 
     fn step(&mut self, now: Time, input: &ArmInput, output: &mut ArmOutput) {
         self.node.step(now, input, output);
-        self.mechanics.truth.set(self.node.arm().truth());
+        if let Some(simulated) = self.node.driver::<Simulated>() {
+            self.mechanics.truth.set(simulated.arm().truth());
+        }
         let motors = output.motor_js.map_or([0.0; 2], |own| own.effort());
         self.mechanics.driven.set(motors);
         let Some(sensor) = self.mechanics.sensor.get() else {
@@ -134,7 +137,9 @@ impl Node for Driver {
 
 impl Drop for Driver {
     fn drop(&mut self) {
-        self.mechanics.arm.replace(self.node.arm().clone());
+        if let Some(simulated) = self.node.driver::<Simulated>() {
+            self.mechanics.arm.replace(simulated.arm().clone());
+        }
     }
 }
 

@@ -19,10 +19,13 @@ import numpy as np
 STEP = 1e-4
 
 
-def load(file: str, joints: list[str], change=None) -> mujoco.MjModel:
-    """The arm without shapes; of its joints `joints` only, the others at zero. `change` is
-    called with what is to be compiled."""
-    robot = xml.etree.ElementTree.parse(file).getroot()
+def load(urdf: str, joints: list[str]) -> mujoco.MjModel:
+    """The arm of that text, or file, without shapes; of its joints `joints` only, the others
+    at zero."""
+    if not urdf.lstrip().startswith("<"):
+        with open(urdf, encoding="utf-8") as file:
+            urdf = file.read()
+    robot = xml.etree.ElementTree.fromstring(urdf.lstrip())
     for link in robot.iter("link"):
         for shape in link.findall("visual") + link.findall("collision"):
             link.remove(shape)
@@ -37,8 +40,6 @@ def load(file: str, joints: list[str], change=None) -> mujoco.MjModel:
     for joint in list(spec.joints):
         if joint.name not in joints:
             spec.delete(joint)
-    if change is not None:
-        change(spec)
     model = spec.compile()
     # What a URDF says of friction and damping is not part of the comparison, nor are ends.
     model.dof_damping[:] = 0.0

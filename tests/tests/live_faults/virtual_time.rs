@@ -1,7 +1,6 @@
 //! The time to hold in virtual time: the same silences, the same judge, no computer that stalls.
 
 use ferntast_control::delay::Law;
-use ferntast_drivers::simulated;
 use ferntast_msgs::{Time, sample::OperatingState};
 use ferntast_nodes::session_graph;
 use ferntast_studies::faults::{self, Event, Fault, Kits, Node, Schedule, Way};
@@ -34,7 +33,7 @@ pub fn holds(faults: &[Fault], times: u64) -> Result<Vec<Hold>, String> {
         .set_round_trip(0.0)
         .map_err(|error| error.to_string())?;
     let start = Time::from_nanos(loaded.scenario.start.saturating_mul(1_000_000_000));
-    let graph = session_graph(simulated::row());
+    let graph = session_graph(ferntast_drivers::row());
     let kits = Kits::new(&graph, &loaded, SCENARIO).map_err(|error| error.to_string())?;
     let mut holds = Vec::new();
     for law in Law::NAMES {
