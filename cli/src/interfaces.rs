@@ -7,7 +7,6 @@ use ferntast_msgs::{
     Message, RosMessage, interface,
     topics::{self, Authority, Topic, Visitor},
 };
-use ferntast_nodes::config::joint_names;
 use serde::Serialize;
 
 use super::{Failure, output::print_json};
@@ -69,7 +68,7 @@ impl Visitor for List {
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let arm = simulated::load_arm(&arguments.arm).map_err(Failure::refused)?;
     let mut list = List(Vec::new());
-    topics::visit(&joint_names(&arm.model), &mut list).map_err(Failure::refused)?;
+    topics::visit(&arm.model.joint_names(), &mut list).map_err(Failure::refused)?;
     let mut interfaces = Vec::new();
     for name in interface::names() {
         interfaces.push(InterfaceLine {

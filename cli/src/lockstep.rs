@@ -10,7 +10,7 @@ use ferntast_nodes::{
     lockstep::LockstepSession,
     process::{SessionContext, stop_on_signals},
     servo::FrictionSummary,
-    session::{ContactSummary, LeaderSummary, LinkSummary, StateSummary},
+    session::{ArmSummary, ContactSummary, LeaderSummary, LinkSummary, StateSummary, TipSummary},
     twin::TwinSummary,
 };
 use indicatif::{ProgressBar, ProgressStyle};
@@ -66,8 +66,13 @@ struct Result {
     duration_s: f64,
     wall_s: f64,
     real_time_factor: f64,
+    #[serde(flatten)]
+    arm: ArmSummary,
     link: LinkSummary,
     contact: ContactSummary,
+    tip: TipSummary,
+    #[serde(rename = "felt_stiffness_N_per_m")]
+    felt_stiffness: Option<f64>,
     leader: LeaderSummary,
     twins: Vec<TwinSummary>,
     friction: Vec<FrictionSummary>,
@@ -159,8 +164,11 @@ pub fn run(
         duration_s: done,
         wall_s: wall,
         real_time_factor: done / wall,
+        arm: ArmSummary::of(&context),
         link: monitor.link(),
         contact: monitor.contact(),
+        tip: monitor.tip(),
+        felt_stiffness: monitor.felt_stiffness(),
         leader: monitor.leader(),
         twins: monitor.twins(),
         friction: monitor.friction(),

@@ -19,6 +19,11 @@ pub struct ScenarioOptions {
     #[arg(long, default_value = "rokviss", value_name = "NAME|FILE")]
     pub scenario: String,
 
+    /// Another arm than the scenario's: a shipped one (rokviss, panda), a file, or a URDF alone (arm.urdf). The
+    /// scripted hand then touches what is beside it.
+    #[arg(long, value_name = "NAME|FILE|URDF")]
+    pub arm: Option<String>,
+
     /// Channel between operator and arm: a shipped one (direct, rokviss_20ms, rokviss_30ms, kontur_2,
     /// relay_600ms, ku_band_800ms) or a file.
     #[arg(long, value_name = "NAME|FILE")]
@@ -96,6 +101,11 @@ impl ScenarioOptions {
     pub fn load(&self) -> Result<Loaded, Failure> {
         let mut loaded =
             config::load_scenario(&self.scenario, simulated::load_arm).map_err(Failure::refused)?;
+        if let Some(arm) = &self.arm {
+            loaded
+                .set_arm(arm, simulated::load_arm)
+                .map_err(Failure::refused)?;
+        }
         let scenario = &mut loaded.scenario;
         if let Some(seed) = self.seed {
             scenario.seed = seed;

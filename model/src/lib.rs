@@ -18,6 +18,7 @@ mod parameter;
 pub mod recursive_least_squares;
 pub mod rigid_body;
 pub mod section;
+pub mod serial_arm;
 
 pub use joints::{JointCount, Joints, MAX_JOINTS};
 pub use nalgebra::{Matrix2, Vector2};

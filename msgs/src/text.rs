@@ -62,16 +62,22 @@ impl<const N: usize> Text<N> {
     }
 }
 
-impl Text<16> {
+impl Text<32> {
     /// Whether it is ASCII with nothing but zeros behind it, as [`Text::new`] makes it of
     /// ASCII: then two texts are equal exactly if their bytes are.
     pub(crate) fn is_plain(&self) -> bool {
         const HIGH: u128 = u128::from_le_bytes([0x80; 16]);
-        let bytes = u128::from_le_bytes(self.0);
-        // The highest bit of each byte that is not zero; bytes below 0x80 do not carry.
-        let used = bytes.wrapping_add(HIGH - (HIGH >> 7)) & HIGH;
-        // Each of them follows another one, but for the first.
-        bytes & HIGH == 0 && used & !((used << 8) | 0x80) == 0
+        let half = |from: usize| {
+            let bytes: [u8; 16] = std::array::from_fn(|place| self.0[from + place]);
+            let bytes = u128::from_le_bytes(bytes);
+            // The highest bit of each byte that is not zero; bytes below 0x80 do not carry.
+            let used = bytes.wrapping_add(HIGH - (HIGH >> 7)) & HIGH;
+            // Each of them follows another one, but for the first.
+            let plain = bytes & HIGH == 0 && used & !((used << 8) | 0x80) == 0;
+            (plain, used)
+        };
+        let ((first, used), (second, behind)) = (half(0), half(16));
+        first && second && (used == HIGH || behind == 0)
     }
 }
 
@@ -117,15 +123,21 @@ mod tests {
 
     #[test]
     fn plain_texts_are_ascii_and_then_zeros() {
-        for name in ["", "a", "joint_1", "0123456789abcdef"] {
-            assert!(Text::<16>::new(name).is_plain(), "{name}");
+        for name in [
+            "",
+            "a",
+            "joint_1",
+            "shoulder_pan_joint",
+            "0123456789abcdef0123456789abcdef",
+        ] {
+            assert!(Text::<32>::new(name).is_plain(), "{name}");
         }
-        assert!(!Text::<16>::new("gelenk_ä").is_plain());
-        for place in 0..16 {
-            let mut bytes = [b'x'; 16];
+        assert!(!Text::<32>::new("gelenk_ä").is_plain());
+        for place in 0..32 {
+            let mut bytes = [b'x'; 32];
             bytes[place] = 0;
-            assert_eq!(Text(bytes).is_plain(), place == 15, "{place}");
-            let mut bytes = [0; 16];
+            assert_eq!(Text(bytes).is_plain(), place == 31, "{place}");
+            let mut bytes = [0; 32];
             bytes[place] = 1;
             assert_eq!(Text(bytes).is_plain(), place == 0, "{place}");
             bytes[place] = 0x80;

@@ -18,6 +18,8 @@ pub struct Arm {
     pub chain: Chain,
     /// Its joints' names, from the base on.
     pub joints: Vec<String>,
+    /// The link that each joint carries.
+    pub links: Vec<String>,
     /// The link in whose frame it stands.
     pub base: String,
     /// The link whose frame is the tip.
@@ -104,6 +106,90 @@ impl Robot {
         let tip = self.joints[*last].child;
         let way = self.way(base, tip).unwrap_or(joints);
         self.arm(base, tip, &way)
+    }
+
+    /// The arm that the file is of, where nobody says which: from the link that nothing
+    /// carries along all joints that move, as far as no link carries two of them (the
+    /// fingers of a hand). Its tip is the link that is fixed furthest out behind the last
+    /// joint; one with `tcp`, `tool` or `tip` in its name comes first.
+    ///
+    /// # Errors
+    ///
+    /// [`ArmError::Ambiguous`], where the file begins with several arms; otherwise as
+    /// [`Robot::between`].
+    pub fn whole_arm(&self) -> Result<Arm, ArmError> {
+        let roots = (0..self.links.len()).filter(|link| self.carried_by[*link].is_none());
+        // A "world" without anything, or a camera, may stand beside the arm.
+        let longest = roots.map(|root| (root, self.out_from(root)));
+        let longest = longest.max_by_key(|(_, (way, _))| way.len());
+        let Some((root, (way, branches))) = longest else {
+            return Err(ArmError::EmptyList);
+        };
+        if way.is_empty() && branches.len() > 1 {
+            return Err(ArmError::Ambiguous {
+                link: self.links[root].name.clone(),
+                joints: branches
+                    .iter()
+                    .map(|own| self.joints[*own].name.clone())
+                    .collect(),
+            });
+        }
+        let last = way.last().map_or(root, |joint| self.joints[*joint].child);
+        self.between(
+            &self.links[root].name,
+            &self.links[self.tip_behind(last)].name,
+        )
+    }
+
+    /// The joints that move one behind the other from `root` on, and those between which
+    /// there is a choice then.
+    fn out_from(&self, root: usize) -> (Vec<usize>, Vec<usize>) {
+        let (mut way, mut link) = (Vec::new(), root);
+        loop {
+            let fixed = self.fixed_to(link);
+            let moving = |joint: &&Joint| {
+                fixed.iter().any(|(own, _)| *own == joint.parent)
+                    && joint.joint_type != JointType::Fixed
+            };
+            let numbers = (0..self.joints.len()).filter(|own| moving(&&self.joints[*own]));
+            let branches: Vec<usize> = numbers.collect();
+            match branches[..] {
+                [only] if self.joints[only].mimics.is_none() => {
+                    way.push(only);
+                    link = self.joints[only].child;
+                }
+                _ => return (way, branches),
+            }
+        }
+    }
+
+    /// `link` and all that is fixed to it, with how many joints further out each is.
+    fn fixed_to(&self, link: usize) -> Vec<(usize, usize)> {
+        let mut found = vec![(link, 0)];
+        let mut next = 0;
+        while let Some(&(parent, depth)) = found.get(next) {
+            let fixed = self
+                .joints
+                .iter()
+                .filter(|joint| joint.parent == parent && joint.joint_type == JointType::Fixed);
+            found.extend(fixed.map(|joint| (joint.child, depth + 1)));
+            next += 1;
+        }
+        found
+    }
+
+    /// Of what is fixed to `link`, what is used as the arm's tip.
+    fn tip_behind(&self, link: usize) -> usize {
+        const NAMES: [&str; 3] = ["tcp", "tool", "tip"];
+        let named = |link: usize| {
+            let name = self.links[link].name.to_lowercase();
+            NAMES.iter().any(|part| name.contains(part))
+        };
+        let fixed = self.fixed_to(link);
+        let best = fixed
+            .iter()
+            .max_by_key(|(own, depth)| (named(*own), *depth));
+        best.map_or(link, |(own, _)| *own)
     }
 
     fn link(&self, name: &str) -> Result<usize, ArmError> {
@@ -197,6 +283,10 @@ impl Robot {
         Ok(Arm {
             chain: Chain::new(&chain, led)?,
             joints: moving.iter().map(|joint| joint.name.clone()).collect(),
+            links: moving
+                .iter()
+                .map(|joint| self.links[joint.child].name.clone())
+                .collect(),
             base: self.links[base].name.clone(),
             tip: self.links[tip].name.clone(),
             efforts: moving.iter().map(|j| limit(j)?.effort).collect(),

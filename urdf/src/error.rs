@@ -207,6 +207,17 @@ pub enum ArmError {
     /// A list of no joints.
     #[error("the list of joints is empty; name the arm's joints in order from its base to its tip")]
     EmptyList,
+    /// Several arms, and nobody said which.
+    #[error(
+        "link \"{link}\" carries {} joints that move ({}); say which arm is meant, by a base and a tip",
+        joints.len(), joints.join(", ")
+    )]
+    Ambiguous {
+        /// The link.
+        link: String,
+        /// The joints.
+        joints: Vec<String>,
+    },
     /// Nothing moves.
     #[error(
         "between \"{base}\" and \"{tip}\" no joint moves; choose a base and a tip with the arm between them"

@@ -239,3 +239,31 @@ fn loops_are_refused() {
     let own = with("<parent link=\"base\"/>", "<parent link=\"upper\"/>");
     assert!(matches!(read_error(&own), ReadError::Circle { .. }));
 }
+
+#[test]
+fn the_whole_arm_ends_where_a_hand_begins() {
+    let whole = |text: &str| Robot::read(text.as_bytes()).expect("readable").whole_arm();
+    let arm = whole(ARM).unwrap();
+    assert_eq!((arm.base.as_str(), arm.tip.as_str()), ("world", "tool"));
+    assert_eq!(arm.joints, ["shoulder", "slide"]);
+    assert_eq!(arm.links, ["upper", "fore"]);
+    // A finger of its own that does not follow another joint is a joint as any other.
+    let text = with("<mimic joint=\"slide\"/>", "");
+    assert_eq!(whole(&text).unwrap().joints.len(), 3);
+    // Two fingers are a hand.
+    let other = r#"<joint name="thumb" type="revolute"><parent link="tool"/><child link="thumb"/>
+        <limit lower="0" upper="1"/></joint><link name="thumb"/>
+        <joint name="eye" type="fixed"><parent link="tool"/><child link="eye_link"/></joint>
+        <link name="eye_link"/></robot>"#;
+    let hand = whole(&text.replace("</robot>", other)).unwrap();
+    assert_eq!(hand.joints, ["shoulder", "slide"]);
+    // Two arms of one body.
+    let other = r#"<joint name="left" type="revolute"><parent link="base"/><child link="left_link"/>
+        <limit lower="0" upper="1"/></joint><link name="left_link"/></robot>"#;
+    let error = whole(&ARM.replace("</robot>", other)).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "link \"world\" carries 2 joints that move (shoulder, left); say which arm is meant, by a \
+         base and a tip"
+    );
+}

@@ -99,11 +99,11 @@ fn pose(x: f64, stamp: Time) -> PoseSample {
 
 fn transforms(x: f64, stamp: Time) -> TransformsSample {
     let about_z = |angle: f64| [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()];
-    TransformsSample {
+    TransformsSample::planar(
         stamp,
-        translations: [[x, 0.0, 0.0], [0.25, x, 0.0], [0.25, 0.0, x]],
-        rotations: [about_z(x), about_z(0.5 * x), about_z(0.1)],
-    }
+        [[x, 0.0, 0.0], [0.25, x, 0.0], [0.25, 0.0, x]],
+        [about_z(x), about_z(0.5 * x), about_z(0.1)],
+    )
 }
 
 fn robot_description(k: u32) -> RobotDescriptionSample {

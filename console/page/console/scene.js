@@ -222,11 +222,13 @@ export function draw(canvas, about, snapshot, delayed, target) {
 
   const place = (point) => atTip(about, point);
   const hand = snapshot.hand && place(snapshot.hand);
-  const drawnTip = snapshot.q && limb(v, about, snapshot.q, colours.measured, 0.22);
+  // Of an arm in space only the tip is drawn, seen from above.
+  const planar = about.lengths.length === 2;
+  const drawnTip = planar && snapshot.q && limb(v, about, snapshot.q, colours.measured, 0.22);
   const tip = snapshot.tip || drawnTip;
   if (delayed?.q) {
-    const seen = limb(v, about, delayed.q, colours.second, 0.9, true);
-    disc(c, v.at(delayed.tip || seen), 8, null, colours.second, 2);
+    const seen = planar && limb(v, about, delayed.q, colours.second, 0.9, true);
+    if (delayed.tip || seen) disc(c, v.at(delayed.tip || seen), 8, null, colours.second, 2);
   }
   if (hand) {
     if (target) {
@@ -241,7 +243,8 @@ export function draw(canvas, about, snapshot, delayed, target) {
     disc(c, v.at(tip), 6.5, colours.model, colours.panel, 1.5);
     if (snapshot.contact.on) force(v, v.at(tip), tip, snapshot.force, 1, colours.force, true);
   }
-  inset(v, about, snapshot);
+  if (planar) inset(v, about, snapshot);
+  else text(c, "seen from above", v.width - 16, v.height - 16, colours.quiet, "right");
 }
 
 function force(v, from, point, [fx, fy], gain, colour, label) {

@@ -1,10 +1,8 @@
 //! The forms of equation (5): how motion and joint torques tell the torque of the
 //! contact, Jᵀ F.
 
-use super::{DerivativeFilter, observer::MomentumObserver};
-use ferntast_model::arm::Arm;
-use ferntast_model::kinematics::planar;
-use ferntast_model::{JointCount, Joints, Vector2};
+use super::{DerivativeFilter, links::Links, observer::MomentumObserver};
+use ferntast_model::{JointCount, Joints};
 use serde::{Deserialize, Serialize};
 
 /// How the contact's torque is found from joint torques and motion.
@@ -27,13 +25,13 @@ pub enum Form {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FilteredMotion {
     /// q \[rad\].
-    pub(super) position: Vector2<f64>,
+    pub(super) position: Joints<f64>,
     /// q̇ \[rad/s\].
-    pub(super) velocity: Vector2<f64>,
+    pub(super) velocity: Joints<f64>,
     /// q̇ as it should be by now \[rad/s\]: predicted over the delay, and noisier.
-    pub(super) present_velocity: Vector2<f64>,
+    pub(super) present_velocity: Joints<f64>,
     /// Jᵀ F \[Nm\].
-    pub(super) contact_torque: Vector2<f64>,
+    pub(super) contact_torque: Joints<f64>,
 }
 
 /// Link positions and joint torques of all joints, filtered alike.
@@ -87,7 +85,10 @@ impl TorqueOfContact {
     pub(super) fn new(form: Form, cut_off: f64, joints: JointCount) -> Self {
         let (filter, observer) = match form {
             Form::Direct => (DerivativeFilter::new(cut_off), None),
-            Form::MomentumObserver => (half_as_late(cut_off), Some(MomentumObserver::new(cut_off))),
+            Form::MomentumObserver => (
+                half_as_late(cut_off),
+                Some(MomentumObserver::new(cut_off, joints)),
+            ),
             Form::MotorCurrent => (half_as_late(cut_off), None),
         };
         let delay = DerivativeFilter::new(cut_off).delay();
@@ -108,14 +109,17 @@ impl TorqueOfContact {
     }
 
     /// Starts again, at rest at link positions `position` \[rad\] under `torque` \[Nm\].
-    pub(super) fn reset(&mut self, arm: &Arm, position: &Joints<f64>, torque: &Joints<f64>) {
+    pub(super) fn reset(
+        &mut self,
+        links: &impl Links,
+        position: &Joints<f64>,
+        torque: &Joints<f64>,
+    ) {
         for (filter, value) in self.channels.each(position, torque) {
             filter.reset(value);
         }
-        if let Some(observer) = &mut self.observer
-            && let (Some(position), Some(torque)) = (planar(position), planar(torque))
-        {
-            observer.reset(arm, &position, &torque);
+        if let Some(observer) = &mut self.observer {
+            observer.reset(links, position, torque);
         }
     }
 
@@ -127,28 +131,35 @@ impl TorqueOfContact {
     }
 
     /// Motion and torque of the contact, after [`step`](Self::step) or
-    /// [`reset`](Self::reset); `None` of an arm that has not the joints of `arm`.
-    pub(super) fn motion(&mut self, arm: &Arm, dt: f64) -> Option<FilteredMotion> {
+    /// [`reset`](Self::reset).
+    pub(super) fn motion(&mut self, links: &impl Links, dt: f64) -> FilteredMotion {
         let channels = &self.channels;
         let channel = |read: fn(&DerivativeFilter) -> f64, from: &Joints<DerivativeFilter>| {
-            planar(&from.map(|filter| read(&filter)))
+            from.map(|filter| read(&filter))
         };
-        let position = channel(DerivativeFilter::value, &channels.positions)?;
-        let velocity = channel(DerivativeFilter::first, &channels.positions)?;
-        let acceleration = channel(DerivativeFilter::second, &channels.positions)?;
-        let torque = channel(DerivativeFilter::value, &channels.torques)?;
-        let present_velocity = velocity + acceleration * self.motion_delay;
-        Some(match &mut self.observer {
-            None => FilteredMotion {
-                position,
-                velocity,
-                present_velocity,
-                contact_torque: arm.inverse_dynamics(&position, &velocity, &acceleration) - torque,
-            },
+        let position = channel(DerivativeFilter::value, &channels.positions);
+        let velocity = channel(DerivativeFilter::first, &channels.positions);
+        let acceleration = channel(DerivativeFilter::second, &channels.positions);
+        let torque = channel(DerivativeFilter::value, &channels.torques);
+        let present_velocity = Joints::from_fn(velocity.count(), |joint| {
+            velocity[joint] + acceleration[joint] * self.motion_delay
+        });
+        match &mut self.observer {
+            None => {
+                let needed = links.inverse_dynamics(&position, &velocity, &acceleration);
+                FilteredMotion {
+                    position,
+                    velocity,
+                    present_velocity,
+                    contact_torque: Joints::from_fn(needed.count(), |joint| {
+                        needed[joint] - torque[joint]
+                    }),
+                }
+            }
             Some(observer) => FilteredMotion {
                 present_velocity,
-                ..observer.step(arm, dt, &position, &velocity, &torque)
+                ..observer.step(links, dt, &position, &velocity, &torque)
             },
-        })
+        }
     }
 }

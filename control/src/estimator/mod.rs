@@ -16,10 +16,13 @@ mod coefficient;
 mod estimate;
 mod filter;
 mod form;
+mod intake;
+mod links;
 mod motor_current;
 mod observer;
 mod parameters;
 mod sensors;
+mod spatial;
 mod split;
 mod systematic;
 mod zeroing;
@@ -32,40 +35,26 @@ pub use motor_current::{
     MotorCurrentParameters, MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor,
 };
 pub use parameters::EstimatorParameters;
+pub use spatial::{SpatialEstimate, SpatialEstimator};
 pub use systematic::Uncertainty;
 
 use ferntast_model::arm::Arm;
-use ferntast_model::joint::JointParameters;
 use ferntast_model::kinematics::planar;
-use ferntast_model::{ArmModel, JointCount, Joints, ParameterError, Vector2};
-use form::TorqueOfContact;
-use sensors::SensorWatch;
+use ferntast_model::{ArmModel, JointCount, ParameterError, Vector2};
+use intake::Intake;
 use split::{Motion, Split};
-use systematic::sensor_errors;
+use systematic::SensorErrors;
 use zeroing::Zeroing;
 
-/// Beyond these a measurement is broken, whatever the arm.
-const LARGEST_POSITION: f64 = 1e3;
-const LARGEST_TORQUE: f64 = 1e6;
-
-/// Estimates contact forces step by step.
+/// Estimates contact forces of a planar arm step by step.
 #[derive(Clone, Debug)]
 pub struct ContactEstimator {
     arm: Arm,
-    count: JointCount,
-    /// As many as `count` says.
-    joints: Vec<JointParameters>,
     parameters: EstimatorParameters,
-    contact: TorqueOfContact,
-    sensors: SensorWatch,
+    intake: Intake,
     zeroing: Zeroing,
     split: Split,
     last: ContactEstimate,
-    /// Time since the filters were last moved on \[s\].
-    gap: f64,
-    /// Time until the filters have forgotten a start or a sensor that failed \[s\].
-    settling: f64,
-    started: bool,
 }
 
 impl ContactEstimator {
@@ -76,40 +65,22 @@ impl ContactEstimator {
     /// The first parameter that is out of bounds.
     pub fn new(model: &ArmModel, parameters: &EstimatorParameters) -> Result<Self, ParameterError> {
         model.validate()?;
-        parameters
-            .validate()
-            .map_err(|error| error.within("estimator"))?;
-        let count = JointCount::new(model.joint.len())?;
         let joints = model.arm.joints_of_links(&model.joint)?;
-        let ranges = Vector2::from(joints.each_ref().map(|joint| joint.torque_sensor_range));
-        let mut parameters = *parameters;
-        if parameters.form == Form::MotorCurrent {
-            parameters.zeroing_time = 0.0;
-        }
+        let ranges = joints.each_ref().map(|joint| joint.torque_sensor_range);
+        let (intake, parameters) = Intake::new(&model.joint, parameters)?;
         Ok(Self {
             arm: Arm::new(&model.arm),
-            count,
-            joints: model.joint.clone(),
             parameters,
-            contact: TorqueOfContact::new(parameters.form, parameters.cut_off, count),
-            sensors: SensorWatch::new(count),
-            zeroing: Zeroing::new(ranges),
+            zeroing: Zeroing::new(ranges.into()),
             split: Split::new(model.contour.features()),
-            last: ContactEstimate::unknown(count),
-            gap: 0.0,
-            settling: 0.0,
-            started: false,
+            last: ContactEstimate::unknown(intake.joints()),
+            intake,
         })
     }
 
     /// How many joints it has measurements of.
     pub fn joints(&self) -> JointCount {
-        self.count
-    }
-
-    /// Time that the filters take to forget \[s\].
-    fn settling_time(&self) -> f64 {
-        1.0 / self.parameters.cut_off
+        self.intake.joints()
     }
 
     /// Takes in a measurement `dt` \[s\] after the last one.
@@ -134,29 +105,23 @@ impl ContactEstimator {
         measurement: &JointMeasurement,
         undetermined: bool,
     ) -> ContactEstimate {
-        let passes = dt > 0.0 && dt.is_finite();
-        if !(passes && is_usable(self.count, measurement)) {
-            self.gap += if passes { dt } else { 0.0 };
-            return self.without_input();
-        }
-        let step = self.gap + dt;
-        self.gap = 0.0;
-        let link = self.filter(step, measurement);
-        let memory = self.settling_time();
-        let sensors = self.sensors.step(step, memory, &self.joints, measurement);
-        if sensors.stuck.contains(&true) {
-            self.settling = memory;
-        }
-        // The arm's model is of its own joints: `new` has seen to that.
-        let motion = self.contact.motion(&self.arm, step).zip(planar(&link));
-        let Some((motion, link)) = motion else {
+        let Some(taken) = self.intake.step(&self.arm, dt, measurement) else {
             return self.without_input();
         };
-        let (q, qd) = (motion.position, motion.velocity);
+        let (step, motion, sensors) = (taken.passed, taken.motion, taken.sensors);
+        // The arm's model is of its own joints: `new` has seen to that.
+        let vectors = planar(&motion.position).zip(planar(&motion.velocity));
+        let vectors = vectors.zip(planar(&motion.present_velocity));
+        let torques = planar(&motion.contact_torque).zip(planar(&self.zeroing.zero()));
+        let (Some(((q, qd), present_qd)), Some((with_zero, zero)), Some(link)) =
+            (vectors, torques, planar(&taken.link))
+        else {
+            return self.without_input();
+        };
 
         let kinematics = *self.arm.kinematics();
         let singularity = self.parameters.singularity;
-        let torque = motion.contact_torque - self.zeroing.zero();
+        let torque = with_zero - zero;
         let force = kinematics.tip_force(&q, &torque, singularity);
         let singular = force.is_none();
         let force = force.unwrap_or_else(Vector2::zeros);
@@ -174,32 +139,32 @@ impl ContactEstimator {
             singular,
             saturated: sensors.saturated,
             stuck: sensors.stuck,
-            valid: !singular && !sensors.saturated && self.settling <= 0.0,
-            ..ContactEstimate::unknown(self.count)
+            valid: !singular && !sensors.saturated && taken.settled,
+            ..ContactEstimate::unknown(self.joints())
         };
         if estimate.valid {
-            let features = self.split.features();
-            self.zeroing.learn(
-                &self.parameters,
-                features,
-                step,
-                &tip,
-                &motion.contact_torque,
-                &force,
-            );
+            let free = self.split.is_free(&self.parameters, &tip);
+            let torque = &motion.contact_torque;
+            self.zeroing
+                .learn(&self.parameters, step, free, torque, force.norm());
         }
         let uncertainty = &self.parameters.uncertainty;
-        // Behind a low-pass of bandwidth f samples within 1/(2 f) are alike.
-        let alike = 0.5 * self.settling_time();
+        let alike = self.intake.alike();
         let zeros = self.zeroing.standard_error(alike, uncertainty.torque_zero);
         let gain = uncertainty.torque_gain;
-        let errors = sensor_errors(&kinematics, &q, &torque, &zeros, gain, singularity);
+        let alone = |joint: usize, error: f64| {
+            let mut torque = Vector2::zeros();
+            torque[joint] = error;
+            let force = kinematics.tip_force(&q, &torque, singularity);
+            force.unwrap_or_else(Vector2::zeros)
+        };
+        let none = Vector2::zeros();
         let motion = Motion {
             tip,
-            errors,
+            errors: SensorErrors::new(torque.as_slice(), &zeros, gain, none, alone),
             velocity: tip_velocity,
-            present_velocity: jacobian * motion.present_velocity,
-            delay: self.contact.delay(),
+            present_velocity: jacobian * present_qd,
+            delay: self.intake.delay(),
             undetermined,
         };
         let last = self.last;
@@ -217,52 +182,18 @@ impl ContactEstimator {
 
     /// The estimate where there is no measurement.
     fn without_input(&mut self) -> ContactEstimate {
-        if self.gap > self.parameters.longest_gap {
+        if self.intake.is_lost() {
             self.last = ContactEstimate {
                 position: self.last.position,
                 tip: self.last.tip,
                 friction: self.last.friction,
-                ..ContactEstimate::unknown(self.count)
+                ..ContactEstimate::unknown(self.joints())
             };
         }
         self.last.input_invalid = true;
         self.last.valid = false;
         self.last
     }
-
-    /// Filters all channels; gives the newest link-side position \[rad\].
-    fn filter(&mut self, dt: f64, measurement: &JointMeasurement) -> Joints<f64> {
-        let anew = !self.started || dt > self.parameters.longest_gap;
-        self.settling = if anew {
-            self.settling_time()
-        } else {
-            (self.settling - dt).max(0.0)
-        };
-        self.started = true;
-        let torque = measurement.joint_torque;
-        let link = Joints::from_fn(self.count, |joint| {
-            let (own, motor) = (&self.joints[joint], measurement.motor_position[joint]);
-            // Beyond its range a sensor says nothing, least of all how far the gear is wound.
-            let range = own.torque_sensor_range;
-            own.link_position(motor, torque[joint].clamp(-range, range))
-        });
-        if anew {
-            self.contact.reset(&self.arm, &link, &torque);
-        } else {
-            self.contact.step(dt, &link, &torque);
-        }
-        link
-    }
-}
-
-/// Whether the numbers are such as an arm of so many joints can give.
-fn is_usable(joints: JointCount, measurement: &JointMeasurement) -> bool {
-    // NaN fails the comparison.
-    let within = |values: &Joints<f64>, largest: f64| {
-        values.count() == joints && values.iter().all(|value| value.abs() <= largest)
-    };
-    within(&measurement.motor_position, LARGEST_POSITION)
-        && within(&measurement.joint_torque, LARGEST_TORQUE)
 }
 
 #[cfg(test)]

@@ -11,8 +11,8 @@
 //! DLR-III Lightweight Manipulator Arm, IROS 2006).
 
 use super::form::FilteredMotion;
-use ferntast_model::Vector2;
-use ferntast_model::arm::Arm;
+use super::links::Links;
+use ferntast_model::{JointCount, Joints};
 use std::f64::consts::TAU;
 
 /// The observer with what it knows of the last step.
@@ -20,58 +20,70 @@ use std::f64::consts::TAU;
 pub(super) struct MomentumObserver {
     omega: f64,
     /// p at the last step \[kg m²/s\].
-    momentum: Vector2<f64>,
+    momentum: Joints<f64>,
     /// τ + ∂L/∂q at the last step \[Nm\].
-    drive: Vector2<f64>,
+    drive: Joints<f64>,
     /// r \[Nm\].
-    residual: Vector2<f64>,
+    residual: Joints<f64>,
     /// q \[rad\] and q̇ \[rad/s\], as late as the residual.
-    position: Vector2<f64>,
-    velocity: Vector2<f64>,
+    position: Joints<f64>,
+    velocity: Joints<f64>,
 }
 
 impl MomentumObserver {
-    /// An observer with bandwidth `cut_off` \[Hz\].
-    pub(super) fn new(cut_off: f64) -> Self {
+    /// An observer of so many joints with bandwidth `cut_off` \[Hz\].
+    pub(super) fn new(cut_off: f64, joints: JointCount) -> Self {
+        let none = Joints::filled(joints, 0.0);
         Self {
             omega: TAU * cut_off,
-            momentum: Vector2::zeros(),
-            drive: Vector2::zeros(),
-            residual: Vector2::zeros(),
-            position: Vector2::zeros(),
-            velocity: Vector2::zeros(),
+            momentum: none,
+            drive: none,
+            residual: none,
+            position: none,
+            velocity: none,
         }
     }
 
     /// Starts again, at rest: the contact bears what joint torques and gravity leave over.
-    pub(super) fn reset(&mut self, arm: &Arm, position: &Vector2<f64>, torque: &Vector2<f64>) {
-        self.velocity = Vector2::zeros();
+    pub(super) fn reset(
+        &mut self,
+        links: &impl Links,
+        position: &Joints<f64>,
+        torque: &Joints<f64>,
+    ) {
+        let rest = position.map(|_| 0.0);
+        self.velocity = rest;
         self.position = *position;
-        self.momentum = Vector2::zeros();
-        self.drive = torque + arm.lagrangian_slope(position, &self.velocity);
-        self.residual = -self.drive;
+        self.momentum = rest;
+        let slope = links.lagrangian_slope(position, &rest);
+        self.drive = Joints::from_fn(rest.count(), |joint| torque[joint] + slope[joint]);
+        self.residual = self.drive.map(|own| -own);
     }
 
     /// Takes in motion and joint torques, filtered alike, `dt` \[s\] after the last ones.
     pub(super) fn step(
         &mut self,
-        arm: &Arm,
+        links: &impl Links,
         dt: f64,
-        position: &Vector2<f64>,
-        velocity: &Vector2<f64>,
-        torque: &Vector2<f64>,
+        position: &Joints<f64>,
+        velocity: &Joints<f64>,
+        torque: &Joints<f64>,
     ) -> FilteredMotion {
-        let momentum = arm.inertia(position) * velocity;
-        let drive = torque + arm.lagrangian_slope(position, velocity);
-        // The residual's equation, integrated exactly over the step for a contact
-        // that is steady in it; the drive by the trapezoidal rule.
-        let contact = (momentum - self.momentum) / dt - (drive + self.drive) * 0.5;
+        let momentum = links.momentum(position, velocity);
+        let slope = links.lagrangian_slope(position, velocity);
         let share = 1.0 - (-self.omega * dt).exp();
-        self.residual += (contact - self.residual) * share;
-        self.position += (position - self.position) * share;
-        self.velocity += (velocity - self.velocity) * share;
+        for joint in 0..position.len() {
+            let drive = torque[joint] + slope[joint];
+            // The residual's equation, integrated exactly over the step for a contact
+            // that is steady in it; the drive by the trapezoidal rule.
+            let contact =
+                (momentum[joint] - self.momentum[joint]) / dt - (drive + self.drive[joint]) * 0.5;
+            self.residual[joint] += (contact - self.residual[joint]) * share;
+            self.position[joint] += (position[joint] - self.position[joint]) * share;
+            self.velocity[joint] += (velocity[joint] - self.velocity[joint]) * share;
+            self.drive[joint] = drive;
+        }
         self.momentum = momentum;
-        self.drive = drive;
         FilteredMotion {
             position: self.position,
             velocity: self.velocity,
@@ -84,7 +96,9 @@ impl MomentumObserver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ferntast_model::arm::{ArmParameters, LinkParameters, solve_symmetric};
+    use ferntast_model::Vector2;
+    use ferntast_model::arm::{Arm, ArmParameters, LinkParameters, solve_symmetric};
+    use ferntast_model::kinematics::planar;
 
     /// Links that swing freely under a constant torque of a contact: the
     /// residual comes to it as 1 − exp(−ωt).
@@ -103,18 +117,19 @@ mod tests {
             }
             .on_ground(),
         );
-        let mut observer = MomentumObserver::new(20.0);
+        let mut observer = MomentumObserver::new(20.0, JointCount::new(2).unwrap());
         let (mut q, mut qd) = (Vector2::new(0.3, 1.0), Vector2::zeros());
         let (torque, contact) = (Vector2::new(2.0, -1.0), Vector2::new(-3.0, 1.5));
-        observer.reset(&arm, &q, &-arm.gravity(&q));
-        observer.residual = Vector2::zeros();
-        observer.drive = torque - arm.gravity(&q);
+        observer.reset(&arm, &q.into(), &(-arm.gravity(&q)).into());
+        observer.residual = [0.0; 2].into();
+        observer.drive = (torque - arm.gravity(&q)).into();
         let dt = 1e-5;
         for step in 1..=10_000 {
             let (inertia, bias) = arm.inertia_and_bias(&q, &qd);
             qd += solve_symmetric(&inertia, &(torque + contact - bias)) * dt;
             q += qd * dt;
-            let residual = observer.step(&arm, dt, &q, &qd, &torque).contact_torque;
+            let motion = observer.step(&arm, dt, &q.into(), &qd.into(), &torque.into());
+            let residual = planar(&motion.contact_torque).unwrap();
             if step % 1000 == 0 {
                 let grown = 1.0 - (-TAU * 20.0 * dt * f64::from(step)).exp();
                 assert!((residual - contact * grown).norm() < 2e-3, "{residual}");

@@ -1,6 +1,7 @@
 //! Which surface is touched, and what the force is along and across it.
 
-use super::systematic::{SensorErrors, split_errors};
+use super::systematic::SensorErrors;
+use super::zeroing::CLEARANCE;
 use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters};
 use ferntast_model::Vector2;
 use ferntast_model::contour::{Feature, Surface, nearest};
@@ -31,7 +32,7 @@ pub(super) struct Motion {
     /// How late forces and filtered velocity are \[s\].
     pub(super) delay: f64,
     /// What the torque sensors may have wrong of the force \[N\].
-    pub(super) errors: SensorErrors,
+    pub(super) errors: SensorErrors<Vector2<f64>>,
     /// A joint's friction, and so the force, is not determined.
     pub(super) undetermined: bool,
 }
@@ -67,9 +68,13 @@ impl Split {
         }
     }
 
-    /// What can be touched.
-    pub(super) fn features(&self) -> &[Feature] {
-        &self.features
+    /// Whether `tip` \[m\] is surely free: in front of, or beside, all that it can touch.
+    pub(super) fn is_free(&self, parameters: &EstimatorParameters, tip: &Vector2<f64>) -> bool {
+        let clearance = CLEARANCE * parameters.contact_distance;
+        self.features.iter().all(|feature| {
+            feature.distance(tip) > clearance
+                || feature.along(tip).abs() > feature.half_length + clearance
+        })
     }
 
     /// Finds the surface touched, and splits the force along it.
@@ -146,7 +151,7 @@ impl Split {
         parameters: &EstimatorParameters,
         dt: f64,
         feature: &Feature,
-        sensors: &SensorErrors,
+        sensors: &SensorErrors<Vector2<f64>>,
         estimate: &mut ContactEstimate,
     ) {
         let slot = match feature.surface {
@@ -157,14 +162,14 @@ impl Split {
         };
         let coefficient = &mut self.coefficients[slot];
         if estimate.valid && !estimate.near_rest {
-            let errors = split_errors(
-                sensors,
-                &feature.normal,
-                &feature.tangent(),
-                estimate.contact_force,
-                self.direction,
-                parameters.uncertainty.contour_turn,
-            );
+            let (normal, tangent) = (feature.normal, feature.tangent());
+            let direction = self.direction;
+            // A contour turned by δ has F_t + δ F_n along its tangent, and F_n − δ F_t along
+            // its normal.
+            let (turn, [t, n]) = (parameters.uncertainty.contour_turn, estimate.contact_force);
+            let turned = [-turn * t, -direction * turn * n];
+            let of = |error: &Vector2<f64>| [error.dot(&normal), -direction * error.dot(&tangent)];
+            let errors = sensors.split(of, turned);
             coefficient.step(
                 estimate.normal_force,
                 estimate.tangential_force,

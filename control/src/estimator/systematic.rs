@@ -4,8 +4,7 @@
 //! Each is a standard uncertainty times the force's derivative with respect to it;
 //! they are independent and add up in squares (GUM, JCGM 100:2008, equation (10)).
 
-use ferntast_model::kinematics::Kinematics;
-use ferntast_model::{Vector2, parameters};
+use ferntast_model::{MAX_JOINTS, parameters};
 
 parameters! {
     /// How well the parameters behind a force are known: standard uncertainties.
@@ -21,54 +20,52 @@ parameters! {
     }
 }
 
-/// How many errors there are: two zeros, two gains, one turn.
-pub(super) const ERRORS: usize = 5;
+/// How many errors there are at most: a zero and a gain of each joint's sensor, one turn.
+pub(super) const ERRORS: usize = 2 * MAX_JOINTS + 1;
 
 /// Errors of F_N and of F_T \[N\], one standard uncertainty each.
 pub(super) type SplitErrors = [[f64; 2]; ERRORS];
 
-/// Errors of the force on the tip \[N\] by the torque sensors: both zeros, both gains.
-pub(super) type SensorErrors = [Vector2<f64>; ERRORS - 1];
-
-/// What standard uncertainties `zeros` \[Nm\] and `gain` \[-\] of the torque sensors
-/// make of the force at the posture `q` \[rad\], where the contact makes `torque`
-/// \[Nm\]: J⁻ᵀ of each joint's error alone. Slowly sliding in weightlessness the
-/// sensors feel the contact and nothing else, so that its torque stands for theirs.
-pub(super) fn sensor_errors(
-    kinematics: &Kinematics,
-    q: &Vector2<f64>,
-    torque: &Vector2<f64>,
-    zeros: &Vector2<f64>,
-    gain: f64,
-    singularity: f64,
-) -> SensorErrors {
-    let alone = |joint: usize, error: f64| {
-        let mut torque = Vector2::zeros();
-        torque[joint] = error;
-        let force = kinematics.tip_force(q, &torque, singularity);
-        force.unwrap_or_else(Vector2::zeros)
-    };
-    [
-        alone(0, zeros.x),
-        alone(1, zeros.y),
-        alone(0, gain * torque.x),
-        alone(1, gain * torque.y),
-    ]
+/// Errors of a force on the tip \[N\] by the torque sensors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SensorErrors<V> {
+    errors: [V; ERRORS - 1],
+    count: usize,
 }
 
-/// The same of F_N and F_T, for a tip that slides in `direction` (±1) along
-/// `tangent`; `split` has the force along tangent and normal \[N\]. A contour
-/// turned by δ has F_t + δ F_n along its tangent, and F_n − δ F_t along its normal.
-pub(super) fn split_errors(
-    sensors: &SensorErrors,
-    normal: &Vector2<f64>,
-    tangent: &Vector2<f64>,
-    split: [f64; 2],
-    direction: f64,
-    turn: f64,
-) -> SplitErrors {
-    let of = |error: &Vector2<f64>| [error.dot(normal), -direction * error.dot(tangent)];
-    let [zero_1, zero_2, gain_1, gain_2] = sensors;
-    let turned = [-turn * split[0], -direction * turn * split[1]];
-    [of(zero_1), of(zero_2), of(gain_1), of(gain_2), turned]
+impl<V: Copy> SensorErrors<V> {
+    /// What standard uncertainties `zeros` \[Nm\] and `gain` \[-\] of the torque sensors
+    /// make of the force, where the contact makes `torque` \[Nm\]; `force` is what an error of
+    /// one joint's torque alone makes. Slowly sliding in weightlessness the sensors feel the
+    /// contact and nothing else, so that its torque stands for theirs.
+    pub(super) fn new(
+        torque: &[f64],
+        zeros: &[f64],
+        gain: f64,
+        none: V,
+        force: impl Fn(usize, f64) -> V,
+    ) -> Self {
+        let mut errors = [none; ERRORS - 1];
+        let joints = torque.len().min(zeros.len());
+        let zeros = (0..joints).map(|joint| force(joint, zeros[joint]));
+        let gains = (0..joints).map(|joint| force(joint, gain * torque[joint]));
+        for (place, error) in errors.iter_mut().zip(zeros.chain(gains)) {
+            *place = error;
+        }
+        Self {
+            errors,
+            count: 2 * joints,
+        }
+    }
+
+    /// The same of F_N and F_T: what `split` makes of an error of the force. `turned` is what
+    /// a surface that is turned adds.
+    pub(super) fn split(&self, split: impl Fn(&V) -> [f64; 2], turned: [f64; 2]) -> SplitErrors {
+        let mut errors = [[0.0; 2]; ERRORS];
+        let each = self.errors.iter().take(self.count).map(split);
+        for (place, error) in errors.iter_mut().zip(each.chain([turned])) {
+            *place = error;
+        }
+        errors
+    }
 }

@@ -1,6 +1,7 @@
 use super::*;
 use ferntast_model::arm::ArmParameters;
 use ferntast_model::contour::{Contour, Surface};
+use ferntast_model::joint::JointParameters;
 use proptest::prelude::*;
 
 /// The sections of the shipped arm that matter here.

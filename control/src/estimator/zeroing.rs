@@ -13,8 +13,7 @@
 //! the contour, cannot be told from a zero, and is learned within that largest share.
 
 use super::EstimatorParameters;
-use ferntast_model::Vector2;
-use ferntast_model::contour::Feature;
+use ferntast_model::Joints;
 
 /// Largest zero, as a share of the sensor's range \[-\].
 pub(super) const LARGEST_SHARE: f64 = 0.025;
@@ -22,84 +21,76 @@ pub(super) const LARGEST_SHARE: f64 = 0.025;
 /// How far the tip stays away from what it may touch, in `contact_distance`s: as
 /// much again as makes a contact is left for a contour that is not where it is
 /// believed to be.
-const CLEARANCE: f64 = 2.0;
+pub(super) const CLEARANCE: f64 = 2.0;
 
 /// The zeros of the torque sensors, as torques of the contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Zeroing {
     /// Largest zero of each joint \[Nm\].
-    largest: Vector2<f64>,
+    largest: Joints<f64>,
     /// Mean of the contact's torque without contact \[Nm\].
-    zero: Vector2<f64>,
+    zero: Joints<f64>,
     /// Mean square of what it is off that mean \[Nm²\].
-    scatter: Vector2<f64>,
+    scatter: Joints<f64>,
     /// Time that went into the mean, up to its memory \[s\].
     learned: f64,
 }
 
 impl Zeroing {
     /// Nothing is known of sensors of these ranges \[Nm\].
-    pub(super) fn new(ranges: Vector2<f64>) -> Self {
+    pub(super) fn new(ranges: Joints<f64>) -> Self {
+        let none = ranges.map(|_| 0.0);
         Self {
-            largest: ranges * LARGEST_SHARE,
-            zero: Vector2::zeros(),
-            scatter: Vector2::zeros(),
+            largest: ranges.map(|range| range * LARGEST_SHARE),
+            zero: none,
+            scatter: none,
             learned: 0.0,
         }
     }
 
     /// What is to be taken off the contact's torque \[Nm\].
-    pub(super) fn zero(&self) -> Vector2<f64> {
+    pub(super) fn zero(&self) -> Joints<f64> {
         self.zero
     }
 
     /// Standard error of each zero \[Nm\], for samples alike within `alike` \[s\]:
     /// `unlearned` \[Nm\] before anything was learned, and no more than that after.
-    pub(super) fn standard_error(&self, alike: f64, unlearned: f64) -> Vector2<f64> {
+    pub(super) fn standard_error(&self, alike: f64, unlearned: f64) -> Joints<f64> {
         let independent = self.learned / alike;
         if independent < 2.0 {
-            return Vector2::repeat(unlearned);
+            return self.zero.map(|_| unlearned);
         }
         self.scatter
             .map(|square| (square / (independent - 1.0)).sqrt().min(unlearned))
     }
 
     /// Learns from `torque` \[Nm\], the contact's as the form in use has it, over `dt`
-    /// \[s\], with the tip at `tip` \[m\]. `force` \[N\] is what is left of it at the tip
-    /// with the zero taken off.
+    /// \[s\], with the tip `free`: further than [`CLEARANCE`] from all that it may touch.
+    /// `force` \[N\] is how large what is left of it at the tip is with the zero taken off.
     pub(super) fn learn(
         &mut self,
         parameters: &EstimatorParameters,
-        features: &[Feature],
         dt: f64,
-        tip: &Vector2<f64>,
-        torque: &Vector2<f64>,
-        force: &Vector2<f64>,
+        free: bool,
+        torque: &Joints<f64>,
+        force: f64,
     ) {
         let memory = parameters.zeroing_time;
-        let clearance = CLEARANCE * parameters.contact_distance;
-        if memory <= 0.0 || !is_free(features, tip, clearance) {
+        if memory <= 0.0 || !free {
             return;
         }
-        let within = |joint: usize| torque[joint].abs() <= self.largest[joint];
-        let plausible = within(0) && within(1);
-        let quiet = self.learned < memory || force.norm() < parameters.contact_off;
+        let plausible = (0..torque.len()).all(|own| torque[own].abs() <= self.largest[own]);
+        let quiet = self.learned < memory || force < parameters.contact_off;
         if !(plausible && quiet) {
             return;
         }
         self.learned = (self.learned + dt).min(memory);
         // The plain mean at first, then one that forgets.
         let share = (dt / self.learned).min(1.0);
-        let off = torque - self.zero;
-        self.zero += off * share;
-        self.scatter += (off.component_mul(&off) - self.scatter) * share;
+        for (joint, torque) in torque.iter().enumerate() {
+            let off = torque - self.zero[joint];
+            self.zero[joint] += off * share;
+            self.scatter[joint] += (off * off - self.scatter[joint]) * share;
+        }
     }
-}
-
-/// Whether `tip` \[m\] is more than `clearance` \[m\] in front of, or beside, every feature.
-fn is_free(features: &[Feature], tip: &Vector2<f64>, clearance: f64) -> bool {
-    features.iter().all(|feature| {
-        feature.distance(tip) > clearance
-            || feature.along(tip).abs() > feature.half_length + clearance
-    })
 }

@@ -1,16 +1,20 @@
 //! Which commands are acted on.
 
+use std::sync::Arc;
+
 use super::ServoConfig;
-use super::tip::TipModel;
+use super::tip::{Led, PlanarTip, SerialTip, TipKinematics};
 use crate::{nanoseconds, seconds};
-use ferntast_model::kinematics::Kinematics;
-use ferntast_model::{Joints, ParameterError, Vector2};
+use ferntast_model::kinematics::{Kinematics, LINKS};
+use ferntast_model::serial_arm::SerialArm;
+use ferntast_model::{JointCount, Joints, ParameterError};
+use nalgebra::Vector3;
 
 /// Where to go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// Tip position x, y, z, base frame \[m\] (`servo_cp`). The arm works in
-    /// the plane z = 0: z must be finite and is not looked at any further.
+    /// Tip position x, y, z, base frame \[m\] (`servo_cp`). An arm that works in
+    /// the plane z = 0 does not look at z any further, but it must be finite.
     Tip([f64; 3]),
     /// Joint positions \[rad\] (`servo_jp`).
     Joints(Joints<f64>),
@@ -125,7 +129,50 @@ const CLOCK_TOLERANCE: f64 = 0.005;
 struct Accepted {
     stamp_ns: i64,
     /// Where there is a Cartesian model.
-    tip: Option<Vector2<f64>>,
+    tip: Option<Vector3<f64>>,
+    led: Led,
+}
+
+/// What the servo knows of where its tip is.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum CartesianModel<'a> {
+    /// Nothing: it takes joint positions only.
+    #[default]
+    None,
+    /// Two links in a plane.
+    Planar(Kinematics),
+    /// A serial arm in space.
+    Serial(&'a SerialArm),
+}
+
+impl From<Option<Kinematics>> for CartesianModel<'_> {
+    fn from(kinematics: Option<Kinematics>) -> Self {
+        kinematics.map_or(CartesianModel::None, CartesianModel::Planar)
+    }
+}
+
+impl CartesianModel<'_> {
+    /// For an arm of so many joints.
+    fn tip(self, joints: JointCount) -> Result<Option<Arc<dyn TipKinematics>>, ParameterError> {
+        let (tip, each): (Arc<dyn TipKinematics>, _) = match self {
+            CartesianModel::None => return Ok(None),
+            CartesianModel::Planar(kinematics) => {
+                let count = JointCount::new(LINKS)?;
+                let tip = PlanarTip { kinematics, count };
+                (Arc::new(tip), "link of the arm's kinematics")
+            }
+            CartesianModel::Serial(arm) => (Arc::new(SerialTip::new(arm)), "joint of the arm"),
+        };
+        match tip.count() == joints {
+            true => Ok(Some(tip)),
+            false => Err(ParameterError::WrongCount {
+                key: "joint".into(),
+                found: joints.get(),
+                wanted: tip.count().get(),
+                each,
+            }),
+        }
+    }
 }
 
 /// Decides which commands are acted on, one at a time.
@@ -135,7 +182,7 @@ struct Accepted {
 /// bounded by the setpoint's limits alone.
 #[derive(Clone, Debug)]
 pub struct CommandCheck {
-    tip: Option<TipModel>,
+    tip: Option<Arc<dyn TipKinematics>>,
     /// Lower and upper joint limits [rad].
     limits: Joints<[f64; 2]>,
     workspace: [[f64; 2]; 2],
@@ -156,14 +203,13 @@ impl CommandCheck {
     /// # Errors
     ///
     /// [`ParameterError::WrongCount`]: kinematics of another number of joints.
-    pub fn new(
-        kinematics: Option<Kinematics>,
+    pub fn new<'a>(
+        kinematics: impl Into<CartesianModel<'a>>,
         limits: Joints<[f64; 2]>,
         config: &ServoConfig,
     ) -> Result<Self, ParameterError> {
-        let tip = kinematics.map(|own| TipModel::new(own, limits.count()));
         Ok(CommandCheck {
-            tip: tip.transpose()?,
+            tip: kinematics.into().tip(limits.count())?,
             limits,
             workspace: [config.workspace_lower, config.workspace_upper],
             age: config.command_age,
@@ -228,7 +274,7 @@ impl CommandCheck {
         if age < -CLOCK_TOLERANCE {
             return Err(CommandRefusal::FromFuture { ahead: -age });
         }
-        let (joints, tip) = self.joints(&command.target, posture)?;
+        let (led, tip) = self.joints(&command.target, posture)?;
         if let Some(last) = self.last
             && let (Some(tip), Some(before)) = (tip, last.tip)
         {
@@ -240,8 +286,8 @@ impl CommandCheck {
             }
         }
         self.newest_ns = stamp_ns;
-        self.last = Some(Accepted { stamp_ns, tip });
-        Ok(joints)
+        self.last = Some(Accepted { stamp_ns, tip, led });
+        Ok(led.joints)
     }
 
     /// Joint positions \[rad\] and, where that is known, the tip \[m\].
@@ -249,35 +295,41 @@ impl CommandCheck {
         &self,
         target: &Target,
         posture: &Joints<f64>,
-    ) -> Result<(Joints<f64>, Option<Vector2<f64>>), CommandRefusal> {
-        let (joints, tip) = match target {
+    ) -> Result<(Led, Option<Vector3<f64>>), CommandRefusal> {
+        let (led, tip) = match target {
             Target::Tip(tip) => {
-                let tip = Vector2::new(tip[0], tip[1]);
-                let model = self.tip.ok_or(CommandRefusal::NoTipModel)?;
-                (model.joints(&tip, posture)?, Some(tip))
+                let model = self.tip.as_ref().ok_or(CommandRefusal::NoTipModel)?;
+                let tip = model.followed(&Vector3::from(*tip));
+                let last = self.last.as_ref().map(|own| &own.led);
+                (model.joints(&tip, posture, last)?, Some(tip))
             }
             Target::Joints(joints) => {
                 self.check_count(joints)?;
-                let tip = self.tip.map(|model| model.tip(joints));
-                (*joints, tip.transpose()?)
+                let tip = self.tip.as_ref().map(|model| model.tip(joints));
+                let led = Led {
+                    joints: *joints,
+                    clear: 0.0,
+                };
+                (led, tip.transpose()?)
             }
         };
         let [lower, upper] = &self.workspace;
-        let outside = |tip: Vector2<f64>| {
+        let outside = |tip: Vector3<f64>| {
             (0..2).any(|axis| tip[axis] < lower[axis] || tip[axis] > upper[axis])
         };
         if tip.is_some_and(outside) {
             let limit = Range::Workspace;
             return Err(CommandRefusal::OutOfRange { limit });
         }
-        for (joint, (position, [lower, upper])) in joints.iter().zip(self.limits.iter()).enumerate()
+        for (joint, (position, [lower, upper])) in
+            led.joints.iter().zip(self.limits.iter()).enumerate()
         {
             if position < lower || position > upper {
                 let limit = Range::Joint(joint as u8 + 1);
                 return Err(CommandRefusal::OutOfRange { limit });
             }
         }
-        Ok((joints, tip))
+        Ok((led, tip))
     }
 
     fn check_count(&self, joints: &Joints<f64>) -> Result<(), CommandRefusal> {
@@ -422,7 +474,8 @@ mod tests {
     #[test]
     fn without_a_cartesian_model_joints_are_taken_and_tips_refused() {
         let limits = [[-1.0, 1.0]; 3].into();
-        let mut check = CommandCheck::new(None, limits, &ServoConfig::default()).unwrap();
+        let mut check =
+            CommandCheck::new(CartesianModel::None, limits, &ServoConfig::default()).unwrap();
         let mut stamp_ns = NOW;
         let mut send = |joints: Joints<f64>| {
             stamp_ns += MS;

@@ -1,7 +1,9 @@
 //! How far the tip gives way to a force while the servo holds it.
 
 use super::ServoConfig;
+use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{ArmModel, JointCount, Matrix2, ParameterError, Vector2};
+use nalgebra::Matrix3;
 
 /// Compliance of the tip at the joint positions `q` \[rad\], base frame
 /// \[m/N\]: J K⁻¹ Jᵀ with servo and gear of each joint one behind the other,
@@ -33,6 +35,20 @@ pub fn stiffest(model: &ArmModel, servo: &ServoConfig) -> Option<f64> {
     let kinematics = model.arm.kinematics();
     let q = kinematics.inverse(&tip, contour.nominal_elbow).ok()?;
     let compliance = tip_compliance(model, servo, &q).ok()?;
+    let least = compliance.symmetric_eigenvalues().min();
+    (least > 0.0).then(|| 1.0 / least)
+}
+
+/// The same of a serial arm, at home.
+pub fn stiffest_serial(arm: &SerialArm, servo: &ServoConfig) -> Option<f64> {
+    let tuning = servo.joints(arm.count()).ok()?;
+    let jacobian = arm.chain().jacobian(arm.home());
+    let mut compliance = Matrix3::zeros();
+    for (joint, own) in arm.joints().iter().enumerate() {
+        let lever = jacobian.fixed_view::<3, 1>(0, joint);
+        let gives = 1.0 / tuning[joint].stiffness + 1.0 / own.stiffness;
+        compliance += lever * lever.transpose() * gives;
+    }
     let least = compliance.symmetric_eigenvalues().min();
     (least > 0.0).then(|| 1.0 / least)
 }

@@ -4,7 +4,8 @@
 //! command in; motor torques, setpoint, state and everything refused or
 //! limited out. It has the joints that it is made for, one to
 //! [`MAX_JOINTS`](ferntast_model::MAX_JOINTS); the arm's kinematics it needs only
-//! to be told tips.
+//! to be told tips. What a serial arm's links weigh, and what their motion takes, is fed
+//! forward.
 //!
 //! **When commands count.** After `enable` or `resume` the arm holds where it
 //! is, with full gains, and waits: no command yet is not a silent command. The
@@ -28,6 +29,7 @@ mod joint;
 mod jumped;
 mod law;
 mod release;
+mod serial;
 mod setpoint;
 mod stall;
 mod take_over;
@@ -35,8 +37,10 @@ mod take_over;
 mod tests;
 mod tip;
 
-pub use command::{Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target};
-pub use compliance::{stiffest, tip_compliance};
+pub use command::{
+    CartesianModel, Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target,
+};
+pub use compliance::{stiffest, stiffest_serial, tip_compliance};
 pub use config::{JointTuning, ReleaseConfig, ServoConfig};
 pub use feed_forward::{FedForward, FedTorque, FeedForward, MAX_TERMS};
 pub use law::{LimitedTorque, PositionLaw};
@@ -46,12 +50,14 @@ pub use take_over::{FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, Ta
 use self::frozen::FrozenWatch;
 use self::joint::{JointServo, Seen};
 use self::jumped::JumpWatch;
+use self::serial::Carried;
 use self::stall::{BEGINS_ANEW, Stall};
 use crate::operating::{Event, OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
 use crate::planted::{Planted, Rule};
 use crate::{nanoseconds, seconds};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::kinematics::Kinematics;
+use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, ParameterError};
 
 /// After the servo was held up a measurement is of the time after that when it is not
@@ -164,6 +170,8 @@ pub struct Servo {
     jumped: JumpWatch,
     refusals: RefusalCounts,
     accepted: u64,
+    /// What the joints carry of a serial arm's links.
+    carried: Option<Carried>,
     planted: Planted,
 }
 
@@ -178,6 +186,28 @@ impl Servo {
     pub fn new(
         joints: &[JointParameters],
         kinematics: Option<Kinematics>,
+        config: &ServoConfig,
+    ) -> Result<Servo, ParameterError> {
+        Servo::of(joints, kinematics.into(), config)
+    }
+
+    /// A servo for a serial `arm` in space: it takes tips as well as joint positions, and
+    /// carries the links' weight and what their motion takes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Servo::new`].
+    pub fn serial(arm: &SerialArm, config: &ServoConfig) -> Result<Servo, ParameterError> {
+        let servo = Servo::of(arm.joints(), CartesianModel::Serial(arm), config)?;
+        Ok(Servo {
+            carried: Some(Carried::new(arm, &config.joints(servo.count)?)),
+            ..servo
+        })
+    }
+
+    fn of(
+        joints: &[JointParameters],
+        kinematics: CartesianModel<'_>,
         config: &ServoConfig,
     ) -> Result<Servo, ParameterError> {
         config.validate()?;
@@ -205,6 +235,7 @@ impl Servo {
             jumped: JumpWatch::default(),
             refusals: RefusalCounts::default(),
             accepted: 0,
+            carried: None,
             planted: Planted::NONE,
         })
     }
@@ -321,7 +352,17 @@ impl Servo {
                 .map_or(f64::NAN, |own| seconds(own.age_ns(now_ns))),
         };
         match measurement {
-            Ok(measured) => self.drive(&measured, input.weight, &mut output),
+            Ok(measured) => {
+                let weight = self
+                    .carried
+                    .as_ref()
+                    .map(|own| own.weight(&measured.position));
+                self.drive(&measured, weight.or(input.weight), &mut output);
+                if let (Some(carried), Some(weight)) = (&self.carried, weight) {
+                    let setpoint = self.setpoint();
+                    carried.add(&measured, &weight, &setpoint, &mut output);
+                }
+            }
             Err(_) => self.joints.iter_mut().for_each(JointServo::let_go),
         }
         output.setpoint = self.setpoint();
@@ -404,6 +445,10 @@ impl Servo {
         let posture = self.setpoint().map(|own| own.position);
         match self.commands.check(command, now_ns, &posture) {
             Ok(targets) => {
+                let targets = match &self.carried {
+                    Some(carried) => carried.motor_positions(&targets),
+                    None => targets,
+                };
                 for (joint, target) in self.joints.iter_mut().zip(targets.iter()) {
                     joint.set_target(*target);
                 }

@@ -1,51 +1,46 @@
-//! The arm's Cartesian model: what the servo needs to be told tips.
+//! What the servo needs to be told tips: where the tip is, and which joint positions bring
+//! it somewhere.
+
+mod planar;
+mod serial;
+
+use std::fmt::Debug;
 
 use super::CommandRefusal;
-use super::command::Range;
-use ferntast_model::kinematics::{Elbow, Kinematics, LINKS, planar};
-use ferntast_model::{JointCount, Joints, ParameterError, Vector2};
+use ferntast_model::{JointCount, Joints};
+use nalgebra::Vector3;
 
-/// Where the tip is, and which joint positions bring it there.
+pub(super) use planar::PlanarTip;
+pub(super) use serial::SerialTip;
+
+/// Where a command led.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TipModel {
-    kinematics: Kinematics,
+pub(super) struct Led {
+    /// Joint positions \[rad\] or \[m\].
+    pub(super) joints: Joints<f64>,
+    /// So far the joints may go together before singularities have to be looked for again
+    /// \[rad\]; zero where that is not known.
+    pub(super) clear: f64,
 }
 
-impl TipModel {
-    /// Of an arm with so many joints.
-    pub(super) fn new(
-        kinematics: Kinematics,
-        joints: JointCount,
-    ) -> Result<TipModel, ParameterError> {
-        if joints.get() == LINKS {
-            return Ok(TipModel { kinematics });
-        }
-        Err(ParameterError::WrongCount {
-            key: "joint".into(),
-            found: joints.get(),
-            wanted: LINKS,
-            each: "link of the arm's kinematics",
-        })
-    }
+/// Kinematics of an arm as commands of tips need them. Neither allocates nor panics.
+pub(super) trait TipKinematics: Debug + Send + Sync {
+    /// How many joints the arm has.
+    fn count(&self) -> JointCount;
 
-    /// Joint positions \[rad\] that bring the tip to `tip` \[m\], base frame, with
-    /// the elbow bent as in `posture` \[rad\].
-    pub(super) fn joints(
+    /// What of a commanded tip \[m\], base frame, the arm can follow: in a plane or in space.
+    fn followed(&self, tip: &Vector3<f64>) -> Vector3<f64>;
+
+    /// The tip \[m\], base frame, at the joint positions `joints` \[rad\] or \[m\].
+    fn tip(&self, joints: &Joints<f64>) -> Result<Vector3<f64>, CommandRefusal>;
+
+    /// Joint positions \[rad\] or \[m\] that bring the tip to `tip` \[m\], base frame, or as far
+    /// on the way there as one command leads. The arm is bent as in `posture`; `last` is what
+    /// the command before came to.
+    fn joints(
         &self,
-        tip: &Vector2<f64>,
+        tip: &Vector3<f64>,
         posture: &Joints<f64>,
-    ) -> Result<Joints<f64>, CommandRefusal> {
-        let posture = planar(posture).ok_or(CommandRefusal::NoTipModel)?;
-        let limit = Range::Reach;
-        self.kinematics
-            .inverse(tip, Elbow::of(&posture))
-            .map(Joints::from)
-            .map_err(|_| CommandRefusal::OutOfRange { limit })
-    }
-
-    /// The tip \[m\], base frame, at the joint positions `joints` \[rad\].
-    pub(super) fn tip(&self, joints: &Joints<f64>) -> Result<Vector2<f64>, CommandRefusal> {
-        let joints = planar(joints).ok_or(CommandRefusal::NoTipModel)?;
-        Ok(self.kinematics.forward(&joints))
-    }
+        last: Option<&Led>,
+    ) -> Result<Led, CommandRefusal>;
 }

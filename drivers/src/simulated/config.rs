@@ -1,6 +1,6 @@
 //! The simulated arm's file: what is believed of it, and what is true.
 
-use ferntast_nodes::config::{ARM, ArmFile, ConfigError, load};
+use ferntast_nodes::config::{ARM, ArmFile, ConfigError, load, serial::load_serial};
 use ferntast_sim::arm::ArmConfig;
 
 /// Loads the arm `name`, shipped or a file.
@@ -18,7 +18,10 @@ pub fn load_config(name: &str) -> Result<ArmConfig, ConfigError> {
 ///
 /// As [`load_config`].
 pub fn load_arm(name: &str) -> Result<ArmFile, ConfigError> {
-    arm_file(&load_config(name)?)
+    match load_serial(name)? {
+        Some(serial) => Ok(serial),
+        None => arm_file(&load_config(name)?),
+    }
 }
 
 /// An arm as the nodes have it.
@@ -38,7 +41,7 @@ mod tests {
     fn nodes_keep_all_of_the_file() {
         let config = load_config("rokviss").unwrap();
         let file = load_arm("rokviss").unwrap();
-        assert_eq!(file.model, config.model());
+        assert_eq!(file.model.planar(), Some(&config.model()));
         assert_eq!(file.whole::<ArmConfig>().unwrap(), config);
         let text = serde_json::to_string(&config).unwrap();
         assert_eq!(serde_json::to_string(&file).unwrap(), text);

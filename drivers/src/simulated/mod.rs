@@ -2,6 +2,8 @@
 
 mod config;
 mod description;
+pub mod serial;
+mod serial_description;
 
 pub use config::{arm_file, load_arm, load_config};
 
@@ -23,6 +25,10 @@ use crate::{
 /// The node of the arm that the session is of.
 pub(crate) fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
+    if let Some(serial) = loaded.arm.model.serial() {
+        let arm = serial::simulated(&loaded.arm, serial, loaded.scenario.seed)?;
+        return ArmNode::new(Box::new(arm))?.join(build);
+    }
     let arm = Simulated::new(&loaded.arm.whole()?, loaded.scenario.seed).map_err(NodeError::own)?;
     ArmNode::new(Box::new(arm))?.join(build)
 }

@@ -13,7 +13,7 @@
 use ferntast_model::parameters;
 
 parameters! {
-    /// Impedance of hand and handle, the same along both axes; by default a firm
+    /// Impedance of hand and handle, the same along all axes; by default a firm
     /// grip, as it is often taken in stability analyses of teleoperators
     /// (Hashtrudi-Zaad and Salcudean 2001).
     #[derive(Copy)]
@@ -27,21 +27,21 @@ parameters! {
     }
 }
 
-/// The hand as a mass on damper and spring.
+/// The hand as a mass on damper and spring, in the plane or in space.
 #[derive(Clone, Copy, Debug)]
-pub struct HandImpedance {
+pub struct HandImpedance<const AXES: usize = 2> {
     parameters: ImpedanceParameters,
-    position: [f64; 2],
-    velocity: [f64; 2],
+    position: [f64; AXES],
+    velocity: [f64; AXES],
 }
 
-impl HandImpedance {
+impl<const AXES: usize> HandImpedance<AXES> {
     /// At rest at `position` \[m\].
-    pub fn new(parameters: ImpedanceParameters, position: [f64; 2]) -> Self {
+    pub fn new(parameters: ImpedanceParameters, position: [f64; AXES]) -> Self {
         HandImpedance {
             parameters,
             position,
-            velocity: [0.0; 2],
+            velocity: [0.0; AXES],
         }
     }
 
@@ -51,25 +51,31 @@ impl HandImpedance {
     }
 
     /// Position \[m\].
-    pub fn position(&self) -> [f64; 2] {
+    pub fn position(&self) -> [f64; AXES] {
         self.position
     }
 
     /// Velocity \[m/s\].
-    pub fn velocity(&self) -> [f64; 2] {
+    pub fn velocity(&self) -> [f64; AXES] {
         self.velocity
     }
 
     /// Moves on by `dt` \[s\] towards `target` \[m\], which moves at
     /// `target_velocity` \[m/s\], under `force` \[N\]. Implicit Euler: stable
     /// for every `dt`. A force that is not finite counts as none.
-    pub fn step(&mut self, dt: f64, target: [f64; 2], target_velocity: [f64; 2], force: [f64; 2]) {
+    pub fn step(
+        &mut self,
+        dt: f64,
+        target: [f64; AXES],
+        target_velocity: [f64; AXES],
+        force: [f64; AXES],
+    ) {
         let ImpedanceParameters {
             mass,
             damping,
             stiffness,
         } = self.parameters;
-        for axis in 0..2 {
+        for axis in 0..AXES {
             let force = if force[axis].is_finite() {
                 force[axis]
             } else {

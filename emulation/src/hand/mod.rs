@@ -1,7 +1,8 @@
 //! The hand that is not there: a scripted operator with an impedance, or a
 //! recorded human motion.
 //!
-//! Positions are in the leader's base frame, in the plane z = 0. Time passes
+//! Positions are in the leader's base frame; those of a recording, and of a script that
+//! gives no z, are in the plane z = 0. Time passes
 //! by [`Hand::step`] alone; all chance comes from the seed.
 
 mod impedance;
@@ -11,7 +12,7 @@ mod tremor;
 
 pub use impedance::{HandImpedance, ImpedanceParameters};
 pub use recorded::{RecordedHand, RecordedHandConfig, RecordedMotion, RecordingError};
-pub use script::{Motion, Phase, Script, ScriptedHand, ScriptedHandConfig};
+pub use script::{Motion, Phase, Point, Script, ScriptedHand, ScriptedHandConfig};
 pub use tremor::{Tremor, TremorParameters};
 
 /// Where the hand is.

@@ -4,6 +4,53 @@ use super::{HandImpedance, HandState, ImpedanceParameters, Tremor, TremorParamet
 use ferntast_model::{Bounded, ParameterError, Section, check, parameters};
 use serde::{Deserialize, Serialize};
 
+/// A place or a way in the leader's base frame \[m\]; in a file x and y, or x, y and z.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+pub struct Point(pub [f64; 3]);
+
+impl From<[f64; 2]> for Point {
+    fn from([x, y]: [f64; 2]) -> Point {
+        Point([x, y, 0.0])
+    }
+}
+
+impl TryFrom<Vec<f64>> for Point {
+    type Error = String;
+
+    fn try_from(values: Vec<f64>) -> Result<Point, String> {
+        match values[..] {
+            [x, y] => Ok(Point([x, y, 0.0])),
+            [x, y, z] => Ok(Point([x, y, z])),
+            _ => Err(format!(
+                "{} numbers where a point has x and y, or x, y and z",
+                values.len()
+            )),
+        }
+    }
+}
+
+impl From<Point> for Vec<f64> {
+    /// In the plane x and y, as files have it.
+    fn from(Point([x, y, z]): Point) -> Vec<f64> {
+        match z == 0.0 {
+            true => vec![x, y],
+            false => vec![x, y, z],
+        }
+    }
+}
+
+impl Bounded for Point {
+    fn check_bounds(
+        &self,
+        key: &str,
+        bounds: &std::ops::RangeInclusive<f64>,
+        unit: &'static str,
+    ) -> Result<(), ParameterError> {
+        self.0.check_bounds(key, bounds, unit)
+    }
+}
+
 /// How the target moves in one phase. It starts where the phase before ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
@@ -12,18 +59,18 @@ pub enum Motion {
     /// and Hogan 1985, "The coordination of arm movements").
     Reach {
         /// x_1, leader base frame \[m\].
-        to: [f64; 2],
+        to: Point,
     },
     /// At constant speed: sliding along an edge.
     Slide {
         /// \[m\]
-        to: [f64; 2],
+        to: Point,
     },
     /// To and fro about where the phase began: amplitude · sin(2π f t). Whole
     /// periods end where they began.
     Sine {
         /// \[m\]
-        amplitude: [f64; 2],
+        amplitude: Point,
         /// f \[Hz\].
         frequency: f64,
     },
@@ -50,7 +97,7 @@ parameters! {
     pub struct Script {
         /// Where it starts, leader base frame \[m\].
         #[serde(default)]
-        pub start: [f64; 2] [-1.0..=1.0, "m"],
+        pub start: Point [-1.0..=1.0, "m"],
         /// Whether it goes on with the first phase after the last.
         #[serde(default)]
         pub repeat: bool,
@@ -97,13 +144,13 @@ parameters! {
 #[derive(Clone, Debug)]
 pub struct ScriptedHand {
     script: Script,
-    impedance: HandImpedance,
+    impedance: HandImpedance<3>,
     tremor: Option<Tremor>,
     phase: usize,
     /// Time in this phase [s].
     time: f64,
     /// Where this phase started [m].
-    from: [f64; 2],
+    from: [f64; 3],
 }
 
 impl ScriptedHand {
@@ -115,9 +162,9 @@ impl ScriptedHand {
     pub fn new(config: &ScriptedHandConfig, seed: u64) -> Result<ScriptedHand, ParameterError> {
         config.validate()?;
         Ok(ScriptedHand {
-            impedance: HandImpedance::new(config.impedance, config.script.start),
+            impedance: HandImpedance::new(config.impedance, config.script.start.0),
             tremor: config.tremor.map(|own| Tremor::new(own, seed)),
-            from: config.script.start,
+            from: config.script.start.0,
             script: config.script.clone(),
             phase: 0,
             time: 0.0,
@@ -133,7 +180,7 @@ impl ScriptedHand {
     }
 
     /// Where the hand wants to be \[m\].
-    pub fn target(&self) -> [f64; 2] {
+    pub fn target(&self) -> [f64; 3] {
         self.target_and_rate().0
     }
 
@@ -148,11 +195,10 @@ impl ScriptedHand {
                 rate[axis] += speed[axis];
             }
         }
-        self.impedance.step(dt, target, rate, [force[0], force[1]]);
-        let ([x, y], [u, v]) = (self.impedance.position(), self.impedance.velocity());
+        self.impedance.step(dt, target, rate, force);
         HandState {
-            position: [x, y, 0.0],
-            velocity: [u, v, 0.0],
+            position: self.impedance.position(),
+            velocity: self.impedance.velocity(),
             finished: self.phase >= self.script.phase.len(),
         }
     }
@@ -174,21 +220,21 @@ impl ScriptedHand {
         }
     }
 
-    fn target_and_rate(&self) -> ([f64; 2], [f64; 2]) {
+    fn target_and_rate(&self) -> ([f64; 3], [f64; 3]) {
         match self.script.phase.get(self.phase) {
             Some(phase) => position(&phase.motion, self.from, self.time, phase.duration),
-            None => (self.from, [0.0; 2]),
+            None => (self.from, [0.0; 3]),
         }
     }
 }
 
 /// Position [m] and velocity [m/s] at `time` of a motion from `from`.
-fn position(motion: &Motion, from: [f64; 2], time: f64, duration: f64) -> ([f64; 2], [f64; 2]) {
+fn position(motion: &Motion, from: [f64; 3], time: f64, duration: f64) -> ([f64; 3], [f64; 3]) {
     let s = (time / duration).clamp(0.0, 1.0);
     let (way, rate) = match *motion {
-        Motion::Hold {} => return (from, [0.0; 2]),
+        Motion::Hold {} => return (from, [0.0; 3]),
         Motion::Sine {
-            amplitude,
+            amplitude: Point(amplitude),
             frequency,
         } => {
             let omega = std::f64::consts::TAU * frequency;
@@ -202,8 +248,8 @@ fn position(motion: &Motion, from: [f64; 2], time: f64, duration: f64) -> ([f64;
         ),
         Motion::Slide { .. } => (s, 1.0 / duration),
     };
-    let (Motion::Reach { to } | Motion::Slide { to }) = *motion else {
-        return (from, [0.0; 2]);
+    let (Motion::Reach { to: Point(to) } | Motion::Slide { to: Point(to) }) = *motion else {
+        return (from, [0.0; 3]);
     };
     (
         std::array::from_fn(|axis| from[axis] + way * (to[axis] - from[axis])),
@@ -305,6 +351,29 @@ mod tests {
         assert_eq!(run(1), run(1));
         assert_ne!(run(1), run(2));
         assert!(!run(1)[6499].finished);
+    }
+
+    #[test]
+    fn a_script_may_go_through_space_and_is_written_as_it_was_read() {
+        let text = PRESS.replace("to = [0.03, 0.04]", "to = [0.03, 0.04, -0.02]");
+        let own = config(&text);
+        let mut hand = ScriptedHand::new(&own, 0).unwrap();
+        let mut lowest = 0.0_f64;
+        let mut force = 0.0;
+        for _ in 0..4500 {
+            let at = hand.step(1e-3, [0.0, 0.0, force]).position[2];
+            lowest = lowest.min(at);
+            // A spring below 10 mm.
+            force = 400.0 * (-0.01 - at).max(0.0);
+        }
+        // Half way between where the spring begins and the target.
+        assert!((lowest + 0.015).abs() < 1e-3, "{lowest} m");
+        let written = toml::to_string(&own).unwrap();
+        assert!(written.contains("to = [0.03, 0.04, -0.02]"), "{written}");
+        assert!(written.contains("start = [0.0, 0.0]\n"), "{written}");
+        assert_eq!(config(&written), own);
+        let error = toml::from_str::<ScriptedHandConfig>(&PRESS.replace("0.03, 0.04", "0.03"));
+        assert!(error.unwrap_err().to_string().contains("1 numbers"));
     }
 
     #[test]

@@ -237,6 +237,23 @@ impl Chain {
         Ok(self)
     }
 
+    /// The same arm with other ends of its joints \[rad\] or \[m\].
+    ///
+    /// # Errors
+    ///
+    /// [`ChainError::Limits`], or [`ChainError::JointCount`] where there is not one for each
+    /// joint.
+    pub fn with_limits(mut self, limits: &Joints<PositionLimits>) -> Result<Chain, ChainError> {
+        if limits.len() != self.links.len() {
+            return Err(ChainError::JointCount(limits.len()));
+        }
+        for (joint, own) in (1..).zip(limits.iter()) {
+            check_limits(joint, own)?;
+        }
+        self.limits = *limits;
+        Ok(self)
+    }
+
     /// Where the joints' ends are \[rad\] or \[m\].
     pub fn limits(&self) -> &Joints<PositionLimits> {
         &self.limits
@@ -250,6 +267,11 @@ impl Chain {
     /// Turning or shifting, joint by joint.
     pub fn kinds(&self) -> Joints<JointKind> {
         self.links.map(|link| link.kind)
+    }
+
+    /// Directions of the joints, each a unit vector in its link's frame.
+    pub fn axes(&self) -> Joints<Vector3<f64>> {
+        self.links.map(|link| link.axis)
     }
 
     /// The links' frames in the base frame at joint positions `q` \[rad\] or \[m\].
@@ -297,7 +319,11 @@ fn check(joint: usize, given: &ChainJoint) -> Result<(), ChainError> {
     }
     check_not_negative(joint, "armature", given.armature)?;
     check_not_negative(joint, "the link's mass", given.link.mass)?;
-    let PositionLimits { lower, upper } = given.limits;
+    check_limits(joint, &given.limits)
+}
+
+fn check_limits(joint: usize, limits: &PositionLimits) -> Result<(), ChainError> {
+    let PositionLimits { lower, upper } = *limits;
     // Also where one is NaN.
     if !matches!(lower.partial_cmp(&upper), Some(order) if order.is_le()) {
         return Err(ChainError::Limits {

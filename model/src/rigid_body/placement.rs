@@ -1,6 +1,6 @@
 //! Where one frame is in another.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 /// A frame, seen from another: x_there = rotation · x_here + translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +50,14 @@ impl Placement {
             rotation,
             translation: -(rotation * self.translation),
         }
+    }
+
+    /// The orientation as quaternion x, y, z, w.
+    pub fn quaternion(&self) -> [f64; 4] {
+        let rotation = Rotation3::from_matrix_unchecked(self.rotation);
+        UnitQuaternion::from_rotation_matrix(&rotation)
+            .coords
+            .into()
     }
 
     /// A point of this frame \[m\], in the other one.
@@ -111,6 +119,17 @@ mod unit_tests {
         // y is rolled to z, which yaw leaves; x is yawed to y.
         assert!((placement.point(&Vector3::y()) - Vector3::new(1.0, 2.0, 4.0)).norm() < 1e-15);
         assert!((placement.point(&Vector3::x()) - Vector3::new(1.0, 3.0, 3.0)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_quarter_turn_about_z_is_half_of_it_in_the_quaternion() {
+        let placement = Placement::from_roll_pitch_yaw(Vector3::zeros(), [0.0, 0.0, FRAC_PI_2]);
+        let half = 0.5_f64.sqrt();
+        let apart = placement
+            .quaternion()
+            .into_iter()
+            .zip([0.0, 0.0, half, half]);
+        assert!(apart.into_iter().all(|(a, b)| (a - b).abs() < 1e-15));
     }
 
     proptest! {

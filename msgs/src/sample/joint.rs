@@ -48,7 +48,7 @@ pub struct JointSample {
     /// When it was measured or commanded.
     pub stamp: Time,
     /// The joints, in the order of the numbers.
-    #[field(bytes = 136)]
+    #[field(bytes = 264)]
     pub joints: JointNames,
     /// Joint positions \[rad\].
     pub position: [f64; MAX_JOINTS],

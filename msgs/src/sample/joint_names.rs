@@ -9,6 +9,8 @@ use crate::{InvalidMessage, Text};
 
 /// The most joints that a message has room for.
 pub const MAX_JOINTS: usize = 8;
+/// The longest name that a joint may have \[byte\].
+pub const LONGEST_JOINT_NAME: usize = 32;
 
 /// Up to [`MAX_JOINTS`] joints by name, each once, in an order. In a file a
 /// list of names.
@@ -16,20 +18,21 @@ pub const MAX_JOINTS: usize = 8;
 #[serde(try_from = "Vec<String>", into = "Vec<String>")]
 #[repr(C)]
 pub struct JointNames {
-    names: [Text<16>; MAX_JOINTS],
+    names: [Text<LONGEST_JOINT_NAME>; MAX_JOINTS],
     count: u64,
 }
 
 // SAFETY: texts and a number, eight bytes aligned, without padding.
 unsafe impl Plain for JointNames {}
-const _: () = assert!(size_of::<JointNames>() == MAX_JOINTS * 16 + 8);
+const _: () = assert!(size_of::<JointNames>() == MAX_JOINTS * LONGEST_JOINT_NAME + 8);
 
 impl JointNames {
     /// The joints of these names.
     ///
     /// # Errors
     ///
-    /// None or more than [`MAX_JOINTS`], a name twice, empty, or of more than 16 bytes.
+    /// None or more than [`MAX_JOINTS`], a name twice, empty, or of more than
+    /// [`LONGEST_JOINT_NAME`] bytes.
     pub fn new<'a>(
         names: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
     ) -> Result<JointNames, InvalidMessage> {
@@ -103,7 +106,7 @@ impl JointNames {
         let names = &self.names[..self.len()];
         // As they nearly always are: plain ASCII, then zeros. Bytes tell them apart then.
         if names.iter().all(Text::is_plain) {
-            let different = |(place, name): (usize, &Text<16>)| {
+            let different = |(place, name): (usize, &Text<LONGEST_JOINT_NAME>)| {
                 !name.is_empty() && !names[..place].contains(name)
             };
             return (1..=MAX_JOINTS as u64).contains(&self.count)

@@ -28,5 +28,5 @@ pub use own::*;
 pub use pose::PoseSample;
 pub use robot_description::{LONGEST_DESCRIPTION, RobotDescriptionSample};
 pub use standard::*;
-pub use transforms::{ARM_FRAMES, TransformsSample};
+pub use transforms::{ARM_FRAMES, MAX_FRAMES, TransformsSample};
 pub use wrench::WrenchSample;

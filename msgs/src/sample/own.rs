@@ -62,6 +62,8 @@ codes! {
         UNLUBRICATED = 2 "unlubricated",
         /// The spring that is pulled.
         SPRING = 3 "spring",
+        /// A plane beside a serial arm.
+        SURFACE = 4 "surface",
     }
 }
 
@@ -125,7 +127,7 @@ pub struct FrictionStatusSample {
     pub stamp: Time,
     /// which joint: joint_1 or joint_2
     #[field(whole = "the name of a joint")]
-    pub joint: Text<16>,
+    pub joint: Text<32>,
     /// where the targets come from: configured or twin
     pub source: FrictionSource,
     /// as in the arm's file: b_0, b_0T, ...
@@ -328,7 +330,7 @@ pub struct TwinParametersSample {
     pub stamp: Time,
     /// which joint: joint_1 or joint_2
     #[field(whole = "the name of a joint")]
-    pub joint: Text<16>,
+    pub joint: Text<32>,
     /// as in the lab: b0, b1, ...
     #[field(section)]
     pub names: [Text<24>; MAX_TWIN_PARAMETERS],

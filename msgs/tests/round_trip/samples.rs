@@ -81,10 +81,8 @@ pub fn transforms() -> impl Strategy<Value = TransformsSample> {
         uniform3(uniform3(finite())),
         uniform3(orientation()),
     )
-        .prop_map(|(stamp, translations, rotations)| TransformsSample {
-            stamp,
-            translations,
-            rotations,
+        .prop_map(|(stamp, translations, rotations)| {
+            TransformsSample::planar(stamp, translations, rotations)
         })
 }
 

@@ -2,13 +2,17 @@
 
 use ferntast_control::estimator::EstimatorParameters;
 use ferntast_model::{ArmModel, arm::ArmParameters, contour::Contour, joint::JointParameters};
+use ferntast_msgs::sample::JointNames;
 use serde::{
     Deserialize, Serialize,
     de::{DeserializeOwned, Error as _},
 };
 use serde_json::value::{RawValue, to_raw_value};
 
-use super::ConfigError;
+use super::{
+    ConfigError, joint_names,
+    serial::{Serial, SerialFile},
+};
 
 /// Loads the arm `name`, shipped or a file, as the driver of the arm reads it.
 pub type LoadArm = fn(&str) -> Result<ArmFile, ConfigError>;
@@ -18,20 +22,76 @@ pub type LoadArm = fn(&str) -> Result<ArmFile, ConfigError>;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Box<RawValue>", into = "Box<RawValue>")]
 pub struct ArmFile {
-    /// Links, joints and contour.
-    pub model: ArmModel,
+    /// Links, joints and what they can touch.
+    pub model: Believed,
     /// Contact-force estimator.
     pub estimator: EstimatorParameters,
     whole: Box<RawValue>,
 }
 
-/// The sections of the file that nodes read.
+/// What is believed of an arm.
+#[derive(Clone, Debug)]
+pub enum Believed {
+    /// Two links in a plane, in closed form, and a contour.
+    Planar(Box<ArmModel>),
+    /// A serial arm in space out of a URDF.
+    Serial(Box<Serial>),
+}
+
+impl Believed {
+    /// The joints, from the base on.
+    pub fn joints(&self) -> &[JointParameters] {
+        match self {
+            Believed::Planar(model) => &model.joint,
+            Believed::Serial(serial) => serial.arm.joints(),
+        }
+    }
+
+    /// The joints' names.
+    pub fn joint_names(&self) -> JointNames {
+        match self {
+            Believed::Planar(model) => joint_names(model),
+            Believed::Serial(serial) => serial.joints,
+        }
+    }
+
+    /// The model of two links in a plane, where it is one.
+    pub fn planar(&self) -> Option<&ArmModel> {
+        match self {
+            Believed::Planar(model) => Some(model),
+            Believed::Serial(_) => None,
+        }
+    }
+
+    /// The serial arm, where it is one.
+    pub fn serial(&self) -> Option<&Serial> {
+        match self {
+            Believed::Planar(_) => None,
+            Believed::Serial(serial) => Some(serial),
+        }
+    }
+}
+
+impl From<ArmModel> for Believed {
+    fn from(model: ArmModel) -> Believed {
+        Believed::Planar(Box::new(model))
+    }
+}
+
+/// The sections of a planar arm's file that nodes read.
 #[derive(Deserialize)]
 struct Sections {
     arm: ArmParameters,
     joint: Vec<JointParameters>,
     contour: Contour,
     estimator: EstimatorParameters,
+}
+
+/// What tells the file of a serial arm from that of a planar one.
+#[derive(Deserialize)]
+struct IsSerial {
+    #[serde(rename = "urdf")]
+    _urdf: String,
 }
 
 impl ArmFile {
@@ -46,9 +106,25 @@ impl ArmFile {
         whole: &impl Serialize,
     ) -> Result<ArmFile, ConfigError> {
         Ok(ArmFile {
-            model,
+            model: model.into(),
             estimator,
             whole: to_raw_value(whole).map_err(ConfigError::Arm)?,
+        })
+    }
+
+    /// Of a serial arm.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it; a number that JSON cannot hold.
+    pub fn serial(file: &SerialFile) -> Result<ArmFile, ConfigError> {
+        let believed = file
+            .believed()
+            .map_err(|error| (file.name.as_str(), error))?;
+        Ok(ArmFile {
+            model: Believed::Serial(Box::new(believed)),
+            estimator: file.estimator,
+            whole: to_raw_value(file).map_err(ConfigError::Arm)?,
         })
     }
 
@@ -66,6 +142,15 @@ impl TryFrom<Box<RawValue>> for ArmFile {
     type Error = serde_json::Error;
 
     fn try_from(whole: Box<RawValue>) -> Result<ArmFile, serde_json::Error> {
+        if let Ok(IsSerial { .. }) = serde_json::from_str(whole.get()) {
+            let file: SerialFile = serde_json::from_str(whole.get())?;
+            let believed = file.believed().map_err(serde_json::Error::custom)?;
+            return Ok(ArmFile {
+                model: Believed::Serial(Box::new(believed)),
+                estimator: file.estimator,
+                whole,
+            });
+        }
         let Sections {
             arm,
             joint,
@@ -79,7 +164,8 @@ impl TryFrom<Box<RawValue>> for ArmFile {
                 arm,
                 joint,
                 contour,
-            },
+            }
+            .into(),
             estimator,
             whole,
         })
@@ -111,7 +197,8 @@ mod tests {
         assert_eq!(text, file.whole.get());
         assert!(text.contains("\"truth\""), "{text}");
         let again: ArmFile = serde_json::from_str(&text).unwrap();
-        assert_eq!(again.model, file.model);
+        assert_eq!(again.model.planar(), file.model.planar());
+        assert!(again.model.planar().is_some());
         assert_eq!(again.estimator, file.estimator);
         assert_eq!(serde_json::to_string(&again).unwrap(), text);
     }

@@ -47,6 +47,14 @@ pub enum ConfigError {
     /// An arm's configuration is not one that the arm's driver reads.
     #[error("the arm's configuration is not one of its driver: {0}")]
     Arm(serde_json::Error),
+    /// An arm out of a URDF cannot be used.
+    #[error("{path}: {source}")]
+    Serial {
+        /// The file.
+        path: String,
+        /// What is wrong, and how to correct it.
+        source: super::serial::SerialError,
+    },
     /// A recorded hand motion cannot be used.
     #[error("{path}: {source}")]
     Hand {

@@ -1,6 +1,9 @@
 //! Finds, reads and checks one file of configuration.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use ferntast_model::ParameterError;
 use serde::de::DeserializeOwned;
@@ -42,7 +45,7 @@ pub(super) fn load_with_path<T: DeserializeOwned>(
     name: &str,
     validate: impl FnOnce(&T) -> Result<(), ParameterError>,
 ) -> Result<(String, T), ConfigError> {
-    let Source { path, text } = find(kind, name)?;
+    let Source { path, text, .. } = find(kind, name)?;
     let file: T = toml::from_str(&text).map_err(|error| ConfigError::Syntax {
         path: path.clone(),
         message: error.to_string().trim_end().to_owned(),
@@ -53,12 +56,18 @@ pub(super) fn load_with_path<T: DeserializeOwned>(
     }
 }
 
-struct Source {
-    path: String,
-    text: String,
+/// A file that was found.
+pub(super) struct Source {
+    /// Where, for messages.
+    pub(super) path: String,
+    /// Its text.
+    pub(super) text: String,
+    /// The folder that it is in; none of what is shipped.
+    pub(super) folder: Option<PathBuf>,
 }
 
-fn find(kind: FileKind, name: &str) -> Result<Source, ConfigError> {
+/// Finds the file `name`, shipped or on disk.
+pub(super) fn find(kind: FileKind, name: &str) -> Result<Source, ConfigError> {
     let path = Path::new(name);
     let folder = kind.folder;
     let below = format!("{folder}/{name}.toml");
@@ -69,6 +78,7 @@ fn find(kind: FileKind, name: &str) -> Result<Source, ConfigError> {
             .map(|text| Source {
                 path: path.display().to_string(),
                 text,
+                folder: Some(path.parent().unwrap_or(Path::new("")).to_owned()),
             })
             .map_err(|source| ConfigError::Read {
                 path: path.to_owned(),
@@ -85,6 +95,7 @@ fn find(kind: FileKind, name: &str) -> Result<Source, ConfigError> {
         Some(text) => Ok(Source {
             path: format!("{below} (shipped)"),
             text: text.to_owned(),
+            folder: None,
         }),
         None => Err(ConfigError::Unknown {
             kind: kind.name,

@@ -3,7 +3,7 @@
 use ferntast_control::{delay::Law, servo, switching::Laws};
 use serde_json::Value;
 
-use super::{Loaded, Scenario};
+use super::{Believed, Loaded, Scenario};
 
 /// Keys that say how hand and tip correspond: a switch of the law must not
 /// change them, or the arm would be told to be elsewhere.
@@ -66,7 +66,10 @@ impl Loaded {
     /// passivity that it does not have.
     pub fn laws(&self) -> Laws {
         let scenario = &self.scenario;
-        let least = servo::stiffest(&self.arm.model, &scenario.servo);
+        let least = match &self.arm.model {
+            Believed::Planar(model) => servo::stiffest(model, &scenario.servo),
+            Believed::Serial(serial) => servo::stiffest_serial(&serial.arm, &scenario.servo),
+        };
         let own = |law: &Law| match least {
             Some(least) => stiff_enough(law, least),
             None => law.clone(),
@@ -144,7 +147,8 @@ mod tests {
     #[test]
     fn no_law_takes_the_servo_for_softer_than_it_is() {
         let loaded = load_scenario("rokviss", load_model_only).unwrap();
-        let least = servo::stiffest(&loaded.arm.model, &loaded.scenario.servo).unwrap();
+        let least =
+            servo::stiffest(loaded.arm.model.planar().unwrap(), &loaded.scenario.servo).unwrap();
         // k = 1/(1/8000 + 1/4900) Nm/rad over the short lever, at the nominal point.
         assert!((120e3..135e3).contains(&least), "{least} N/m");
         let stiffness = |law: &Law| serde_json::to_value(law).unwrap()[SERVO_STIFFNESS].as_f64();

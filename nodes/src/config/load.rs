@@ -11,9 +11,9 @@ use ferntast_model::{JointCount, ParameterError};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    ArmFile, ConfigError, HandSource, LoadArm, Scenario,
+    ArmFile, Believed, ConfigError, HandSource, LoadArm, Scenario,
     file::{FileKind, load, load_with_path},
-    shipped,
+    serial, shipped,
 };
 
 /// A scenario with all that it names.
@@ -60,13 +60,17 @@ pub fn known_links() -> Vec<(&'static str, LinkConfig)> {
 /// What is wrong, in which file, and how to correct it.
 pub fn load_scenario(name: &str, load_arm: LoadArm) -> Result<Loaded, ConfigError> {
     let (path, scenario) = load_with_path(SCENARIO, name, Scenario::validate)?;
-    Ok(Loaded {
+    let mut loaded = Loaded {
         arm: load_arm(&scenario.arm)?,
         link: load(LINK, &scenario.link.channel, LinkConfig::validate)?,
         path,
         scenario,
         hand_recording: None,
-    })
+    };
+    if let Believed::Serial(serial) = &loaded.arm.model {
+        serial::fit(&mut loaded.scenario, serial, false);
+    }
+    Ok(loaded)
 }
 
 /// Reads and checks a file with recorded hand motion; gives its text.
@@ -98,6 +102,23 @@ impl Loaded {
             link: LinkConfig::default(),
             hand_recording: None,
         }
+    }
+
+    /// Takes another arm: its servo's tuning, and a script that touches what is beside it.
+    ///
+    /// # Errors
+    ///
+    /// As for the scenario's own.
+    pub fn set_arm(&mut self, name: &str, load_arm: LoadArm) -> Result<(), ConfigError> {
+        self.arm = load_arm(name)?;
+        name.clone_into(&mut self.scenario.arm);
+        if let Believed::Serial(serial) = &self.arm.model {
+            self.scenario.servo = ServoConfig::default();
+            serial::fit(&mut self.scenario, serial, true);
+            self.scenario.name.clone_from(&serial.name);
+            self.scenario.description = format!("A hand drives {}.", serial.name);
+        }
+        Ok(())
     }
 
     /// Takes another channel.
@@ -165,7 +186,7 @@ impl Loaded {
 
     /// The servo's lists have one entry for each joint of the arm.
     fn check_servo(&self) -> Result<(), ParameterError> {
-        let joints = JointCount::new(self.arm.model.joint.len())?;
+        let joints = JointCount::new(self.arm.model.joints().len())?;
         let tuning = self.scenario.servo.joints(joints);
         tuning.map(drop).map_err(|error| error.within("servo"))
     }

@@ -6,6 +6,7 @@ mod file;
 mod laws;
 mod load;
 mod scenario;
+pub mod serial;
 pub mod shipped;
 
 use ferntast_model::ArmModel;
@@ -13,7 +14,7 @@ use ferntast_msgs::sample::{JointNames, MAX_JOINTS};
 
 #[cfg(test)]
 pub use arm::load_model_only;
-pub use arm::{ArmFile, LoadArm};
+pub use arm::{ArmFile, Believed, LoadArm};
 pub use error::ConfigError;
 pub use file::{ARM, FileKind, load};
 pub use laws::{UnknownLaw, stiff_enough};
@@ -23,7 +24,7 @@ pub use scenario::*;
 // What a law has room for fits a message, and the other way round.
 const _: () = assert!(MAX_JOINTS == ferntast_model::MAX_JOINTS);
 
-/// The arm's joints, in the order of its parameters.
+/// The planar arm's joints, in the order of its parameters.
 pub fn joint_names(model: &ArmModel) -> JointNames {
     JointNames::numbered(model.joint.len())
 }

@@ -8,6 +8,14 @@ pub const FILES: &[(&str, &str)] = &[
         include_str!("../../../config/arms/rokviss.toml"),
     ),
     (
+        "arms/panda.toml",
+        include_str!("../../../config/arms/panda.toml"),
+    ),
+    (
+        "arms/panda.urdf",
+        include_str!("../../../config/arms/panda.urdf"),
+    ),
+    (
         "experiments/mission.toml",
         include_str!("../../../config/experiments/mission.toml"),
     ),

@@ -22,7 +22,7 @@ use ferntast_msgs::{
 use serde_json::{Value, json};
 
 use crate::{
-    config::{HandSource, Loaded, known_links},
+    config::{Believed, HandSource, Loaded, known_links},
     events::TELLER,
     node::{InputWatch, NodeHealth},
     process::{NodeError, Priority, ProcessContext},
@@ -126,11 +126,25 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
 fn about(session: &str, loaded: &Loaded) -> Value {
     let scenario = &loaded.scenario;
     let json = |value: Result<Value, serde_json::Error>| value.unwrap_or_default();
-    let arm = json(serde_json::to_value(&loaded.arm));
     let mapping = scenario.law.mapping();
-    let lengths: Vec<Value> = (0..2)
-        .map(|link| arm["arm"]["link"][link]["length"].clone())
-        .collect();
+    // What the page draws beside the tip: of an arm in space nothing, which it sees from above.
+    let (lengths, nominal_tip, edges, springs) = match &loaded.arm.model {
+        Believed::Planar(_) => {
+            let arm = json(serde_json::to_value(&loaded.arm));
+            let length = |link: usize| arm["arm"]["link"][link]["length"].clone();
+            let contour = &arm["contour"];
+            (
+                json!([length(0), length(1)]),
+                contour["nominal_tip"].clone(),
+                contour["edge"].clone(),
+                contour["spring"].clone(),
+            )
+        }
+        Believed::Serial(serial) => {
+            let tip = serial.arm.home_tip().translation;
+            (json!([]), json!([tip.x, tip.y]), json!([]), json!([]))
+        }
+    };
     let presets = known_links();
     let presets: Vec<Value> = presets
         .iter()
@@ -145,9 +159,9 @@ fn about(session: &str, loaded: &Loaded) -> Value {
             HandSource::Crtk => "this host",
         },
         "lengths": lengths,
-        "nominal_tip": arm["contour"]["nominal_tip"],
-        "edges": arm["contour"]["edge"],
-        "springs": arm["contour"]["spring"],
+        "nominal_tip": nominal_tip,
+        "edges": edges,
+        "springs": springs,
         "workspace_offset": mapping.workspace_offset,
         "position_scale": mapping.position_scale,
         "law": scenario.law.name(),

@@ -5,7 +5,8 @@ use ferntast_control::estimator::{
 };
 use ferntast_control::servo::{FoundParameter, TakeOverConfig};
 use ferntast_model::friction::name_of_key;
-use ferntast_model::{ArmModel, JointCount, ParameterError};
+use ferntast_model::joint::JointParameters;
+use ferntast_model::{JointCount, ParameterError};
 use ferntast_msgs::sample::{
     FrictionSource, FrictionStatusSample, JointSample, MAX_TWIN_PARAMETERS,
 };
@@ -19,11 +20,11 @@ pub(super) struct ByMotors {
 
 impl ByMotors {
     pub(super) fn new(
-        model: &ArmModel,
+        joints: &[JointParameters],
         parameters: &EstimatorParameters,
         take_over: TakeOverConfig,
     ) -> Result<ByMotors, ParameterError> {
-        let torques = TorqueByMotorCurrent::new(&model.joint, parameters, take_over)?;
+        let torques = TorqueByMotorCurrent::new(joints, parameters, take_over)?;
         Ok(ByMotors { torques })
     }
 

@@ -1,25 +1,23 @@
 //! The contact-force estimator as a node.
 
 mod by_motors;
+mod either;
 
 use by_motors::ByMotors;
-use ferntast_control::estimator::{
-    ContactEstimate, ContactEstimator, EstimatorParameters, Form, JointMeasurement,
-};
+use either::{Estimator, Told};
+use ferntast_control::estimator::{EstimatorParameters, Form, JointMeasurement};
 use ferntast_control::servo::TakeOverConfig;
-use ferntast_model::{
-    ArmModel, JointCount, Joints, ParameterError, contour::Surface, kinematics::LINKS,
-};
+use ferntast_model::{JointCount, Joints, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Edge, Fault, Frame, FrictionStatusSample, JointFields, JointNames,
+        ContactStateSample, Fault, Frame, FrictionStatusSample, JointFields, JointNames,
         JointSample, Level, PoseSample, TemperatureSample, TransformsSample, WrenchSample,
     },
 };
 
 use crate::{
-    config::joint_names,
+    config::Believed,
     graph::Build,
     node::{Newest, Node, NodeHealth, Ticking, ports},
     process::NodeError,
@@ -66,11 +64,10 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 /// The contact-force estimator.
 pub struct EstimatorNode {
     joints: JointNames,
-    estimator: ContactEstimator,
+    estimator: Estimator,
     /// Joint torques, where no sensor tells them.
     by_motors: Option<ByMotors>,
     last: Option<Time>,
-    link_lengths: [f64; LINKS],
     transforms_due: Time,
 }
 
@@ -82,18 +79,17 @@ impl EstimatorNode {
     ///
     /// A parameter out of its bounds.
     pub fn new(
-        model: &ArmModel,
+        model: &Believed,
         parameters: &EstimatorParameters,
         take_over: TakeOverConfig,
     ) -> Result<EstimatorNode, ParameterError> {
         let by_motors = (parameters.form == Form::MotorCurrent)
-            .then(|| ByMotors::new(model, parameters, take_over));
+            .then(|| ByMotors::new(model.joints(), parameters, take_over));
         Ok(EstimatorNode {
-            joints: joint_names(model),
+            joints: model.joint_names(),
             by_motors: by_motors.transpose()?,
-            estimator: ContactEstimator::new(model, parameters)?,
+            estimator: Estimator::new(model, parameters)?,
             last: None,
-            link_lengths: model.arm.link.map(|link| link.length),
             transforms_due: Time::INVALID,
         })
     }
@@ -149,7 +145,7 @@ impl Node for EstimatorNode {
         let due = self.transforms_due;
         if stamp >= due || due.seconds_since(stamp) > 1e-9 * TRANSFORMS_PERIOD_NANOS as f64 {
             self.transforms_due = stamp.plus_nanos(TRANSFORMS_PERIOD_NANOS);
-            output.transforms = Some(transforms(stamp, &estimate.position, self.link_lengths));
+            output.transforms = Some(self.estimator.transforms(stamp, &estimate));
         }
     }
 }
@@ -171,27 +167,10 @@ fn efforts(joints: JointCount, sample: Option<&JointSample>) -> Joints<f64> {
     })
 }
 
-/// A turn about z by `angle` \[rad\] as quaternion x, y, z, w.
-fn about_z(angle: f64) -> [f64; 4] {
-    [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()]
-}
-
-/// The arm's frames at the link-side joint positions \[rad\], for links of
-/// those lengths \[m\].
-fn transforms(stamp: Time, position: &[f64], lengths: [f64; LINKS]) -> TransformsSample {
-    // The tip does not turn against its link.
-    let angle = |frame: usize| position.get(frame).copied().unwrap_or(0.0);
-    TransformsSample {
-        stamp,
-        translations: [[0.0; 3], [lengths[0], 0.0, 0.0], [lengths[1], 0.0, 0.0]],
-        rotations: std::array::from_fn(|frame| about_z(angle(frame))),
-    }
-}
-
 impl EstimatorNode {
     /// Reports what makes an estimate unusable, with a reason for people: the
     /// last one that holds.
-    fn judge(&self, estimate: &ContactEstimate, health: &mut NodeHealth) {
+    fn judge(&self, estimate: &Told, health: &mut NodeHealth) {
         let [corner, singular, saturated, invalid] = reasons(estimate);
         let tell = |health: &mut NodeHealth, (active, fault, reason)| {
             if active {
@@ -201,7 +180,7 @@ impl EstimatorNode {
         };
         tell(health, corner);
         tell(health, singular);
-        for (joint, stuck) in self.joints.iter().zip(estimate.stuck) {
+        for (joint, stuck) in self.joints.iter().zip(estimate.stuck.iter().copied()) {
             if stuck {
                 health.raise(Fault::TorqueStuck, Level::WARN);
                 health.message = Text::display(format_args!(
@@ -215,7 +194,7 @@ impl EstimatorNode {
 }
 
 /// What makes an estimate unusable, of whatever joint.
-fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 4] {
+fn reasons(estimate: &Told) -> [(bool, Fault, &'static str); 4] {
     [
         (
             estimate.corner,
@@ -225,7 +204,10 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 4] {
         (
             estimate.singular,
             Fault::Singular,
-            "the elbow is stretched or folded: no force can be estimated; bend it",
+            match estimate.planar {
+                true => "the elbow is stretched or folded: no force can be estimated; bend it",
+                false => "the tip can hardly move one way: no force can be estimated; bend the arm",
+            },
         ),
         (
             estimate.saturated,
@@ -240,23 +222,20 @@ fn reasons(estimate: &ContactEstimate) -> [(bool, Fault, &'static str); 4] {
     ]
 }
 
-fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput) {
-    let [x, y] = estimate.tip;
+fn publish(stamp: Time, estimate: &Told, output: &mut EstimatorOutput) {
     output.measured_cp = Some(PoseSample {
-        orientation: about_z(estimate.position.iter().sum()),
-        ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, [x, y, 0.0])
+        orientation: estimate.orientation,
+        ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, estimate.tip)
     });
-    let [fx, fy] = estimate.force;
     output.measured_cf = Some(WrenchSample::force(
         stamp,
         Frame::FOLLOWER_BASE,
-        [fx, fy, 0.0],
+        estimate.force,
     ));
-    let [tangential, normal] = estimate.contact_force;
     output.contact_cf = Some(WrenchSample::force(
         stamp,
         Frame::CONTACT,
-        [tangential, 0.0, normal],
+        estimate.contact_force,
     ));
     output.contact_state = Some(ContactStateSample {
         normal_force: estimate.normal_force,
@@ -270,12 +249,7 @@ fn publish(stamp: Time, estimate: &ContactEstimate, output: &mut EstimatorOutput
         touches: u8::from(estimate.touches),
         valid: u8::from(estimate.valid),
         near_rest: u8::from(estimate.near_rest),
-        edge: match estimate.surface {
-            None => Edge::NONE,
-            Some(Surface::Lubricated) => Edge::LUBRICATED,
-            Some(Surface::Unlubricated) => Edge::UNLUBRICATED,
-            Some(Surface::Spring) => Edge::SPRING,
-        },
+        edge: estimate.edge,
         ..ContactStateSample::initial(stamp)
     });
 }

@@ -8,14 +8,14 @@
 #[cfg(test)]
 mod tests;
 
-use ferntast_model::{ArmModel, joint::JointParameters};
+use ferntast_model::joint::JointParameters;
 use ferntast_msgs::{
     Text, Time,
     sample::{JointNames, JointSample, Level, TemperatureSample},
 };
 
 use crate::{
-    config::{LimitsSection, joint_names},
+    config::{Believed, LimitsSection},
     graph::Build,
     node::{Newest, Node, Ticking, ports},
     process::NodeError,
@@ -59,10 +59,10 @@ pub struct LimitsNode {
 
 impl LimitsNode {
     /// A node that knows the arm's limits from `model`.
-    pub fn new(model: &ArmModel, section: LimitsSection) -> LimitsNode {
+    pub fn new(model: &Believed, section: LimitsSection) -> LimitsNode {
         LimitsNode {
-            names: joint_names(model),
-            joints: model.joint.to_vec(),
+            names: model.joint_names(),
+            joints: model.joints().to_vec(),
             section,
         }
     }

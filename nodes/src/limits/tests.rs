@@ -7,7 +7,7 @@ use ferntast_msgs::topics;
 
 use super::*;
 use crate::{
-    config::{Loaded, joint_names, load_model_only},
+    config::{Loaded, load_model_only},
     graph::NodeRow,
     lockstep::VirtualTime,
     node::{Newest, Output, PerJoint},
@@ -16,14 +16,14 @@ use crate::{
 
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
 
-fn model() -> ArmModel {
+fn model() -> Believed {
     load_model_only("rokviss").unwrap().model
 }
 
 /// A measurement in the middle of all ranges.
 fn middle(now: Time) -> JointSample {
-    let mut sample = JointSample::zero(joint_names(&model()), now);
-    for (position, joint) in sample.position.iter_mut().zip(&model().joint) {
+    let mut sample = JointSample::zero(model().joint_names(), now);
+    for (position, joint) in sample.position.iter_mut().zip(model().joints()) {
         *position = 0.5 * (joint.position_lower + joint.position_upper);
     }
     sample
@@ -67,7 +67,7 @@ fn an_arm_in_the_middle_is_well() {
 fn what_is_near_is_told_with_its_margin() {
     let model = model();
     let mut sample = middle(START);
-    sample.position[1] = model.joint[1].position_upper - 0.05;
+    sample.position[1] = model.joints()[1].position_upper - 0.05;
     let input = LimitsInput {
         measured_js: newest(sample),
         ..LimitsInput::default()
@@ -77,7 +77,7 @@ fn what_is_near_is_told_with_its_margin() {
     assert_eq!(words, "joint_2 is 0.05 rad from the end of its range");
 
     let mut sample = middle(START);
-    let range = model.joint[0].torque_sensor_range;
+    let range = model.joints()[0].torque_sensor_range;
     sample.effort[0] = -0.9 * range;
     let input = LimitsInput {
         measured_js: newest(sample),
@@ -102,10 +102,10 @@ fn what_is_near_is_told_with_its_margin() {
 fn a_sample_in_another_order_is_read_by_name() {
     let model = model();
     let mut reversed = JointSample::zero(JointNames::new(["joint_2", "joint_1"]).unwrap(), START);
-    for (place, joint) in model.joint.iter().rev().enumerate() {
+    for (place, joint) in model.joints().iter().rev().enumerate() {
         reversed.position[place] = 0.5 * (joint.position_lower + joint.position_upper);
     }
-    reversed.position[0] = model.joint[1].position_upper - 0.05;
+    reversed.position[0] = model.joints()[1].position_upper - 0.05;
     let input = LimitsInput {
         measured_js: newest(reversed),
         ..LimitsInput::default()
@@ -132,7 +132,7 @@ fn an_old_measurement_says_nothing() {
 #[test]
 fn in_lockstep_the_warning_comes_and_goes() {
     let arm = load_model_only("rokviss").unwrap();
-    let upper = arm.model.joint[0].position_upper;
+    let upper = arm.model.joints()[0].position_upper;
     let loaded = Loaded::without_operator(arm, Default::default(), 1);
     let row = NodeRow {
         period_nanos: 10_000_000,

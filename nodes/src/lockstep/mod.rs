@@ -106,7 +106,8 @@ impl LockstepSession {
                 Some(recording)
             }
         };
-        let monitor = Monitor::new(time.bus(), &joints)?;
+        let mapping = loaded.scenario.law.mapping();
+        let monitor = Monitor::new(time.bus(), &joints)?.comparing(time.bus(), mapping)?;
         Ok(LockstepSession {
             time,
             recording,

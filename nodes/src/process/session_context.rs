@@ -13,7 +13,7 @@ use ferntast_msgs::sample::JointNames;
 use serde::{Deserialize, Serialize};
 
 use super::{Clock, link_end::LinkAccess};
-use crate::config::{Loaded, joint_names};
+use crate::config::Loaded;
 
 /// What every process of a session needs to know. The supervisor writes it to
 /// a file; each node reads that.
@@ -149,7 +149,7 @@ impl SessionContext {
     /// those of the recording.
     pub fn joints(&self) -> JointNames {
         let recorded = self.play.joints;
-        recorded.unwrap_or_else(|| joint_names(&self.loaded.arm.model))
+        recorded.unwrap_or_else(|| self.loaded.arm.model.joint_names())
     }
 
     /// The session's clock.

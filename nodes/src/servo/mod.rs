@@ -15,7 +15,7 @@ use ferntast_control::{
         ServoOutput as LawOutput, Target,
     },
 };
-use ferntast_model::{ArmModel, JointCount, Joints, ParameterError, Vector2, arm::Arm};
+use ferntast_model::{JointCount, Joints, ParameterError, Vector2, arm::Arm};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -28,7 +28,7 @@ use ferntast_msgs::{
 use friction::FrictionCommands;
 
 use crate::{
-    config::joint_names,
+    config::Believed,
     graph::Build,
     node::{Newest, Node, PerJoint, StatePublisher, Ticking, ports, to_law},
     process::NodeError,
@@ -80,7 +80,8 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 /// The joint servo.
 pub struct ServoNode {
     joints: JointNames,
-    arm: Arm,
+    /// What a planar arm weighs; of a serial one the servo knows it.
+    arm: Option<Arm>,
     servo: Servo,
     states: StatePublisher,
     friction: FrictionCommands,
@@ -97,13 +98,20 @@ impl ServoNode {
     /// # Errors
     ///
     /// A parameter out of its bounds.
-    pub fn new(model: &ArmModel, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
+    pub fn new(model: &Believed, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
+        let (arm, servo) = match model {
+            Believed::Planar(model) => (
+                Some(Arm::new(&model.arm)),
+                Servo::new(&model.joint, Some(model.arm.kinematics()), config)?,
+            ),
+            Believed::Serial(serial) => (None, Servo::serial(&serial.arm, config)?),
+        };
         Ok(ServoNode {
-            joints: joint_names(model),
-            arm: Arm::new(&model.arm),
-            servo: Servo::new(&model.joint, Some(model.arm.kinematics()), config)?,
+            joints: model.joint_names(),
+            arm,
+            servo,
             states: StatePublisher::default(),
-            friction: FrictionCommands::new(joint_names(model)),
+            friction: FrictionCommands::new(model.joint_names()),
             message: Text::EMPTY,
             commands_due: Time::INVALID,
             refusal: Text::EMPTY,
@@ -213,11 +221,11 @@ impl ServoNode {
             .or_else(|| all().last())
     }
 
-    /// What the joints carry of the arm's own weight \[Nm\], where it has no more joints
-    /// than the model has links.
+    /// What the joints of a planar arm carry of its own weight \[Nm\], where it has no more
+    /// joints than the model has links.
     fn weight(&self, measured: &JointSample) -> Option<Joints<f64>> {
         let q = Vector2::new(measured.position[0], measured.position[1]);
-        let own = self.arm.gravity(&q);
+        let own = self.arm.as_ref()?.gravity(&q);
         (self.servo.joints().get() == own.len()).then(|| [own[0], own[1]].into())
     }
 

@@ -14,6 +14,7 @@ mod state_times;
 mod summary;
 mod supervisor;
 mod thinned;
+mod touch;
 
 pub use error::SessionError;
 pub use host_resources::{Visit, runtime_folder};
@@ -21,5 +22,7 @@ pub use monitor::Monitor;
 pub use play::{Played, play, recorded_joints};
 pub use private_folder::PrivateFolderError;
 pub use run::{SessionOptions, run};
-pub use summary::{ContactSummary, LeaderSummary, LinkSummary, StateSummary, Summary};
+pub use summary::{
+    ArmSummary, ContactSummary, LeaderSummary, LinkSummary, StateSummary, Summary, TipSummary,
+};
 pub use supervisor::{EXIT_REFUSED, RESTART_LIMIT, RESTART_PAUSE, Supervisor, SupervisorError};

@@ -6,6 +6,7 @@ use std::{
 };
 
 use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
+use ferntast_control::delay::Mapping;
 use ferntast_identification::numerics::statistics::quantile;
 use ferntast_msgs::{
     Message, Time,
@@ -25,9 +26,10 @@ use crate::{
 
 use super::state_times::StateTimes;
 use super::summary::{
-    ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary,
+    ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary, TipSummary,
 };
 use super::thinned::Thinned;
+use super::touch::TouchMeter;
 
 /// A node that was not heard of for this long \[s\] is not alive.
 const ALIVE: f64 = 1.0;
@@ -111,6 +113,9 @@ pub struct Monitor {
     pub operating: BTreeMap<&'static str, StateView>,
     round_trips: Thinned,
     peak_normal_force: f64,
+    peak_force: f64,
+    /// Hand and tip, where it is known how they correspond.
+    touch: Option<TouchMeter>,
     contact_time: f64,
     contact_stamp: Option<Time>,
     edges: Vec<String>,
@@ -184,6 +189,8 @@ impl Monitor {
             operating: BTreeMap::new(),
             round_trips: Thinned::default(),
             peak_normal_force: 0.0,
+            peak_force: 0.0,
+            touch: None,
             contact_time: 0.0,
             contact_stamp: None,
             edges: Vec::new(),
@@ -191,6 +198,18 @@ impl Monitor {
             refused_masters: 0,
             servo_rates: (0.0, 0),
             updated: Time::INVALID,
+        })
+    }
+
+    /// The same that also compares hand and tip, which correspond by `mapping`.
+    ///
+    /// # Errors
+    ///
+    /// A topic that cannot be opened.
+    pub fn comparing(self, bus: &Bus, mapping: Mapping) -> Result<Monitor, CreateError> {
+        Ok(Monitor {
+            touch: Some(TouchMeter::new(bus, mapping)?),
+            ..self
         })
     }
 
@@ -268,6 +287,14 @@ impl Monitor {
         while let Some(received) = self.recorder_commands.next(now) {
             self.events.recorder_command(&received.message);
         }
+        let follows = self
+            .operating
+            .get("follower")
+            .and_then(|view| view.last)
+            .is_some_and(|last| last.state == OperatingState::ENABLED && last.is_busy == 0);
+        if let Some(touch) = &mut self.touch {
+            touch.update(now, self.contact_state.as_ref(), follows);
+        }
         self.twins.update(now);
         for (joint, told) in &mut self.friction {
             if let Some(received) = joint.newest(now) {
@@ -279,6 +306,8 @@ impl Monitor {
     fn note_contact(&mut self, state: ContactStateSample) {
         if state.in_contact == 1 && state.valid == 1 {
             self.peak_normal_force = self.peak_normal_force.max(state.normal_force);
+            let force = state.normal_force.hypot(state.tangential_force);
+            self.peak_force = self.peak_force.max(force);
             if let Some(before) = self.contact_stamp {
                 // A gap in the stream is not contact time.
                 self.contact_time += state.stamp.seconds_since(before).clamp(0.0, 0.1);
@@ -304,6 +333,10 @@ impl Monitor {
         self.stops.clear();
         self.round_trips.clear();
         self.peak_normal_force = 0.0;
+        self.peak_force = 0.0;
+        if let Some(touch) = &mut self.touch {
+            touch.begin();
+        }
         self.contact_time = 0.0;
         self.edges.clear();
         self.peak_hand_force = 0.0;
@@ -345,9 +378,22 @@ impl Monitor {
     pub fn contact(&self) -> ContactSummary {
         ContactSummary {
             peak_normal_force: self.peak_normal_force,
+            peak_force: self.peak_force,
             time_s: self.contact_time,
             edges: self.edges.clone(),
         }
+    }
+
+    /// The tip.
+    pub fn tip(&self) -> TipSummary {
+        TipSummary {
+            drift_mm: self.touch.as_ref().and_then(TouchMeter::drift_mm),
+        }
+    }
+
+    /// What the hand feels of the first thing that the arm touches \[N/m\], at the tip's scale.
+    pub fn felt_stiffness(&self) -> Option<f64> {
+        self.touch.as_ref().and_then(TouchMeter::stiffness)
     }
 
     /// The operator's side.

@@ -13,7 +13,7 @@ use ferntast_msgs::{
 };
 
 use super::{
-    Monitor, SessionError, Summary, Supervisor,
+    ArmSummary, Monitor, SessionError, Summary, Supervisor,
     host_resources::HostResources,
     live::LiveLine,
     preflight, recording,
@@ -93,7 +93,8 @@ pub fn run(
     let bus = Bus::SharedMemory(SharedMemoryBus::open(&SharedMemoryConfig {
         session: session.context.session.clone(),
     })?);
-    let mut monitor = Monitor::new(&bus, &session.context.joints())?;
+    let mapping = session.context.loaded.scenario.law.mapping();
+    let mut monitor = Monitor::new(&bus, &session.context.joints())?.comparing(&bus, mapping)?;
     let mut arming = Arming {
         follower: bus.publisher(topics::FOLLOWER_STATE_COMMAND)?,
         leader: bus.publisher(topics::LEADER_STATE_COMMAND)?,
@@ -148,9 +149,12 @@ pub fn run(
             .map_or(0.0, |armed| ended.seconds_since(armed)),
         armed_s,
         rearmed: session.rearmed,
+        arm: ArmSummary::of(&session.context),
         servo: monitor.servo(),
         link: monitor.link(),
         contact: monitor.contact(),
+        tip: monitor.tip(),
+        felt_stiffness: monitor.felt_stiffness(),
         leader: monitor.leader(),
         twins: monitor.twins(),
         recording: session

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt};
 use serde::Serialize;
 
 use super::state_times::StateTime;
-use crate::twin::TwinSummary;
+use crate::{process::SessionContext, twin::TwinSummary};
 
 /// The result of a session. Quantities that were never measured are `null`.
 #[derive(Debug, Serialize)]
@@ -20,12 +20,21 @@ pub struct Summary {
     pub armed_s: f64,
     /// How often the scripted operator armed the arm again.
     pub rearmed: u32,
+    /// The arm.
+    #[serde(flatten)]
+    pub arm: ArmSummary,
     /// The servo loop.
     pub servo: ServoSummary,
     /// The link as the operator's end measured it.
     pub link: LinkSummary,
     /// The contact as estimated.
     pub contact: ContactSummary,
+    /// The tip beside the hand.
+    pub tip: TipSummary,
+    /// Slope of the force on the hand over its way into the first thing touched, both at the
+    /// tip's scale \[N/m\].
+    #[serde(rename = "felt_stiffness_N_per_m")]
+    pub felt_stiffness: Option<f64>,
     /// The operator's side.
     pub leader: LeaderSummary,
     /// The last word of each twin.
@@ -38,6 +47,43 @@ pub struct Summary {
     pub states: BTreeMap<String, StateSummary>,
     /// Every node: how it did.
     pub nodes: BTreeMap<String, NodeSummary>,
+}
+
+/// The arm that was driven.
+#[derive(Debug, Serialize)]
+pub struct ArmSummary {
+    /// What its file calls it.
+    pub arm: String,
+    /// How many joints it has.
+    pub joints: usize,
+    /// What stood between its topics and it.
+    pub driver: String,
+}
+
+impl ArmSummary {
+    /// Of a session's arm.
+    pub fn of(session: &SessionContext) -> ArmSummary {
+        let loaded = &session.loaded;
+        ArmSummary {
+            arm: match loaded.arm.model.serial() {
+                Some(serial) => serial.name.clone(),
+                None => loaded.scenario.arm.clone(),
+            },
+            joints: loaded.arm.model.joints().len(),
+            driver: match &session.driver {
+                Some(driver) => driver.clone(),
+                None => "simulated".to_owned(),
+            },
+        }
+    }
+}
+
+/// The tip beside the hand.
+#[derive(Debug, Default, Serialize)]
+pub struct TipSummary {
+    /// Farthest that it was from where the hand had it, while both rested and nothing was
+    /// touched \[mm\].
+    pub drift_mm: Option<f64>,
 }
 
 /// The servo loop.
@@ -72,6 +118,9 @@ pub struct ContactSummary {
     /// Largest normal force while in contact \[N\].
     #[serde(rename = "peak_normal_force_N")]
     pub peak_normal_force: f64,
+    /// Largest force while in contact, normal and tangential together \[N\].
+    #[serde(rename = "peak_force_N")]
+    pub peak_force: f64,
     /// Time in contact \[s\].
     pub time_s: f64,
     /// Edges touched.

@@ -31,7 +31,7 @@ pub(super) struct JointTwin {
     pub(super) twin: Twin,
     /// Its joint, from 0.
     pub(super) joint: usize,
-    name: Text<16>,
+    name: Text<32>,
     takes_joint_torque: bool,
     takes_temperature: bool,
     alignment: Alignment,

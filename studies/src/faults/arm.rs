@@ -74,7 +74,10 @@ impl Mechanics {
     ///
     /// A topic that cannot be opened.
     pub fn driver(self: &Rc<Self>, build: Build) -> Result<Box<dyn Ticking>, NodeError> {
-        let model = &build.session.loaded.arm.model;
+        let model = build.session.loaded.arm.model.planar();
+        let model = model.ok_or_else(|| {
+            NodeError::Broken("schedules of faults are for the planar arm".into())
+        })?;
         let arm = Simulated::of(self.arm.borrow().clone(), model);
         let driver = Driver {
             node: ArmNode::new(Box::new(arm))?.planted(build.session.planted),

@@ -41,7 +41,7 @@ impl Facts {
     /// What `loaded` says; `None` for an arm that has not two joints.
     pub fn new(loaded: &Loaded) -> Option<Facts> {
         let scenario = &loaded.scenario;
-        let model = &loaded.arm.model;
+        let model = loaded.arm.model.planar()?;
         let [first, second] = &model.joint[..] else {
             return None;
         };

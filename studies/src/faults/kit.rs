@@ -120,7 +120,7 @@ impl Kit {
         if let Some(hand) = &mut context.loaded.scenario.hand.scripted {
             for phase in &mut hand.script.phase {
                 phase.motion = Motion::Sine {
-                    amplitude: [0.025, -0.02],
+                    amplitude: [0.025, -0.02].into(),
                     frequency: 3.0,
                 };
                 phase.duration = 5.0;

@@ -14,7 +14,8 @@ use super::{recorded::Joints, run::SCENARIO};
 /// Normal force of the contact \[N\] at the time of every measurement.
 pub fn forces(measured: &[Joints]) -> Vec<(Time, f64)> {
     let arm = faults::load(SCENARIO).expect("the scenario").arm;
-    let mut estimator = ContactEstimator::new(&arm.model, &arm.estimator).expect("an estimator");
+    let mut estimator = ContactEstimator::new(arm.model.planar().expect("planar"), &arm.estimator)
+        .expect("an estimator");
     let two = JointCount::new(2).expect("two joints");
     let mut last: Option<Time> = None;
     let step = |own: &Joints| {

@@ -16,5 +16,6 @@ mod outside_recordings;
 mod own_tools;
 mod playback;
 mod refusals;
+mod serial_arm;
 mod sweep;
 mod twin;

@@ -1,0 +1,237 @@
+//! Which surface is touched, and what the force is along and across it.
+
+use super::super::systematic::SensorErrors;
+use super::super::zeroing::CLEARANCE;
+use super::super::{CoefficientEstimator, EstimatorParameters};
+use super::SpatialEstimate;
+use ferntast_model::serial_arm::Plane;
+use nalgebra::Vector3;
+
+/// How far behind a plane the tip is still taken to push it \[m\].
+const REACH: f64 = 0.1;
+/// Where no surface is known, a force of so many times that of a contact is one [-],
+const UNKNOWN_SURFACE: f64 = 3.0;
+/// when it lasts so long [s]: of an arm that is jerked the estimate is off for as long as its
+/// filters take.
+const UNKNOWN_TIME: f64 = 0.05;
+/// A contact there ends when less than a contact's force lasts so long [s].
+const FAINT_TIME: f64 = 0.2;
+/// How many times the filter's delay a turn of the tip is seen in the forces.
+const TURN_DELAYS: f64 = 5.0;
+
+/// How the tip moves, base frame.
+pub(super) struct Motion {
+    /// Newest position \[m\].
+    pub(super) tip: Vector3<f64>,
+    /// Filtered velocity \[m/s\], as late as the forces.
+    pub(super) velocity: Vector3<f64>,
+    /// Velocity \[m/s\] predicted over the filter's delay.
+    pub(super) present_velocity: Vector3<f64>,
+    /// How late forces and filtered velocity are \[s\].
+    pub(super) delay: f64,
+    /// What the torque sensors may have wrong of the force \[N\].
+    pub(super) errors: SensorErrors<Vector3<f64>>,
+    /// A joint's friction, and so the force, is not determined.
+    pub(super) undetermined: bool,
+}
+
+/// A plane with what was found of its friction.
+#[derive(Clone, Debug)]
+struct Surface {
+    point: Vector3<f64>,
+    normal: Vector3<f64>,
+    coefficient: CoefficientEstimator,
+}
+
+impl Surface {
+    fn distance(&self, tip: &Vector3<f64>) -> f64 {
+        self.normal.dot(&(tip - self.point))
+    }
+}
+
+/// Splits forces, and remembers how the tip slid.
+#[derive(Clone, Debug)]
+pub(super) struct Split {
+    surfaces: Vec<Surface>,
+    /// Way slid since the last turn or rest \[m\].
+    travel: f64,
+    /// Time since then \[s\].
+    sliding_for: f64,
+    /// Direction of the last motion along the surface, of length 1 or, before any, 0.
+    direction: Vector3<f64>,
+    /// For how long something that is not believed in has pushed \[s\].
+    unknown_for: f64,
+    /// For how long that has pushed less than a contact does [s].
+    faint_for: f64,
+}
+
+impl Split {
+    pub(super) fn new(surfaces: &[Plane]) -> Self {
+        let surface = |own: &Plane| Surface {
+            point: own.point.into(),
+            normal: own.direction(),
+            coefficient: CoefficientEstimator::default(),
+        };
+        Self {
+            surfaces: surfaces.iter().map(surface).collect(),
+            travel: 0.0,
+            sliding_for: 0.0,
+            direction: Vector3::zeros(),
+            unknown_for: 0.0,
+            faint_for: 0.0,
+        }
+    }
+
+    /// Whether `tip` \[m\] is surely free: in front of all that it can touch.
+    pub(super) fn is_free(&self, parameters: &EstimatorParameters, tip: &Vector3<f64>) -> bool {
+        let clearance = CLEARANCE * parameters.contact_distance;
+        self.surfaces
+            .iter()
+            .all(|own| own.distance(tip) > clearance)
+    }
+
+    /// Finds the surface touched, and splits the force along it.
+    pub(super) fn step(
+        &mut self,
+        parameters: &EstimatorParameters,
+        last: &SpatialEstimate,
+        dt: f64,
+        motion: &Motion,
+        force: &Vector3<f64>,
+        estimate: &mut SpatialEstimate,
+    ) {
+        let threshold = match last.in_contact {
+            true => parameters.contact_off,
+            false => parameters.contact_on,
+        };
+        let is_near = |own: &Surface| {
+            let distance = own.distance(&motion.tip);
+            (-REACH..=parameters.contact_distance).contains(&distance)
+        };
+        let pressed = |own: &Surface| force.dot(&own.normal);
+        let near = self.surfaces.iter().enumerate();
+        let near = near.filter(|(_, own)| is_near(own));
+        let near = near.max_by(|(_, a), (_, b)| pressed(a).total_cmp(&pressed(b)));
+        let near = near.map(|(index, own)| (index, own.normal));
+        let touched = near.filter(|(_, normal)| force.dot(normal) > threshold);
+
+        let unknown = near.is_none() && force.norm() > UNKNOWN_SURFACE * parameters.contact_on;
+        self.unknown_for = if unknown { self.unknown_for + dt } else { 0.0 };
+        let faint = force.norm() <= parameters.contact_on;
+        self.faint_for = if faint { self.faint_for + dt } else { 0.0 };
+        estimate.touches = match near {
+            Some(_) => touched.is_some(),
+            None if last.touches => self.faint_for < FAINT_TIME,
+            None => self.unknown_for >= UNKNOWN_TIME,
+        };
+        if !estimate.touches {
+            self.travel = 0.0;
+            self.sliding_for = 0.0;
+            return;
+        }
+        let surface = touched.map(|(index, _)| index);
+        let normal = match touched {
+            Some((_, normal)) => normal,
+            None => across(force, &motion.velocity, parameters.rest_speed),
+        };
+        self.slide(parameters, dt, &normal, surface != last.surface, motion);
+        let corner = surface.is_some_and(|surface| {
+            let others = self.surfaces.iter().enumerate();
+            let mut others = others.filter(|(index, _)| *index != surface);
+            others.any(|(_, own)| (-REACH..=0.0).contains(&own.distance(&motion.tip)))
+        });
+        let present = motion.present_velocity.dot(&self.direction);
+        // At a turn first arm and surface wind up the other way, then the filters follow.
+        let turned_lately =
+            self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
+        let along = tangent(&normal);
+        estimate.in_contact = true;
+        estimate.surface = surface;
+        estimate.corner = corner;
+        estimate.contact_force = [
+            force.dot(&along),
+            force.dot(&normal.cross(&along)),
+            force.dot(&normal),
+        ];
+        estimate.normal_force = force.dot(&normal).max(0.0);
+        estimate.tangential_force = -force.dot(&self.direction);
+        estimate.near_rest =
+            present < parameters.rest_speed || turned_lately || corner || motion.undetermined;
+        if let Some(surface) = surface {
+            self.identify(parameters, dt, surface, &motion.errors, estimate);
+        }
+    }
+
+    /// Follows how the tip slides on what has this normal; on another surface it begins anew.
+    fn slide(
+        &mut self,
+        parameters: &EstimatorParameters,
+        dt: f64,
+        normal: &Vector3<f64>,
+        other: bool,
+        motion: &Motion,
+    ) {
+        let sliding = motion.velocity - normal * normal.dot(&motion.velocity);
+        let speed = sliding.norm();
+        let rests = speed < parameters.rest_speed;
+        if rests || other || sliding.dot(&self.direction) < 0.0 {
+            self.travel = 0.0;
+            self.sliding_for = 0.0;
+        } else {
+            self.travel += speed * dt;
+            self.sliding_for += dt;
+        }
+        if !rests {
+            self.direction = sliding / speed;
+        }
+    }
+
+    /// Equation (6), where the tip slides.
+    fn identify(
+        &mut self,
+        parameters: &EstimatorParameters,
+        dt: f64,
+        surface: usize,
+        sensors: &SensorErrors<Vector3<f64>>,
+        estimate: &mut SpatialEstimate,
+    ) {
+        let direction = self.direction;
+        let Some(own) = self.surfaces.get_mut(surface) else {
+            return;
+        };
+        if estimate.valid && !estimate.near_rest {
+            let normal = own.normal;
+            let (n, t) = (estimate.normal_force, estimate.tangential_force);
+            // A plane turned by δ about the axis across the motion: see the planar split.
+            let turn = parameters.uncertainty.contour_turn;
+            let of = |error: &Vector3<f64>| [error.dot(&normal), -error.dot(&direction)];
+            let errors = sensors.split(of, [turn * t, -turn * n]);
+            let (memory, cut_off) = (parameters.friction_memory, parameters.cut_off);
+            own.coefficient.step(n, t, &errors, dt, memory, cut_off);
+        }
+        estimate.friction = own.coefficient.coefficient();
+    }
+}
+
+/// The normal of a surface that nobody knows: the direction of the force, of which what goes
+/// along the tip's motion is friction.
+fn across(force: &Vector3<f64>, velocity: &Vector3<f64>, rest_speed: f64) -> Vector3<f64> {
+    let speed = velocity.norm();
+    let along = match speed > rest_speed {
+        true => velocity * (force.dot(velocity) / (speed * speed)),
+        false => Vector3::zeros(),
+    };
+    let normal = (force - along).try_normalize(1e-9);
+    normal
+        .or_else(|| force.try_normalize(1e-9))
+        .unwrap_or_else(Vector3::z)
+}
+
+/// A direction along a surface: that of x, or, where the normal is near it, of y.
+fn tangent(normal: &Vector3<f64>) -> Vector3<f64> {
+    let axis = match normal.x.abs() < 0.9 {
+        true => Vector3::x(),
+        false => Vector3::y(),
+    };
+    (axis - normal * normal.dot(&axis)).normalize()
+}

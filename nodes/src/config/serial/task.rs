@@ -1,0 +1,111 @@
+//! Fits a session to a serial arm: what a scenario leaves open, or says of another arm.
+
+use ferntast_control::{delay::Mapping, servo::ServoConfig};
+use ferntast_emulation::hand::{Motion, Phase, Point, Script};
+use ferntast_model::rigid_body::Vector3;
+
+use super::Serial;
+use crate::config::Scenario;
+
+/// Tip positions are in the middle of the hand's where this stands: nobody gave another one.
+const NOT_GIVEN: [f64; 3] = [0.35355, 0.0, 0.0];
+/// An arm that reaches less than this \[m\] moves less than the hand does.
+const SMALL: f64 = 0.3;
+/// How far the hand goes beyond a surface \[m\] at the tip, and along it.
+const DEEP: f64 = 0.003;
+const ALONG: f64 = 0.02;
+
+/// Takes the servo's tuning and the tip's place from the arm, where the scenario gives none;
+/// with `hand` also what the scripted hand does.
+pub(in crate::config) fn fit(scenario: &mut Scenario, serial: &Serial, hand: bool) {
+    if scenario.servo == ServoConfig::default() {
+        scenario.servo = serial.servo.clone();
+    }
+    let mapping = scenario.law.mapping();
+    if hand || mapping.workspace_offset == NOT_GIVEN {
+        let tip = serial.arm.home_tip().translation;
+        let reach = tip.norm();
+        scenario.law = scenario.law.between(&Mapping {
+            workspace_offset: tip.into(),
+            position_scale: match reach < SMALL {
+                true => (reach / SMALL).max(0.05),
+                false => mapping.position_scale,
+            },
+            ..mapping
+        });
+    }
+    if hand && let Some(scripted) = &mut scenario.hand.scripted {
+        scripted.script = script(serial, scenario.law.mapping().position_scale);
+    }
+}
+
+/// The scripted hand touches the first surface, presses and slides, again and again.
+fn script(serial: &Serial, scale: f64) -> Script {
+    let home = serial.arm.home_tip().translation;
+    let Some(plane) = serial.arm.surfaces().first() else {
+        return wander(scale);
+    };
+    let normal = plane.direction();
+    let apart = plane.distance(&home);
+    // Along the surface, away from and towards the base as far as that goes.
+    let out = home - normal * normal.dot(&home);
+    let along = out.try_normalize(1e-3).unwrap_or_else(|| {
+        let axis = match normal.x.abs() < 0.9 {
+            true => Vector3::x(),
+            false => Vector3::y(),
+        };
+        (axis - normal * normal.dot(&axis)).normalize()
+    });
+    let at = |depth: f64, way: f64| {
+        let tip = along * way - normal * (apart + depth);
+        Point((tip / scale).into())
+    };
+    let reach = |label: &str, to: Point, duration: f64| Phase {
+        label: label.to_owned(),
+        duration,
+        motion: Motion::Reach { to },
+    };
+    let name = &plane.name;
+    Script {
+        start: Point::default(),
+        repeat: true,
+        phase: vec![
+            wait(),
+            reach(&format!("reach the {name}"), at(-DEEP, 0.0), 1.2),
+            reach("press", at(DEEP, 0.0), 0.8),
+            reach("slide", at(DEEP, ALONG), 2.0),
+            reach("slide back", at(DEEP, -ALONG), 3.0),
+            reach("retreat", Point::default(), 1.5),
+        ],
+    }
+}
+
+fn wait() -> Phase {
+    Phase {
+        label: "wait".to_owned(),
+        duration: 1.0,
+        motion: Motion::Hold {},
+    }
+}
+
+/// With nothing to touch the hand goes to and fro.
+fn wander(scale: f64) -> Script {
+    let sine = |label: &str, amplitude: [f64; 3]| Phase {
+        label: label.to_owned(),
+        duration: 4.0,
+        motion: Motion::Sine {
+            amplitude: Point(amplitude.map(|own| own / scale)),
+            frequency: 0.5,
+        },
+    };
+    Script {
+        start: Point::default(),
+        repeat: true,
+        phase: vec![
+            wait(),
+            sine("to and fro", [0.03, 0.0, 0.0]),
+            sine("left and right", [0.0, 0.03, 0.0]),
+            sine("up and down", [0.0, 0.0, 0.03]),
+        ],
+    }
+}
