@@ -2,18 +2,13 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_identification::{Diagnosis, Term, Verdict};
-use ferntast_lab::work::{Added, beside};
-use serde::Serialize;
+use ferntast_lab::work::{self, AutoEvent};
+use indicatif::ProgressBar;
 
 use super::{
     super::{Failure, output::print_json},
-    diagnose::with_bar,
     open, table,
 };
-
-/// No joint and no contact has so many effects that these data can tell apart.
-const MAX_STEPS: usize = 8;
 
 /// Diagnose and add until the model is complete, or what is left has no name.
 #[derive(Debug, clap::Args)]
@@ -26,62 +21,36 @@ pub struct Arguments {
     output: Option<PathBuf>,
 }
 
-#[derive(Debug, Serialize)]
-struct Outcome {
-    steps: Vec<Added>,
-    verdict: Verdict,
-    /// The last experiment file.
-    experiment: PathBuf,
-    /// What is left after the last step.
-    last: Diagnosis,
-}
-
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let mut path = arguments.experiment.clone();
-    if let Some(folder) = &arguments.output {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
-    }
-    let mut steps: Vec<Added> = Vec::new();
-    let last = loop {
-        let opened = open::open_file(&path)?;
-        let diagnosis = with_bar(&opened)?;
-        let unit = opened.torque_unit();
-        let best = diagnosis.candidates.first();
-        let (Some(best), Verdict::Missing, true) =
-            (best, diagnosis.verdict, steps.len() < MAX_STEPS)
-        else {
-            if !json {
-                table::diagnosis(&diagnosis, unit);
-            }
-            break diagnosis;
-        };
-        let effect = Term::Catalogue(best.effect.clone());
-        let mut output = beside(&path, effect.name());
-        if let (Some(folder), Some(name)) = (&arguments.output, output.file_name()) {
-            output = folder.join(name);
+    let mut bar = ProgressBar::hidden();
+    let mut tell = |event: AutoEvent<'_>| match event {
+        AutoEvent::Opened(opened) => {
+            open::tell_notes(opened);
+            bar = open::bar("diagnose");
         }
-        let added = opened.add(&effect, &output).map_err(Failure::refused)?;
-        if !json {
-            println!(
-                "{:<24} {:>12} -> {} {unit} on data held out; {}",
-                added.effect,
-                table::significant(added.held_out_before),
-                table::significant(added.held_out_after),
-                added.experiment.display()
-            );
-        }
-        path.clone_from(&added.experiment);
-        steps.push(added);
+        AutoEvent::Share(share) => bar.set_position((share * 1000.0) as u64),
+        AutoEvent::Diagnosed(..) => bar.finish_and_clear(),
+        AutoEvent::Added(opened, added) if !json => println!(
+            "{:<24} {:>12} -> {} {} on data held out; {}",
+            added.effect,
+            table::significant(added.held_out_before),
+            table::significant(added.held_out_after),
+            opened.torque_unit(),
+            added.experiment.display()
+        ),
+        AutoEvent::Added(..) => {}
     };
+    let found = work::auto(
+        &arguments.experiment,
+        arguments.output.as_deref(),
+        &mut tell,
+    );
+    let found = found.map_err(Failure::refused)?;
     if json {
-        print_json(&Outcome {
-            steps,
-            verdict: last.verdict,
-            experiment: path,
-            last,
-        })?;
+        print_json(&found)?;
+    } else {
+        table::diagnosis(&found.last.result, found.last.unit);
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -20,10 +20,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             println!("{}", opened.experiment.title);
             table::comparison(&result, opened.torque_unit());
         }
-        results.push(open::InUnit {
-            unit: opened.torque_unit(),
-            result,
-        });
+        results.push(opened.in_unit(result));
     }
     if json {
         open::print_results(&results)?;

@@ -40,10 +40,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             println!("{}", opened.experiment.title);
             table::diagnosis(&result, opened.torque_unit());
         }
-        results.push(open::InUnit {
-            unit: opened.torque_unit(),
-            result,
-        });
+        results.push(opened.in_unit(result));
     }
     if json {
         open::print_results(&results)?;

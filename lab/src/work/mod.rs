@@ -2,6 +2,7 @@
 //! open it, hold its model against its recordings, add an effect.
 
 mod add;
+mod auto;
 mod document;
 mod error;
 mod new;
@@ -16,6 +17,7 @@ use std::path::Path;
 use ferntast_identification::{
     Comparison, Dataset, Diagnosis, compare, comparison::compare_drawing, diagnose,
 };
+use serde::Serialize;
 
 use crate::{
     experiment::{self, Experiment},
@@ -23,11 +25,22 @@ use crate::{
 };
 
 pub use add::{Added, beside, own_effect};
+pub use auto::{AutoEvent, Automatic, auto};
 pub use error::{NewError, WorkError};
 pub use new::{Made, NewSignal, Request, Said, make};
 pub use paths::{Offered, offered};
 pub use start::{Beginning, start};
 pub use twin::{FromTwin, from_twin};
+
+/// A result with the unit of its torques, as the command line and Python tell it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InUnit<T> {
+    /// Unit of torques or forces, or of what stands for them.
+    pub unit: &'static str,
+    /// The result.
+    #[serde(flatten)]
+    pub result: T,
+}
 
 /// An experiment with its recordings read.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +60,15 @@ impl Opened {
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
         self.experiment.force_unit()
+    }
+
+    /// `result` with the unit of its torques.
+    #[must_use]
+    pub fn in_unit<T>(&self, result: T) -> InUnit<T> {
+        InUnit {
+            unit: self.torque_unit(),
+            result,
+        }
     }
 
     /// Reads the recordings of `experiment`.
