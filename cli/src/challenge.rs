@@ -6,11 +6,8 @@ use std::{
 };
 
 use clap::Subcommand;
-use ferntast_benches::{
-    bench::{BenchConfig, BenchError},
-    contact_bench, joint_bench,
-};
-use ferntast_studies::challenge::{self, BlindTest, Count, Plan, TestBench};
+use ferntast_benches::{bench::BenchError, contact_bench, joint_bench};
+use ferntast_studies::challenge::{self, Asked, BlindTest, Count, Plan, TestBench};
 use indicatif::ProgressBar;
 use serde_json::json;
 
@@ -112,11 +109,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 hide,
                 sessions,
             };
-            match contact {
-                true => create::<contact_bench::HiddenEffect>(&folder, &asked)?,
-                false => create::<joint_bench::HiddenEffect>(&folder, &asked)?,
-            }
-            let experiment = folder.join("experiment.toml");
+            let experiment = challenge::make(&folder, contact, &asked).map_err(Failure::refused)?;
             if json {
                 print_json(&json!({"experiment": experiment}))?;
             } else {
@@ -147,33 +140,6 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 false => blind::<joint_bench::HiddenEffect>(&plan, &hide, json),
             }
         }
-    }
-}
-
-/// What a challenge is asked to be like.
-struct Asked {
-    seed: u64,
-    strength: f64,
-    hide: Vec<String>,
-    sessions: Option<usize>,
-}
-
-fn create<H: TestBench>(folder: &Path, asked: &Asked) -> Result<(), Failure> {
-    let config = BenchConfig {
-        seed: asked.seed,
-        hidden: hidden::<H>(asked.seed, &asked.hide).map_err(Failure::refused)?,
-        strength: asked.strength,
-        sessions: asked.sessions.unwrap_or(H::SESSIONS),
-        ..BenchConfig::default()
-    };
-    challenge::create(folder, &config).map_err(Failure::refused)
-}
-
-fn hidden<H: TestBench>(seed: u64, hide: &[String]) -> Result<Vec<H>, BenchError> {
-    match hide {
-        [] => Ok(challenge::hidden_by(seed).into_iter().collect()),
-        [none] if none == "none" => Ok(Vec::new()),
-        ids => ids.iter().map(|id| id.parse()).collect(),
     }
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 use ferntast_drivers::{Choice, UnknownDriver, simulated};
 use ferntast_msgs::sample::JointNames;
 use ferntast_nodes::{
-    config::{self, HandSource, Loaded, Middleware},
+    config::{self, Changes, Loaded, Middleware},
     twin,
 };
 
@@ -107,9 +107,6 @@ impl ScenarioOptions {
                 .map_err(Failure::refused)?;
         }
         let scenario = &mut loaded.scenario;
-        if let Some(seed) = self.seed {
-            scenario.seed = seed;
-        }
         if let Some(middleware) = self.middleware {
             scenario.gateway.middleware = middleware;
         }
@@ -122,9 +119,6 @@ impl ScenarioOptions {
             scenario.gateway.namespace = format!("/{}", namespace.trim_matches('/'));
         }
         scenario.gateway.commands |= self.ros_commands;
-        if let Some(law) = &self.law {
-            scenario.set_law(law).map_err(Failure::refused)?;
-        }
         if let Some(endpoint) = &self.link_endpoint {
             scenario.link.endpoint.clone_from(endpoint);
         }
@@ -134,25 +128,14 @@ impl ScenarioOptions {
         if let Some(file) = &self.router_config {
             scenario.gateway.router_config = Some(file.clone());
         }
-        match self.hand.as_deref() {
-            None => {}
-            Some("scripted") => scenario.hand.source = HandSource::Scripted,
-            Some("crtk") => scenario.hand.source = HandSource::Crtk,
-            Some(file) => {
-                scenario.hand.source = HandSource::Recorded;
-                scenario.hand.recording = Some(PathBuf::from(file));
-                loaded.hand_recording = None;
-            }
-        }
-        if let Some(link) = &self.link {
-            loaded.set_link(link).map_err(Failure::refused)?;
-        }
-        if let Some(rtt) = self.rtt {
-            loaded
-                .set_round_trip(rtt * 1e-3)
-                .map_err(Failure::refused)?;
-        }
-        loaded.complete().map_err(Failure::refused)?;
+        let changes = Changes {
+            link: self.link.clone(),
+            law: self.law.clone(),
+            rtt_ms: self.rtt,
+            hand: self.hand.clone(),
+            seed: self.seed,
+        };
+        changes.apply(&mut loaded).map_err(Failure::refused)?;
         Ok(loaded)
     }
 }

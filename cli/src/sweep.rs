@@ -36,20 +36,7 @@ pub struct Arguments {
 /// Runs it.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     let mut config = SweepConfig::load(&arguments.file).map_err(Failure::refused)?;
-    for name in &arguments.law {
-        if !config.laws.iter().any(|law| law.name() == name) {
-            let has: Vec<&str> = config.laws.iter().map(|law| law.name()).collect();
-            return Err(Failure::refused(format!(
-                "--law {name}: the sweep has {}",
-                has.join(", ")
-            )));
-        }
-    }
-    if !arguments.law.is_empty() {
-        config
-            .laws
-            .retain(|law| arguments.law.iter().any(|name| name == law.name()));
-    }
+    config.only(&arguments.law).map_err(Failure::refused)?;
     if let Some(folder) = &arguments.output {
         // Before the work, so that it is not done in vain.
         fs::create_dir_all(folder)

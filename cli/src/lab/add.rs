@@ -1,11 +1,8 @@
 //! `ferntast lab add`.
 
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_lab::work::{WorkError, beside, own_effect};
+use ferntast_lab::work::{beside, own_effect, refuse_existing};
 
 use super::{
     super::{Failure, output::print_json},
@@ -44,16 +41,6 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Refuses to write over a file that is there.
-pub fn refuse_existing(output: &Path) -> Result<(), Failure> {
-    match output.exists() {
-        true => Err(Failure::refused(WorkError::Exists {
-            path: output.to_owned(),
-        })),
-        false => Ok(()),
-    }
-}
-
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     let effect = own_effect(&arguments.effect, &arguments.bounds).map_err(Failure::refused)?;
@@ -63,7 +50,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         .clone()
         .unwrap_or_else(|| beside(&arguments.experiment, effect.name()));
     if !arguments.force {
-        refuse_existing(&output)?;
+        refuse_existing(&output).map_err(Failure::refused)?;
     }
     let added = opened.add(&effect, &output).map_err(Failure::refused)?;
     if json {

@@ -2,19 +2,13 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_identification::{Diagnosis, Term, Verdict, diagnosis::NamedCandidate};
-use ferntast_lab::work::{Added, beside};
-use serde::Serialize;
+use ferntast_lab::work::{self, AutoEvent, AutoOptions};
+use indicatif::ProgressBar;
 
 use super::{
     super::{Failure, output::print_json},
-    add::refuse_existing,
-    diagnose::with_bar,
     open, table,
 };
-
-/// No joint and no contact has so many effects that these data can tell apart.
-const MAX_STEPS: usize = 8;
 
 /// Diagnose and add until nothing more is named.
 #[derive(Debug, clap::Args)]
@@ -43,91 +37,40 @@ pub struct Arguments {
     force: bool,
 }
 
-#[derive(Debug, Serialize)]
-struct Outcome {
-    steps: Vec<Step>,
-    verdict: Verdict,
-    /// The last experiment file.
-    experiment: PathBuf,
-    /// What is left after the last step.
-    last: Diagnosis,
-}
-
-/// One effect more.
-#[derive(Debug, Serialize)]
-struct Step {
-    #[serde(flatten)]
-    added: Added,
-    /// Whether it only takes a part of what nothing explains.
-    in_part: bool,
-}
-
-/// What is added next, and whether it only helps in part.
-fn next(diagnosis: &Diagnosis, partial: bool) -> Option<(String, bool)> {
-    let first = |of: &[NamedCandidate]| of.first().map(|own| own.effect.clone());
-    match diagnosis.verdict {
-        Verdict::Missing => Some((first(&diagnosis.candidates)?, false)),
-        Verdict::Unexplained if partial => Some((first(&diagnosis.helps_in_part)?, true)),
-        _ => None,
-    }
-}
-
 /// Runs it.
-pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let mut path = arguments.experiment.clone();
-    if let Some(folder) = &arguments.output {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
-    }
-    let mut steps: Vec<Step> = Vec::new();
-    let last = loop {
-        let opened = open::open_file(&path)?;
-        let quick = with_bar(&opened, true)?;
-        let unit = opened.torque_unit();
-        let best = next(&quick, arguments.partial);
-        let Some((name, in_part)) = best.filter(|_| steps.len() < MAX_STEPS) else {
-            let last = match arguments.quick {
-                true => quick,
-                false => with_bar(&opened, false)?,
-            };
-            if !json {
-                table::diagnosis(&last, unit);
-            }
-            break last;
-        };
-        let effect = Term::Catalogue(name);
-        let mut output = beside(&path, effect.name());
-        if let (Some(folder), Some(name)) = (&arguments.output, output.file_name()) {
-            output = folder.join(name);
+pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let mut bar = ProgressBar::hidden();
+    let mut tell = |event: AutoEvent<'_>| match event {
+        AutoEvent::Opened(opened) => {
+            open::tell_notes(opened);
+            bar = open::bar("diagnose");
         }
-        if !arguments.force {
-            refuse_existing(&output)?;
-        }
-        let added = opened.add(&effect, &output).map_err(Failure::refused)?;
-        if !json {
-            println!(
-                "{:<24} {:>12} -> {} {unit} on data held out{}; {}",
-                added.effect,
-                table::significant(added.held_out_before),
-                table::significant(added.held_out_after),
-                if in_part {
-                    " (helps in part, explains not all)"
-                } else {
-                    ""
-                },
-                added.experiment.display()
-            );
-        }
-        path.clone_from(&added.experiment);
-        steps.push(Step { added, in_part });
+        AutoEvent::Share(share) => bar.set_position((share * 1000.0) as u64),
+        AutoEvent::Diagnosed(..) => bar.finish_and_clear(),
+        AutoEvent::Added(opened, step) if !json => println!(
+            "{:<24} {:>12} -> {} {} on data held out{}; {}",
+            step.added.effect,
+            table::significant(step.added.held_out_before),
+            table::significant(step.added.held_out_after),
+            opened.torque_unit(),
+            match step.in_part {
+                true => " (helps in part, explains not all)",
+                false => "",
+            },
+            step.added.experiment.display()
+        ),
+        AutoEvent::Added(..) => {}
     };
-    if json {
-        print_json(&Outcome {
-            steps,
-            verdict: last.verdict,
-            experiment: path,
-            last,
-        })?;
+    let options = AutoOptions {
+        folder: arguments.output,
+        partial: arguments.partial,
+        quick: arguments.quick,
+        force: arguments.force,
+    };
+    let found = work::auto(&arguments.experiment, &options, &mut tell).map_err(Failure::refused)?;
+    match json {
+        true => print_json(&found)?,
+        false => table::diagnosis(&found.last.result, found.last.unit),
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -24,8 +24,8 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             println!("{}", opened.experiment.title);
             table::comparison(&result, opened.torque_unit());
         }
-        let unit = opened.torque_unit();
-        results.push((opened.experiment.title, open::InUnit { unit, result }));
+        let result = opened.in_unit(result);
+        results.push((opened.experiment.title, result));
     }
     if json {
         open::print_results(&results)?;

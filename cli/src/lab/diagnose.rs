@@ -48,12 +48,12 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     let mut results = Vec::new();
     for opened in open::open(&arguments.experiment)? {
         let result = with_bar(&opened, arguments.quick)?;
-        let unit = opened.torque_unit();
         if !json {
             println!("{}", opened.experiment.title);
-            table::diagnosis(&result, unit);
+            table::diagnosis(&result, opened.torque_unit());
         }
-        results.push((opened.experiment.title, open::InUnit { unit, result }));
+        let result = opened.in_unit(result);
+        results.push((opened.experiment.title, result));
     }
     if json {
         open::print_results(&results)?;

@@ -85,7 +85,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         Action::Compare(arguments) => compare::run(&arguments, json),
         Action::Diagnose(arguments) => diagnose::run(&arguments, json),
         Action::Add(arguments) => add::run(&arguments, json),
-        Action::Auto(arguments) => auto::run(&arguments, json),
+        Action::Auto(arguments) => auto::run(arguments, json),
         Action::History(arguments) => history::run(&arguments, json),
         Action::Trend(arguments) => trend::run(&arguments, json),
         Action::Report(arguments) => report::run(&arguments, json),

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use ferntast_lab::work;
+use ferntast_lab::work::{self, InUnit};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use serde::Serialize;
@@ -25,20 +25,11 @@ pub fn open_file(path: &Path) -> Result<Opened, Failure> {
     Ok(opened)
 }
 
-fn tell_notes(opened: &Opened) {
+/// Tells on stderr what was noticed while reading.
+pub fn tell_notes(opened: &Opened) {
     for note in &opened.notes {
         eprintln!("note: {note}");
     }
-}
-
-/// A result with the unit of its torques.
-#[derive(Debug, Serialize)]
-pub struct InUnit<T> {
-    /// Unit of torques or forces, or of what stands for them.
-    pub unit: &'static str,
-    /// The result.
-    #[serde(flatten)]
-    pub result: T,
 }
 
 /// A bar for work whose share done is reported.

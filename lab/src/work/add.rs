@@ -44,6 +44,20 @@ pub fn beside(parent: &Path, effect: &str) -> PathBuf {
     parent.with_file_name(name)
 }
 
+/// Refuses to write over a file that is there.
+///
+/// # Errors
+///
+/// [`WorkError::Exists`].
+pub fn refuse_existing(output: &Path) -> Result<(), WorkError> {
+    match output.exists() {
+        true => Err(WorkError::Exists {
+            path: output.to_owned(),
+        }),
+        false => Ok(()),
+    }
+}
+
 /// An effect as people write it: an id of the catalogue, or `NAME=EXPRESSION`
 /// with bounds `NAME=LOW,HIGH` of the parameters that are searched.
 ///

@@ -2,6 +2,7 @@
 //! open it, hold its model against its recordings, add an effect.
 
 mod add;
+mod auto;
 mod document;
 mod equation;
 mod error;
@@ -19,13 +20,15 @@ use ferntast_identification::{
     Comparison, Dataset, Diagnosis, Usage, compare, comparison::compare_drawing, diagnose,
     diagnose_at_cutoffs,
 };
+use serde::Serialize;
 
 use crate::{
     experiment::{self, Experiment},
     recording::{self, Tally},
 };
 
-pub use add::{Added, beside, own_effect};
+pub use add::{Added, beside, own_effect, refuse_existing};
+pub use auto::{AutoEvent, AutoOptions, Automatic, Step, auto};
 pub use equation::Formula;
 pub use error::{NewError, WorkError};
 pub use new::{Made, NewSignal, Request, Said, make};
@@ -33,6 +36,16 @@ pub use paths::{Offered, offered};
 pub use start::{Beginning, start};
 pub use trend::{Point, Trend, TrendError, trends};
 pub use twin::{FromTwin, from_twin};
+
+/// A result with the unit of its torques, as the command line and Python tell it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InUnit<T> {
+    /// Unit of torques or forces, or of what stands for them.
+    pub unit: &'static str,
+    /// The result.
+    #[serde(flatten)]
+    pub result: T,
+}
 
 /// An experiment with its recordings read.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +73,15 @@ impl Opened {
     #[must_use]
     pub fn equation(&self) -> Vec<Formula> {
         equation::of(&self.experiment)
+    }
+
+    /// `result` with the unit of its torques.
+    #[must_use]
+    pub fn in_unit<T>(&self, result: T) -> InUnit<T> {
+        InUnit {
+            unit: self.torque_unit(),
+            result,
+        }
     }
 
     /// Reads the recordings of `experiment`.

@@ -1,6 +1,7 @@
 //! What a session is made of: scenarios, and the files that they name.
 
 mod arm;
+mod changes;
 mod error;
 mod file;
 mod laws;
@@ -15,6 +16,7 @@ use ferntast_msgs::sample::{JointNames, MAX_JOINTS};
 #[cfg(test)]
 pub use arm::load_model_only;
 pub use arm::{ArmFile, Believed, LoadArm};
+pub use changes::{ChangeError, Changes};
 pub use error::ConfigError;
 pub use file::{ARM, FileKind, load};
 pub use laws::{UnknownLaw, stiff_enough};

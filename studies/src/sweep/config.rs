@@ -66,6 +66,14 @@ fn three() -> f64 {
     3.0
 }
 
+/// A law that a sweep has not.
+#[derive(Debug, thiserror::Error)]
+#[error("--law {name}: the sweep has {has}")]
+pub struct NotSwept {
+    name: String,
+    has: String,
+}
+
 /// Where sweeps are.
 const FILE: FileKind = FileKind {
     name: "sweep",
@@ -80,6 +88,27 @@ impl SweepConfig {
     /// What is wrong, in which file, and how to correct it.
     pub fn load(name: &str) -> Result<SweepConfig, ConfigError> {
         config::load(FILE, name, SweepConfig::validate)
+    }
+
+    /// Leaves only the laws of these names; all where none is named.
+    ///
+    /// # Errors
+    ///
+    /// A name that the sweep has not.
+    pub fn only(&mut self, laws: &[String]) -> Result<(), NotSwept> {
+        let has = |name: &str| self.laws.iter().any(|law| law.name() == name);
+        if let Some(name) = laws.iter().find(|name| !has(name)) {
+            let names: Vec<&str> = self.laws.iter().map(|law| law.name()).collect();
+            return Err(NotSwept {
+                name: name.clone(),
+                has: names.join(", "),
+            });
+        }
+        if !laws.is_empty() {
+            self.laws
+                .retain(|law| laws.iter().any(|name| name == law.name()));
+        }
+        Ok(())
     }
 
     /// What follows the hand, and what limits the force on it.

@@ -17,7 +17,7 @@ mod table;
 mod tests;
 
 pub use bench::Bench;
-pub use config::SweepConfig;
+pub use config::{NotSwept, SweepConfig};
 pub use grid::Condition;
 pub use page::{RenderError, render};
 pub use row::Row;

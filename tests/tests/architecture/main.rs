@@ -23,7 +23,7 @@ const PURE: [&str; 9] = [
 ];
 
 /// What reaches the simulated arm because it was chosen.
-const MAY_SIMULATE: [&str; 4] = ["sim", "drivers", "studies", "cli"];
+const MAY_SIMULATE: [&str; 5] = ["sim", "drivers", "studies", "cli", "python"];
 
 /// The folder of a crate of the workspace.
 fn folder(name: &str) -> PathBuf {
@@ -109,26 +109,33 @@ fn only_a_driver_brings_the_simulated_arm_into_a_session() {
     }
 }
 
-/// The README's two commands: what the second needs with other features than the
-/// first is compiled twice, some minutes of middleware.
+/// The README's two commands, and the wheel for Python: what one needs with other
+/// features than another is compiled twice, some minutes of middleware.
 #[test]
-fn the_program_and_its_tests_share_one_build_of_their_libraries() {
-    let program = dependencies::features(&["--package", "ferntast", "--edges", "normal,build"]);
+fn the_program_the_wheel_and_the_tests_share_one_build_of_their_libraries() {
     let all = dependencies::features(&["--workspace", "--edges", "normal,build,dev"]);
-    assert!(
-        program.keys().any(|name| name.starts_with("zenoh ")),
-        "not the features: {program:?}"
-    );
-    let differ: Vec<String> = program
-        .iter()
-        .filter(|(name, features)| all.get(*name) != Some(features))
-        .map(|(name, features)| format!("{name}: {features:?}, with the tests {:?}", all.get(name)))
-        .collect();
-    assert!(
-        differ.is_empty(),
-        "name these features in cli/Cargo.toml:\n{}",
-        differ.join("\n")
-    );
+    for (package, manifest) in [
+        ("ferntast", "cli/Cargo.toml"),
+        ("ferntast-python", "python/Cargo.toml"),
+    ] {
+        let own = dependencies::features(&["--package", package, "--edges", "normal,build"]);
+        assert!(
+            own.keys().any(|name| name.starts_with("zenoh ")),
+            "not the features: {own:?}"
+        );
+        let differ: Vec<String> = own
+            .iter()
+            .filter(|(name, features)| all.get(*name) != Some(features))
+            .map(|(name, features)| {
+                format!("{name}: {features:?}, with the tests {:?}", all.get(name))
+            })
+            .collect();
+        assert!(
+            differ.is_empty(),
+            "name these features in {manifest}:\n{}",
+            differ.join("\n")
+        );
+    }
 }
 
 #[test]

@@ -1,0 +1,96 @@
+"""Plots of results, by matplotlib where it is installed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ferntast._native import RefusedError
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+    from ferntast.results import Automatic, Comparison, Diagnosis, Sweep
+
+
+def _subplots(rows: int, columns: int, **how: Any) -> tuple[matplotlib.figure.Figure, Any]:
+    try:
+        import matplotlib.figure
+    except ImportError as error:
+        raise RefusedError("plots need matplotlib: pip install 'ferntast[plot]'") from error
+    figure = matplotlib.figure.Figure(figsize=(9, 2.4 * rows), layout="constrained")
+    return figure, figure.subplots(rows, columns, squeeze=False, **how)
+
+
+def comparison(result: Comparison) -> matplotlib.figure.Figure:
+    """Measured and modelled torque and residual of every session; residual maps below."""
+    series = [own.to_dict() for own in result.series]
+    maps = [own.to_dict() for own in result.residual_maps]
+    figure, axes = _subplots(2 + (len(maps) + 1) // 2, 2)
+    for axis in axes[:2].flat:
+        axis.remove()
+    grid = axes[0][0].get_gridspec()
+    torque = figure.add_subplot(grid[0, :])
+    residual = figure.add_subplot(grid[1, :], sharex=torque)
+    start = 0.0
+    for number, own in enumerate(series):
+        time = [start + at for at in own["time"]]
+        rest = [m - p for m, p in zip(own["measured"], own["modelled"], strict=True)]
+        label = number == 0
+        torque.plot(time, own["measured"], "C0", lw=0.8, label="measured" if label else None)
+        torque.plot(time, own["modelled"], "C1", lw=0.8, label="modelled" if label else None)
+        residual.plot(time, rest, "C3", lw=0.8)
+        start = time[-1] if time else start
+    torque.set_title(result.title)
+    torque.set_ylabel(result.unit)
+    torque.legend(loc="upper right")
+    residual.set_ylabel(f"residual [{result.unit}]")
+    residual.set_xlabel("time [s]")
+    for axis, own in zip(axes[2:].flat, maps, strict=False):
+        bins = own["bins"]
+        at, mean, spread = ([one[key] for one in bins] for key in ("at", "mean", "spread"))
+        axis.errorbar(at, mean, spread, fmt="o-", ms=3, lw=0.8)
+        axis.set_xlabel(f"{own['signal']} [{own['unit']}]")
+        axis.set_ylabel(f"residual [{result.unit}]")
+    for axis in axes[2:].flat[len(maps) :]:
+        axis.remove()
+    return figure
+
+
+def diagnosis(result: Diagnosis) -> matplotlib.figure.Figure:
+    """The error held out, as it is and with each candidate."""
+    figure, axes = _subplots(1, 1)
+    rows = [("as it is", result.rms.held_out)]
+    rows += [(f"+ {own.effect}", own.held_out_after) for own in result.candidates]
+    names, errors = zip(*reversed(rows), strict=True)
+    axes[0][0].barh(names, errors)
+    axes[0][0].set_xlabel(f"error held out [{result.unit}]")
+    axes[0][0].set_title(f"{result.title}: {result.verdict}")
+    return figure
+
+
+def automatic(result: Automatic) -> matplotlib.figure.Figure:
+    """The error held out, falling step by step."""
+    figure, axes = _subplots(1, 1)
+    steps = result.steps
+    errors = [own.held_out_before for own in steps[:1]] + [own.held_out_after for own in steps]
+    names = (["as it was"] if steps else []) + [f"+ {own.effect}" for own in steps]
+    axes[0][0].plot(names, errors, "o-")
+    axes[0][0].set_ylabel(f"error held out [{result.last.unit}]")
+    axes[0][0].set_title(f"{result.title}: {result.verdict}")
+    return figure
+
+
+def sweep(result: Sweep) -> matplotlib.figure.Figure:
+    """The share of trials that is stable, by law over the round trip."""
+    figure, axes = _subplots(1, 1)
+    counts: dict[str, dict[float, list[bool]]] = {}
+    for row in result.to_dict()["rows"]:
+        counts.setdefault(row["law"], {}).setdefault(row["rtt_ms"], []).append(row["stable"])
+    for law, by_delay in counts.items():
+        delays = sorted(by_delay)
+        shares = [sum(by_delay[own]) / len(by_delay[own]) for own in delays]
+        axes[0][0].plot(delays, shares, "o-", label=law)
+    axes[0][0].set_xlabel("round trip [ms]")
+    axes[0][0].set_ylabel("share stable")
+    axes[0][0].legend()
+    return figure
