@@ -2,6 +2,7 @@
 //! open it, hold its model against its recordings, add an effect.
 
 mod add;
+mod arm;
 mod document;
 mod error;
 mod new;
@@ -23,6 +24,7 @@ use crate::{
 };
 
 pub use add::{Added, beside, own_effect};
+pub use arm::{AddedToArm, OpenedArm, open_arm};
 pub use error::{NewError, WorkError};
 pub use new::{Made, NewSignal, Request, Said, make};
 pub use paths::{Offered, offered};
@@ -53,8 +55,13 @@ impl Opened {
     ///
     /// # Errors
     ///
-    /// [`WorkError::Load`].
+    /// [`WorkError::Load`]; [`WorkError::WholeArm`].
     pub fn read(experiment: Experiment) -> Result<Opened, WorkError> {
+        if experiment.arm.is_some() {
+            return Err(WorkError::WholeArm {
+                title: experiment.title,
+            });
+        }
         let loaded = recording::load(&experiment)?;
         Ok(Opened {
             experiment,
@@ -116,12 +123,16 @@ impl Opened {
     }
 }
 
-/// Opens an experiment file, or a recording of a session: one experiment a joint.
+/// Opens an experiment file, or a recording of a session: one experiment a joint, also of
+/// an arm.
 ///
 /// # Errors
 ///
 /// [`WorkError`]: the file, or one of its recordings, cannot be used.
 pub fn open(path: &Path) -> Result<Vec<Opened>, WorkError> {
+    if let Some(arm) = open_arm(path)? {
+        return arm.joints();
+    }
     let experiments = Experiment::open(path, &experiment::data_folder())?;
     experiments.into_iter().map(Opened::read).collect()
 }
