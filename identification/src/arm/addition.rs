@@ -84,9 +84,17 @@ pub(super) fn parameters(arm: &PreparedArm<'_>) -> (BTreeMap<String, Parameter>,
         name_partner(&mut fitted.parameters, joint);
         let at = |name: &str| format!("{name}@{}", joint.name);
         let known = &fitted.parameters;
-        let named = fitted.not_excited.iter().filter(|name| known.contains_key(*name));
+        let named = fitted
+            .not_excited
+            .iter()
+            .filter(|name| known.contains_key(*name));
         not_excited.extend(named.map(|name| at(name)));
-        all.extend(fitted.parameters.iter().map(|(name, own)| (at(name), own.clone())));
+        all.extend(
+            fitted
+                .parameters
+                .iter()
+                .map(|(name, own)| (at(name), own.clone())),
+        );
     }
     for (effect, parameters) in of_arm(arm) {
         for (name, own) in parameters {

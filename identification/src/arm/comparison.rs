@@ -97,7 +97,9 @@ pub(super) fn of_arm(arm: &PreparedArm<'_>) -> BTreeMap<String, BTreeMap<String,
 fn in_words(mut comparison: Comparison, joint: &ArmJoint) -> Comparison {
     name_partner(&mut comparison.parameters, joint);
     let known = &comparison.parameters;
-    comparison.not_excited.retain(|name| known.contains_key(name));
+    comparison
+        .not_excited
+        .retain(|name| known.contains_key(name));
     comparison
 }
 

@@ -113,9 +113,10 @@ impl<'a> Contest<'a> {
 
 /// Mean square that a joint's own explanation takes off its error \[Nm²\].
 fn explained(own: &Diagnosis) -> f64 {
-    let by_name = own.candidates.first().map(|first| {
-        first.held_out_before.powi(2) - first.held_out_after.powi(2)
-    });
+    let by_name = own
+        .candidates
+        .first()
+        .map(|first| first.held_out_before.powi(2) - first.held_out_after.powi(2));
     let by_map = own.residual_depends_on.iter().map(|map| map.gain);
     match own.verdict {
         Verdict::Unexplained => by_map.fold(0.0, f64::max),

@@ -188,13 +188,20 @@ impl ArmSpec {
                     known: joints.join(", "),
                 });
             }
-            let own = term.joint.as_ref().is_none_or(|name| joints.get(at) == Some(name));
+            let own = term
+                .joint
+                .as_ref()
+                .is_none_or(|name| joints.get(at) == Some(name));
             if own && ArmEffect::of(term, joints)?.is_none() {
                 effects.push(term.effect.clone());
             }
         }
         Ok(ModelSpec {
-            inertia: self.armature.get(at).copied().unwrap_or(Inertia::Given(0.0)),
+            inertia: self
+                .armature
+                .get(at)
+                .copied()
+                .unwrap_or(Inertia::Given(0.0)),
             gear_ratio: self.gear_ratio.get(at).copied().flatten(),
             effects,
         })

@@ -167,7 +167,10 @@ pub fn diagnose(
     let joints = joints(&arm, &each, &helped);
     let verdict = match candidates.is_empty() {
         false => Verdict::Missing,
-        true if joints.values().any(|own| own.verdict == Verdict::Unexplained) => {
+        true if joints
+            .values()
+            .any(|own| own.verdict == Verdict::Unexplained) =>
+        {
             Verdict::Unexplained
         }
         true => Verdict::Complete,
@@ -239,7 +242,10 @@ fn still_passing(
     again.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
     // The others are the same torque in other words.
     again.truncate(1);
-    Ok(again.iter().map(|own| told.of_arm(own, Vec::new())).collect())
+    Ok(again
+        .iter()
+        .map(|own| told.of_arm(own, Vec::new()))
+        .collect())
 }
 
 fn joints(

@@ -110,16 +110,14 @@ impl ArmEffect {
             (id, None) if id == payload => Ok(Some(Self::Payload)),
             (id, None) if id == tilt => Ok(Some(Self::BaseTilt)),
             (id, None) if id == link => place("say of which link: link_inertia@JOINT"),
-            (id, Some(joint)) if id == link => {
-                match joints.iter().position(|own| own == joint) {
-                    Some(at) => Ok(Some(Self::LinkInertia(at))),
-                    None => Err(ArmError::UnknownJoint {
-                        effect: id.to_owned(),
-                        joint: joint.clone(),
-                        known: joints.join(", "),
-                    }),
-                }
-            }
+            (id, Some(joint)) if id == link => match joints.iter().position(|own| own == joint) {
+                Some(at) => Ok(Some(Self::LinkInertia(at))),
+                None => Err(ArmError::UnknownJoint {
+                    effect: id.to_owned(),
+                    joint: joint.clone(),
+                    known: joints.join(", "),
+                }),
+            },
             _ => Ok(None),
         }
     }
@@ -182,7 +180,8 @@ impl ArmEffect {
             let rows = body.regressor(states, at, &body.gravity);
             for (joint, own) in all.iter_mut().enumerate() {
                 for (column, values) in own.iter_mut().enumerate() {
-                    let each = (0..LINK_PARAMETERS).map(|k| rows[(joint, first + k)] * changes[(k, column)]);
+                    let each = (0..LINK_PARAMETERS)
+                        .map(|k| rows[(joint, first + k)] * changes[(k, column)]);
                     values.push(each.sum());
                 }
             }
@@ -269,8 +268,7 @@ fn point_inertia(mass: f64, moment: &Vector3<f64>) -> [f64; 6] {
     if mass.abs() <= 1e-6 {
         return [0.0; 6];
     }
-    let tensor =
-        Matrix3::identity() * moment.norm_squared() - moment * moment.transpose();
+    let tensor = Matrix3::identity() * moment.norm_squared() - moment * moment.transpose();
     packed(&(tensor / mass))
 }
 

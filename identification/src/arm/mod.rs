@@ -19,9 +19,9 @@ mod motion;
 mod prepared;
 mod rigid_body;
 mod shared;
-mod trial;
 #[cfg(test)]
 mod tests;
+mod trial;
 
 pub use addition::{ArmAddition, add};
 pub use comparison::{ArmComparison, compare};

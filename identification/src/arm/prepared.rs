@@ -145,7 +145,11 @@ impl<'a> PreparedArm<'a> {
         let each = self.motion.sessions.iter().zip(&self.motion.states);
         let mut sessions = each.zip(torques).map(|((session, states), torques)| {
             let mut extra = BTreeMap::new();
-            for (other, name) in names.iter().enumerate().filter(|(other, _)| *other != joint) {
+            for (other, name) in names
+                .iter()
+                .enumerate()
+                .filter(|(other, _)| *other != joint)
+            {
                 let position = session.position.get(other).cloned().unwrap_or_default();
                 extra.insert(format!("{POSITION_OF}{name}"), position);
                 let velocity = states.qd.iter().map(|own| own[other]).collect();
@@ -192,7 +196,10 @@ impl<'a> PreparedArm<'a> {
         let (mut at, mut largest) = (0, 0.0);
         for own in &mut self.corrections {
             let count = own.value.len();
-            own.covariance = fitted.covariance.view((at, at), (count, count)).into_owned();
+            own.covariance = fitted
+                .covariance
+                .view((at, at), (count, count))
+                .into_owned();
             for (k, value) in own.value.iter_mut().enumerate() {
                 let step = fitted.shared[at + k];
                 let error = own.covariance[(k, k)].max(0.0).sqrt();

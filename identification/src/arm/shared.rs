@@ -31,7 +31,8 @@ impl ArmColumns {
     /// Of `effects`, each linearised around coefficients.
     pub(super) fn new(arm: &PreparedArm<'_>, effects: &[(ArmEffect, Vec<f64>)]) -> Self {
         let count = effects.iter().map(|(effect, _)| effect.columns()).sum();
-        let empty = |sessions: usize| vec![vec![Vec::with_capacity(count); sessions]; arm.joints.len()];
+        let empty =
+            |sessions: usize| vec![vec![Vec::with_capacity(count); sessions]; arm.joints.len()];
         let fitted = arm.motion.fitted;
         let mut columns = Self {
             fitted: empty(fitted),
@@ -67,12 +68,7 @@ impl ArmColumns {
     /// Gram matrices of the shared columns and y, block by block, less what each
     /// session's own parameters of each joint explain of them; joints weighted, and
     /// less what the first `known` columns explain.
-    pub(super) fn reduced(
-        &self,
-        joints: &[ArmJoint],
-        weights: &[f64],
-        known: usize,
-    ) -> BlockGrams {
+    pub(super) fn reduced(&self, joints: &[ArmJoint], weights: &[f64], known: usize) -> BlockGrams {
         let mut sum: BlockGrams = Vec::new();
         for ((joint, grams), weight) in joints.iter().zip(&self.grams).zip(weights) {
             let (own, _) = reduced(&joint.design, grams);
@@ -176,9 +172,9 @@ fn solve(joints: &[ArmJoint], columns: &ArmColumns, weights: &[f64], fold: &Fold
         explained.push(own);
     }
     let shared = sum.solve();
-    let own = explained.iter().map(|own| {
-        own.column(columns.count) - own.columns(0, columns.count) * &shared
-    });
+    let own = explained
+        .iter()
+        .map(|own| own.column(columns.count) - own.columns(0, columns.count) * &shared);
     Solution {
         own: own.collect(),
         shared,

@@ -81,13 +81,19 @@ pub(super) fn try_one(
         columns = ArmColumns::new(arm, &effects);
         fit = shared::fit(&arm.joints, &columns, &weights);
     }
-    let folds = arm.joints.first().map_or(&[][..], |joint| &joint.design.folds);
+    let folds = arm
+        .joints
+        .first()
+        .map_or(&[][..], |joint| &joint.design.folds);
     let score = gain_of_folds(folds, &columns.reduced(&arm.joints, &weights, known));
     let size = effect.columns();
     Tried {
         effect,
         value: own(&fit).as_slice().to_vec(),
-        covariance: fit.covariance.view((known, known), (size, size)).into_owned(),
+        covariance: fit
+            .covariance
+            .view((known, known), (size, size))
+            .into_owned(),
         decreases: fit.decreases_from(before),
         score,
         fit,

@@ -67,7 +67,10 @@ impl JointCoupling {
         let [from, by, ..] = shape else {
             return None;
         };
-        let name = self.signals.get(*from as usize)?.strip_prefix(VELOCITY_OF)?;
+        let name = self
+            .signals
+            .get(*from as usize)?
+            .strip_prefix(VELOCITY_OF)?;
         let (motion, torque) = ROW.coefficients.split_at(2);
         Some((name, if *by == BY_TORQUE { torque } else { motion }))
     }

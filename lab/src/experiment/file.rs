@@ -22,6 +22,7 @@ pub(super) struct File {
     pub(super) filter: Option<ferntast_identification::StatedFilter>,
     pub(super) joint: Option<Joint>,
     pub(super) contact: Option<Contact>,
+    pub(super) arm: Option<Arm>,
     pub(super) signals: SignalsTable,
     pub(super) model: Model,
     pub(super) lineage: Option<Lineage>,
@@ -92,10 +93,12 @@ impl Default for ColumnNames {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a column or message path, or { column = \"…\", unit = \"…\" }"
+    expecting = "expected a column or message path, { column = \"…\", unit = \"…\" }, or of an arm a list of paths"
 )]
 pub(super) enum Source {
     Path(String),
+    /// Of an arm, one for each joint.
+    Each(Vec<String>),
     Table(SourceTable),
 }
 
@@ -122,6 +125,22 @@ pub(super) struct Joint {
 pub(super) struct Contact {
     /// Its corners in order, in the frame of the tip's position \[m\].
     pub(super) contour: Option<Vec<[f64; 2]>>,
+}
+
+/// A whole arm.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Arm {
+    pub(super) urdf: String,
+    /// From the base on.
+    pub(super) joints: Option<Vec<String>>,
+    /// In place of joints, the link that they begin at …
+    pub(super) base: Option<String>,
+    /// … and that they end at.
+    pub(super) tip: Option<String>,
+    pub(super) armature: Option<Vec<f64>>,
+    pub(super) gravity: Option<[f64; 3]>,
+    pub(super) gear_ratio: Option<Vec<f64>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -44,6 +44,8 @@
 //! effects = ["contact_coulomb", { name = "film", expression = "c*F_N*rd" }]
 //! ```
 //!
+//! A whole arm in place of a joint: a table `[arm]`, see `arm.rs` here.
+//!
 //! `position` goes along a straight contour as it is; `tip` is laid on the
 //! `contour`. [`contact`](self::contact) has the rest.
 //!
@@ -55,6 +57,7 @@
 //! environment variable of that name, else `../shared/data` seen from the
 //! working folder ([`data_folder`]).
 
+mod arm;
 mod contact;
 mod error;
 mod file;
@@ -75,6 +78,7 @@ use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, State
 
 use crate::table::Format;
 
+pub use arm::ArmTable;
 pub use contact::Contour;
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
@@ -109,9 +113,12 @@ pub struct Experiment {
     pub joint: JointType,
     /// Of a contact: what the tip is laid on, where it is not a place already.
     pub contour: Option<Contour>,
+    /// Of a whole arm: its joints and links. Signals are then those of its first joint,
+    /// and the others' extra ones.
+    pub arm: Option<ArmTable>,
     /// Where the signals are.
     pub signals: Signals,
-    /// The model that is believed.
+    /// The model that is believed; of an arm its effects as they are written, with `@joint`.
     pub model: ModelSpec,
     /// Where it came from.
     pub lineage: Option<Lineage>,
@@ -227,7 +234,22 @@ impl Experiment {
                 "the list is empty: name a recording".to_owned(),
             ));
         }
+        let arm = match file.arm {
+            None => None,
+            Some(_) if file.joint.is_some() || file.contact.is_some() => {
+                let reason =
+                    "there is a [joint] or [contact] too: an experiment is about one of the three";
+                return Err(refuse("arm", reason.to_owned()));
+            }
+            Some(table) => {
+                let urdf = of_text(table.urdf.clone());
+                Some(arm::table(table, urdf, &refuse)?)
+            }
+        };
         let (joint, contour) = match (file.joint, file.contact) {
+            (None, None) if arm.is_some() => {
+                (arm.as_ref().map(arm::joint_type).unwrap_or_default(), None)
+            }
             (Some(_), Some(_)) => {
                 let reason = "there is a [joint] too: an experiment is about one of the two";
                 return Err(refuse("contact", reason.to_owned()));
@@ -254,8 +276,12 @@ impl Experiment {
             filter: filter(file.filter, &refuse)?,
             joint,
             contour,
-            signals: signals::signals(file.signals, joint, &refuse)?,
-            model: model(file.model, joint, &refuse)?,
+            signals: match &arm {
+                Some(arm) => arm::signals(arm, file.signals, &refuse)?,
+                None => signals::signals(file.signals, joint, &refuse)?,
+            },
+            model: model(file.model, joint, arm.is_some(), &refuse)?,
+            arm,
             lineage: file.lineage,
         })
     }
@@ -292,9 +318,21 @@ fn is_name(name: &str) -> bool {
 fn model(
     model: file::Model,
     joint: JointType,
+    is_arm: bool,
     refuse: &impl Fn(&str, String) -> ExperimentError,
 ) -> Result<ModelSpec, ExperimentError> {
-    let inertia = inertia(model.inertia, joint, refuse)?;
+    let of_arm = [
+        ("inertia", model.inertia.is_some()),
+        ("gear_ratio", model.gear_ratio.is_some()),
+    ];
+    if let (Some((key, _)), true) = (of_arm.iter().find(|(_, given)| *given), is_arm) {
+        let reason = "an arm has one for each joint: armature and gear_ratio in [arm]".to_owned();
+        return Err(refuse(&format!("model.{key}"), reason));
+    }
+    let inertia = match is_arm {
+        true => Inertia::Given(0.0),
+        false => inertia(model.inertia, joint, refuse)?,
+    };
     if let Some(ratio) = model.gear_ratio
         && !(ratio.is_finite() && (1e-3..=1e6).contains(&ratio))
     {
@@ -352,7 +390,9 @@ fn checked(
     key: &str,
     refuse: &impl Fn(&str, String) -> ExperimentError,
 ) -> Result<CustomEffect, ExperimentError> {
-    if !is_name(&custom.name) {
+    // Of an arm the name may say of which joint.
+    let (name, _) = custom.name.split_once('@').unwrap_or((&custom.name, ""));
+    if !is_name(name) {
         return Err(refuse(&format!("{key}.name"), NO_NAME.to_owned()));
     }
     if custom.expression.trim().is_empty() {

@@ -71,6 +71,7 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
             filter: None,
             joint: JointType::Revolute,
             contour: None,
+            arm: None,
             signals: Signals {
                 position: format!("{measured}.position[{index}]"),
                 motor_torque: format!("{motor}.effort[{index}]"),

@@ -282,6 +282,11 @@ impl<R: Fn(&str, String) -> ExperimentError> Taker<'_, R> {
     fn take(&mut self, key: &str, source: file::Source) -> Result<String, ExperimentError> {
         let table = match source {
             file::Source::Path(path) => return Ok(path),
+            file::Source::Each(_) => {
+                let reason =
+                    "a list is of the joints of an [arm]: give one path or column".to_owned();
+                return Err((self.refuse)(&format!("signals.{key}"), reason));
+            }
             file::Source::Table(table) => table,
         };
         let own = match key {

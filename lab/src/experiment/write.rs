@@ -80,6 +80,9 @@ pub fn write_child(parent: &Experiment, step: &NextStep, output: &Path) -> Resul
             turn_paths(item, &from, &to);
         }
     }
+    if let Some(urdf) = document.get_mut("arm").and_then(|arm| arm.get_mut("urdf")) {
+        turn_paths(urdf, &from, &to);
+    }
     let effects = document
         .get_mut("model")
         .and_then(|model| model.get_mut("effects"))

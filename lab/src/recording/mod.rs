@@ -152,8 +152,9 @@ fn wanted(experiment: &Experiment) -> Vec<Wanted> {
             TIP_X | TIP_Y => "tip",
             key => key,
         };
-        // The unit of an extra signal is for people.
-        let unit = signals.unit(key).filter(|_| !key.starts_with("extra."));
+        // The unit of an extra signal is for people, but where it is that of a joint.
+        let is_of_people = key.starts_with("extra.") && experiment.arm.is_none();
+        let unit = signals.unit(key).filter(|_| !is_of_people);
         Wanted {
             unit,
             time: signals.times.get(key).cloned(),

@@ -118,12 +118,23 @@ impl Opened {
     ///
     /// [`WorkError::Prepare`], [`WorkError::Write`]; nothing is written then.
     pub fn add(&self, effect: &Term, output: &Path) -> Result<Added, WorkError> {
+        // Of an arm the file has all joints, and the title is this one's name.
+        let written = match (&self.experiment.arm, effect) {
+            (Some(_), Term::Catalogue(id)) => {
+                Term::Catalogue(format!("{id}@{}", self.experiment.title))
+            }
+            (Some(_), Term::Custom(custom)) => Term::Custom(CustomEffect {
+                name: format!("{}@{}", custom.name, self.experiment.title),
+                ..custom.clone()
+            }),
+            (None, effect) => effect.clone(),
+        };
         let mut addition: Addition = add(&self.dataset, &self.experiment.model, effect)
             .map_err(|error| self.refuse(error))?;
         units::in_units_of(&self.experiment, &mut addition.parameters);
         units::implausible(&self.experiment, &mut addition.soundness);
         let step = NextStep {
-            effect: Some(effect.clone()),
+            effect: Some(written),
             twin_recording: None,
             held_out_before: addition.held_out_before,
             held_out_after: addition.held_out_after,

@@ -31,6 +31,22 @@ pub enum WorkError {
         /// What is lacking.
         source: Box<PrepareError>,
     },
+    /// It is about an arm where it has to be about a joint or a contact.
+    #[error(
+        "{title}: it is about a whole arm, and this goes with one joint; see ferntast lab --help"
+    )]
+    WholeArm {
+        /// The experiment.
+        title: String,
+    },
+    /// The data or the model of an arm lack something.
+    #[error("{title}: {source}")]
+    Arm {
+        /// The experiment.
+        title: String,
+        /// What is lacking.
+        source: Box<ferntast_identification::arm::ArmError>,
+    },
     /// The new experiment file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

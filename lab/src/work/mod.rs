@@ -2,6 +2,7 @@
 //! open it, hold its model against its recordings, add an effect.
 
 mod add;
+mod arm;
 mod auto;
 mod document;
 mod equation;
@@ -28,6 +29,7 @@ use crate::{
 };
 
 pub use add::{Added, beside, own_effect, refuse_existing};
+pub use arm::{AddedToArm, OpenedArm, open_arm};
 pub use auto::{AutoEvent, AutoOptions, Automatic, Step, auto};
 pub use equation::Formula;
 pub use error::{NewError, WorkError};
@@ -88,8 +90,13 @@ impl Opened {
     ///
     /// # Errors
     ///
-    /// [`WorkError::Load`].
+    /// [`WorkError::Load`]; [`WorkError::WholeArm`].
     pub fn read(experiment: Experiment) -> Result<Opened, WorkError> {
+        if experiment.arm.is_some() {
+            return Err(WorkError::WholeArm {
+                title: experiment.title,
+            });
+        }
         let loaded = recording::load(&experiment)?;
         Ok(Opened {
             experiment,
@@ -181,12 +188,16 @@ impl Opened {
     }
 }
 
-/// Opens an experiment file, or a recording of a session: one experiment a joint.
+/// Opens an experiment file, or a recording of a session: one experiment a joint, also of
+/// an arm.
 ///
 /// # Errors
 ///
 /// [`WorkError`]: the file, or one of its recordings, cannot be used.
 pub fn open(path: &Path) -> Result<Vec<Opened>, WorkError> {
+    if let Some(arm) = open_arm(path)? {
+        return arm.joints();
+    }
     let experiments = Experiment::open(path, &experiment::data_folder())?;
     experiments.into_iter().map(Opened::read).collect()
 }

@@ -122,6 +122,7 @@ pub fn read(folder: &Path) -> Result<[Vec<Row>; 3], IdentifyError> {
         filter: None,
         joint: JointType::Revolute,
         contour: None,
+        arm: None,
         signals: Signals {
             position: format!("{measured}.position[0]"),
             motor_torque: format!("{motor}.effort[0]"),

@@ -64,8 +64,7 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
     let mut found: Vec<Dependence> = Vec::new();
     for choice in choices {
         let chosen: Vec<&Channel> = choice.iter().map(|i| &channels[*i]).collect();
-        let with_knots =
-            |knots| design.with(&basis(prepared, &chosen, Direction::Either, knots));
+        let with_knots = |knots| design.with(&basis(prepared, &chosen, Direction::Either, knots));
         let grams = with_knots(KNOTS_PAIR);
         // The model's own parameters, one set a session, can absorb what changes
         // with temperature or date only; shared ones cannot, but the variation of

@@ -1,0 +1,271 @@
+//! An experiment on a whole arm in place of one joint.
+//!
+//! ```toml
+//! recording = "run.mcap"
+//! [arm]
+//! urdf = "panda.urdf"
+//! joints = ["panda_joint1", "panda_joint2"]   # from the base on; or base = "…", tip = "…" (links)
+//! armature = [0.6, 0.6]                       # kg m², motor and gear of each joint; else fitted
+//! gravity = [0.0, 0.0, -9.81]                 # m/s², in the base's frame; this is the default
+//! gear_ratio = [100, 100]                     # optional
+//! [signals]                                   # arrays by joint name, or one path or column each:
+//! position = "/joint_states.position"         # ["q1", "q2"], "q_{joint}"
+//! motor_torque = "/joint_states.effort"
+//! [model]                                     # of every joint, of one, of the arm
+//! effects = ["coulomb", "viscous", "stribeck@panda_joint2", "payload", "link_inertia@panda_joint1"]
+//! ```
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use ferntast_identification::JointType;
+use ferntast_urdf::{Arm, JointType as UrdfJointType, Robot};
+
+use super::{Experiment, ExperimentError, Signals, file};
+use crate::unit::{Quantity, Unit};
+
+/// Gravity in the frame of a base that stands upright \[m/s²\].
+const UPRIGHT: [f64; 3] = [0.0, 0.0, -9.81];
+/// Extra signals that are a joint's position or torque have its name behind these.
+const POSITION: &str = "position ";
+const MOTOR_TORQUE: &str = "motor_torque ";
+
+/// The table `[arm]`.
+#[derive(Clone, Debug)]
+pub struct ArmTable {
+    /// The URDF.
+    pub urdf: PathBuf,
+    /// Joints and links of it.
+    pub arm: Arm,
+    /// Inertia of motor and gear of each joint \[kg m²\] or \[kg\]; `None`: fitted.
+    pub armature: Option<Vec<f64>>,
+    /// Gravity in the base frame \[m/s²\].
+    pub gravity: [f64; 3],
+    /// Gear ratio of each joint.
+    pub gear_ratio: Option<Vec<f64>>,
+}
+
+/// What the table says is what the file says.
+impl PartialEq for ArmTable {
+    fn eq(&self, other: &Self) -> bool {
+        (self.urdf == other.urdf && self.arm.joints == other.arm.joints)
+            && (self.armature == other.armature && self.gravity == other.gravity)
+            && self.gear_ratio == other.gear_ratio
+    }
+}
+
+impl ArmTable {
+    /// Names of its joints, from the base on.
+    #[must_use]
+    pub fn joints(&self) -> &[String] {
+        &self.arm.joints
+    }
+}
+
+/// Reads the URDF that the table names.
+pub(super) fn table(
+    table: file::Arm,
+    urdf: PathBuf,
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<ArmTable, ExperimentError> {
+    let bytes = std::fs::read(&urdf).map_err(|source| ExperimentError::Read {
+        path: urdf.clone(),
+        source,
+    })?;
+    let wrong = |reason: String| refuse("arm.urdf", format!("{}: {reason}", urdf.display()));
+    let robot = Robot::read(&bytes).map_err(|error| wrong(error.to_string()))?;
+    let arm = match (&table.joints, &table.base, &table.tip) {
+        (Some(joints), _, _) => robot.of_joints(joints),
+        (None, Some(base), Some(tip)) => robot.between(base, tip),
+        (None, ..) => {
+            let movable = |kind| kind != UrdfJointType::Fixed;
+            let names = robot.joints.iter().filter(|own| movable(own.joint_type));
+            let names: Vec<&str> = names.map(|own| own.name.as_str()).collect();
+            let reason = format!(
+                "it is missing: list the joints from the base on, of {}; or give the links base and tip",
+                names.join(", ")
+            );
+            return Err(refuse("arm.joints", reason));
+        }
+    };
+    let arm = arm.map_err(|error| wrong(error.to_string()))?;
+    let count = arm.joints.len();
+    let each = |key: &str, values: &Option<Vec<f64>>, least: f64| {
+        let Some(values) = values else {
+            return Ok(());
+        };
+        let reason = if values.len() != count {
+            format!("{} values for {count} joints; give one each", values.len())
+        } else if let Some(value) = values.iter().find(|own| !(least..=1e6).contains(*own)) {
+            format!("{value} is outside {least} … 1000000")
+        } else {
+            return Ok(());
+        };
+        Err(refuse(key, reason))
+    };
+    each("arm.armature", &table.armature, 0.0)?;
+    each("arm.gear_ratio", &table.gear_ratio, 1e-3)?;
+    let gravity = table.gravity.unwrap_or(UPRIGHT);
+    if !gravity.iter().all(|own| own.abs() <= 100.0) {
+        let reason = format!("{gravity:?} is no acceleration within 100 m/s²");
+        return Err(refuse("arm.gravity", reason));
+    }
+    Ok(ArmTable {
+        urdf,
+        arm,
+        armature: table.armature,
+        gravity,
+        gear_ratio: table.gear_ratio,
+    })
+}
+
+/// Where position and torque of every joint are: those of the first as of one joint, those of
+/// the others as extra signals.
+pub(super) fn signals(
+    arm: &ArmTable,
+    table: file::SignalsTable,
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<Signals, ExperimentError> {
+    let of_others = [
+        ("tip", table.tip.is_some()),
+        ("tangential_force", table.tangential_force.is_some()),
+        ("normal_force", table.normal_force.is_some()),
+        ("joint_torque", table.joint_torque.is_some()),
+        ("temperature", table.temperature.is_some()),
+        ("extra", !table.extra.is_empty()),
+    ];
+    if let Some((key, _)) = of_others.iter().find(|(_, given)| *given) {
+        let reason = "signals of an [arm] are position, motor_torque, valid and time".to_owned();
+        return Err(refuse(&format!("signals.{key}"), reason));
+    }
+    let mut signals = Signals::default();
+    let sources = [
+        ("position", POSITION, table.position),
+        ("motor_torque", MOTOR_TORQUE, table.motor_torque),
+    ];
+    for (key, prefix, source) in sources {
+        let source = source.ok_or_else(|| {
+            let reason = "it is missing: an array by joint name, as in \"/joint_states.position\"";
+            refuse(&format!("signals.{key}"), reason.to_owned())
+        })?;
+        let (paths, unit) = paths(arm, key, source, refuse)?;
+        for (at, (path, joint)) in paths.into_iter().zip(arm.joints()).enumerate() {
+            let name = match at {
+                0 => key.to_owned(),
+                _ => format!("extra.{prefix}{joint}"),
+            };
+            if let Some(unit) = unit {
+                signals.units.insert(name, unit);
+            }
+            match (at, key) {
+                (0, "position") => signals.position = path,
+                (0, _) => signals.motor_torque = path,
+                _ => {
+                    signals.extra.insert(format!("{prefix}{joint}"), path);
+                }
+            }
+        }
+    }
+    let mut plain = |key: &str, source: Option<file::Source>| match source {
+        None => Ok(None),
+        Some(file::Source::Path(path)) => Ok(Some(path)),
+        Some(file::Source::Table(table)) if table.time.is_none() => {
+            if let Some(unit) = table.unit.as_deref().and_then(Unit::parse) {
+                signals.units.insert(key.to_owned(), unit);
+            }
+            Ok(Some(table.column))
+        }
+        Some(_) => Err(refuse(
+            &format!("signals.{key}"),
+            "give one column".to_owned(),
+        )),
+    };
+    let (valid, time) = (plain("valid", table.valid)?, plain("time", table.time)?);
+    (signals.valid, signals.time) = (valid, time);
+    Ok(signals)
+}
+
+type Paths = (Vec<String>, Option<Unit>);
+
+fn paths(
+    arm: &ArmTable,
+    key: &str,
+    source: file::Source,
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<Paths, ExperimentError> {
+    let joints = arm.joints();
+    let wrong = |reason: String| refuse(&format!("signals.{key}"), reason);
+    let one = |text: &str| -> Result<Vec<String>, ExperimentError> {
+        if text.contains("{joint}") {
+            let each = joints.iter().map(|joint| text.replace("{joint}", joint));
+            return Ok(each.collect());
+        }
+        if !text.starts_with('/') || text.contains(['[', '{']) {
+            return Err(wrong(format!(
+                "{text:?} is of one joint: name an array (\"/joint_states.position\"), or list one path or column for each of {}",
+                joints.join(", ")
+            )));
+        }
+        let (array, function) = match text.find(".@") {
+            Some(at) => text.split_at(at),
+            None => (text, ""),
+        };
+        let each = joints.iter();
+        Ok(each
+            .map(|joint| format!("{array}[:]{{name=={joint:?}}}{function}"))
+            .collect())
+    };
+    match source {
+        file::Source::Path(text) => Ok((one(&text)?, None)),
+        file::Source::Each(paths) if paths.len() == joints.len() => Ok((paths, None)),
+        file::Source::Each(paths) => Err(wrong(format!(
+            "{} paths for {} joints; give one each",
+            paths.len(),
+            joints.len()
+        ))),
+        file::Source::Table(table) => {
+            let text = table.unit.as_deref();
+            let unit = text.and_then(Unit::parse);
+            let allowed: &[Quantity] = match key {
+                "position" => &[Quantity::Angle, Quantity::Length],
+                _ => &[Quantity::Torque, Quantity::Force],
+            };
+            let fits = unit.is_none_or(|unit| allowed.contains(&unit.quantity()));
+            if text.is_some() && (unit.is_none() || !fits) {
+                return Err(wrong(format!(
+                    "unit {:?} is none of it: the torques of an arm's links are in Nm, so that the motors' have to be, too",
+                    text.unwrap_or_default()
+                )));
+            }
+            Ok((one(&table.column)?, unit))
+        }
+    }
+}
+
+impl Experiment {
+    /// Of what was read, positions and torques of all joints, session by session.
+    pub(crate) fn of_joints(
+        &self,
+        position: &[f64],
+        motor_torque: &[f64],
+        extra: &BTreeMap<String, Vec<f64>>,
+    ) -> Option<[Vec<Vec<f64>>; 2]> {
+        let joints = self.arm.as_ref()?.joints();
+        let all = |first: &[f64], prefix: &str| -> Option<Vec<Vec<f64>>> {
+            let others = joints.iter().skip(1);
+            let others = others.map(|joint| extra.get(&format!("{prefix}{joint}")).cloned());
+            std::iter::once(Some(first.to_vec()))
+                .chain(others)
+                .collect()
+        };
+        Some([all(position, POSITION)?, all(motor_torque, MOTOR_TORQUE)?])
+    }
+}
+
+/// Kind of the first joint, whose signals stand for it.
+pub(super) fn joint_type(arm: &ArmTable) -> JointType {
+    use ferntast_model::rigid_body::JointKind;
+    match arm.arm.chain.kinds().first() {
+        Some(JointKind::Prismatic) => JointType::Prismatic,
+        _ => JointType::Revolute,
+    }
+}

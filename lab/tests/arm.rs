@@ -1,0 +1,199 @@
+//! Experiments about a whole arm: what the file says, and how all joints are read.
+
+use std::{f64::consts::TAU, fmt::Write as _, fs, path::Path};
+
+use ferntast_identification::{Term, Verdict};
+use ferntast_lab::{
+    experiment::Experiment,
+    work::{self, OpenedArm, open_arm},
+};
+use ferntast_model::{Joints, rigid_body::Vector3};
+use tempfile::TempDir;
+
+const URDF: &str = r#"<robot name="two"><link name="base"/>
+<link name="upper"><inertial><origin xyz="0.2 0 0"/><mass value="2"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.03"/></inertial></link>
+<link name="lower"><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
+<inertia ixx="0.005" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+<joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+<joint name="elbow" type="continuous"><parent link="upper"/><child link="lower"/>
+<origin xyz="0.4 0 0"/><axis xyz="0 1 0"/></joint></robot>"#;
+
+const ARM: &str =
+    "recording = \"run.csv\"\n[arm]\nurdf = \"two.urdf\"\njoints = [\"shoulder\", \"elbow\"]\n";
+const SIGNALS: &str = "[signals]\nposition = \"q_{joint}\"\nmotor_torque = \"tau_{joint}\"\n";
+const MODEL: &str = "[model]\neffects = [\"coulomb\", \"viscous\"]\n";
+
+/// A folder with the URDF and a recording of two sessions, in which a payload of 0.4 kg
+/// hangs at the end of the lower arm where `loaded`.
+fn folder(loaded: bool) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("two.urdf"), URDF).unwrap();
+    let ball = "<origin xyz=\"0.15 0 0\"/><mass value=\"1\"/>";
+    // 1 kg at 0.15 m and 0.4 kg at 0.3 m: 1.4 kg at 0.193 m.
+    let heavy = "<origin xyz=\"0.192857142857 0 0\"/><mass value=\"1.4\"/>";
+    let inertia = 0.01 + 1.0 * 0.042857142857_f64.powi(2) + 0.4 * 0.107142857143_f64.powi(2);
+    let turning = format!("iyy=\"{inertia}\" iyz=\"0\" izz=\"{inertia}\"");
+    let truth = match loaded {
+        true => URDF
+            .replace(ball, heavy)
+            .replace("iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"", &turning),
+        false => URDF.to_owned(),
+    };
+    let robot = ferntast_urdf::Robot::read(truth.as_bytes()).unwrap();
+    let chain = robot.of_joints(&["shoulder", "elbow"]).unwrap().chain;
+    let gravity = Vector3::new(0.0, 0.0, -9.81);
+    let mut text = "t,q_shoulder,q_elbow,tau_shoulder,tau_elbow\n".to_owned();
+    let mut state = 1_u64;
+    let mut noise = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    for k in 0..2 {
+        for i in 0..4000 {
+            let t = f64::from(i) * 0.005;
+            let mut values = [[0.0; 2]; 3];
+            for joint in 0..2 {
+                for (size, rate) in [(0.6, 0.13), (0.3, 0.41), (0.08, 0.9)] {
+                    let rate = TAU * rate * (1.0 + 0.3 * f64::from(joint) + 0.05 * f64::from(k));
+                    let (sine, cosine) = (rate * t + f64::from(joint + k)).sin_cos();
+                    let at = joint as usize;
+                    values[0][at] += size * sine;
+                    values[1][at] += size * rate * cosine;
+                    values[2][at] -= size * rate * rate * sine;
+                }
+            }
+            let [q, qd, qdd] = values.map(|own| Joints::from_slice(&own).unwrap());
+            let links = chain.inverse_dynamics(&q, &qd, &qdd, &gravity);
+            let torque = [0, 1].map(|at| {
+                let friction = 0.8 * qd[at].signum() + 0.5 * qd[at];
+                links[at] + [0.3, 0.1][at] * qdd[at] + friction + 0.1 * noise()
+            });
+            let time = t + 100.0 * f64::from(k);
+            writeln!(text, "{time},{},{},{},{}", q[0], q[1], torque[0], torque[1]).unwrap();
+        }
+    }
+    fs::write(folder.path().join("run.csv"), text).unwrap();
+    folder
+}
+
+fn open(folder: &TempDir, text: &str) -> OpenedArm {
+    let path = folder.path().join("e.toml");
+    fs::write(&path, text).unwrap();
+    open_arm(&path).unwrap().unwrap()
+}
+
+fn refused(folder: &TempDir, text: &str) -> String {
+    let path = folder.path().join("e.toml");
+    Experiment::parse(text, &path, Path::new("/nowhere"))
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn armatures_that_are_not_given_are_fitted_with_friction_joint_by_joint() {
+    let folder = folder(false);
+    let opened = open(&folder, &format!("{ARM}{SIGNALS}{MODEL}"));
+    let found = opened.compare().unwrap();
+    for (joint, inertia) in [("shoulder", 0.3), ("elbow", 0.1)] {
+        let own = &found.joints[joint];
+        let value = |name: &str| own.parameters[name].value;
+        assert!((value("inertia") - inertia).abs() < 0.01 * inertia);
+        assert!((value("b0") - 0.8).abs() < 0.01 && (value("b1") - 0.5).abs() < 0.02);
+        // Uniform noise of 0.1 Nm between its ends.
+        assert!(own.rms.held_out > 0.004 && own.rms.held_out < 0.03);
+    }
+    // A list of columns is the same.
+    let listed = SIGNALS.replace("\"q_{joint}\"", "[\"q_shoulder\", \"q_elbow\"]");
+    let again = open(&folder, &format!("{ARM}{listed}{MODEL}"));
+    assert_eq!(again.dataset, opened.dataset);
+    // Each joint can be looked at by itself.
+    let joints = work::open(&folder.path().join("e.toml")).unwrap();
+    let titles = joints.iter().map(|own| own.experiment.title.as_str());
+    assert_eq!(titles.collect::<Vec<_>>(), ["shoulder", "elbow"]);
+    let alone = joints[1].compare().unwrap();
+    assert_eq!(alone.rms, found.joints["elbow"].rms);
+}
+
+#[test]
+fn what_is_missing_in_an_arm_is_written_into_its_file() {
+    let folder = folder(true);
+    let given = format!("{ARM}armature = [0.3, 0.1]\n{SIGNALS}{MODEL}");
+    let opened = open(&folder, &given);
+    let told = opened.diagnose(&mut |_| ()).unwrap();
+    assert_eq!(told.candidates[0].named.effect, "payload");
+    let elsewhere = folder.path().join("steps");
+    fs::create_dir(&elsewhere).unwrap();
+    let output = elsewhere.join("e2.toml");
+    let payload = Term::Catalogue("payload".to_owned());
+    let added = opened.add(&payload, &output).unwrap();
+    assert!(added.held_out_after < 0.2 * added.held_out_before);
+    assert!((added.parameters["payload.mass"].value - 0.4).abs() < 0.01);
+    assert!((added.parameters["payload.x"].value - 0.3).abs() < 0.01);
+    // URDF and recording are found from there, too.
+    let text = fs::read_to_string(&output).unwrap();
+    assert!(text.contains("urdf = \"../two.urdf\""), "{text}");
+    let second = open_arm(&output).unwrap().unwrap();
+    let left = second.diagnose(&mut |_| ()).unwrap();
+    assert_eq!(left.verdict, Verdict::Complete, "{:#?}", left.candidates);
+    assert!(second.add(&payload, &elsewhere.join("e3.toml")).is_err());
+}
+
+#[test]
+fn mistakes_in_the_file_are_told_with_their_key() {
+    let folder = folder(false);
+    let all = format!("{ARM}{SIGNALS}{MODEL}");
+    let with = |old: &str, new: &str| refused(&folder, &all.replace(old, new));
+    assert!(with("two.urdf", "three.urdf").contains("three.urdf"));
+    assert!(with("\"elbow\"]", "\"elbo\"]").contains("did you mean \"elbow\"?"));
+    let none = with("joints = [\"shoulder\", \"elbow\"]\n", "");
+    assert!(
+        none.contains("arm.joints") && none.contains("shoulder, elbow"),
+        "{none}"
+    );
+    let one = with("\"q_{joint}\"", "\"q_elbow\"");
+    assert!(
+        one.contains("signals.position") && one.contains("one path or column"),
+        "{one}"
+    );
+    let count = with("\"q_{joint}\"", "[\"q_elbow\"]");
+    assert!(count.contains("1 paths for 2 joints"), "{count}");
+    let armature = with("[signals]", "armature = [1]\n[signals]");
+    assert!(
+        armature.contains("arm.armature: 1 values for 2 joints"),
+        "{armature}"
+    );
+    let inertia = with("[model]", "[model]\ninertia = 1");
+    assert!(
+        inertia.contains("armature and gear_ratio in [arm]"),
+        "{inertia}"
+    );
+    let unit = with(
+        "\"tau_{joint}\"",
+        "{ column = \"tau_{joint}\", unit = \"A\" }",
+    );
+    assert!(
+        unit.contains("signals.motor_torque") && unit.contains("Nm"),
+        "{unit}"
+    );
+    let both = with("[model]", "[joint]\n[model]");
+    assert!(both.contains("one of the three"), "{both}");
+}
+
+#[test]
+fn arrays_of_messages_are_matched_by_name() {
+    let folder = folder(false);
+    let signals =
+        "[signals]\nposition = \"/js.position.@deg2rad\"\nmotor_torque = \"/js.effort\"\n";
+    let text = format!("{ARM}{signals}{MODEL}").replace("run.csv", "run.mcap");
+    let path = folder.path().join("e.toml");
+    let read = Experiment::parse(&text, &path, Path::new("/nowhere")).unwrap();
+    assert_eq!(
+        read.signals.position,
+        "/js.position[:]{name==\"shoulder\"}.@deg2rad"
+    );
+    let other = &read.signals.extra["motor_torque elbow"];
+    assert_eq!(other, "/js.effort[:]{name==\"elbow\"}");
+}
