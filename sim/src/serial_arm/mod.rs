@@ -12,26 +12,25 @@
 
 mod braking;
 mod cholesky;
+mod output;
 mod parameters;
 mod plant;
+mod substep;
 mod world;
 
+pub use output::{DriveFlags, Measurement, Truth};
 pub use parameters::{SerialArmParameters, SerialJointParameters};
 pub use world::{Motion, Near, ObjectParameters, Shape};
 
 use ferntast_model::{
     JointCount, Joints, ParameterError,
-    rigid_body::{Chain, ChainError, JointKind, Placement, PositionLimits, Vector3},
+    rigid_body::{Chain, ChainError, Vector3},
 };
 
 use crate::arm::{Encoder, LONGEST_ADVANCE, Noise, Thermal, TorqueSensor, sensors};
 use plant::{Drive, Plant};
+use substep::substep;
 use world::Object;
-
-/// Longest substep where the file gives none \[s\].
-const LONGEST_SUBSTEP: f64 = 5e-4;
-/// Postures that are looked at for the fastest vibration of the tip.
-const POSTURES: usize = 64;
 
 /// Why there is no arm.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -57,78 +56,6 @@ pub enum SerialArmError {
         /// What it touches.
         object: String,
     },
-}
-
-/// What the drives made of a command.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriveFlags {
-    /// The torque was NaN or infinite; zero was applied instead.
-    pub not_finite: Joints<bool>,
-    /// The torque was beyond the drive's limit and cut to it.
-    pub limited: Joints<bool>,
-}
-
-/// What the sensors give, all on the joint side of the gear.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measurement {
-    /// Motor positions θ \[rad\] or \[m\], in steps of the encoder.
-    pub motor_position: Joints<f64>,
-    /// Motor velocities \[rad/s\] or \[m/s\]: filtered difference of the encoder.
-    pub motor_velocity: Joints<f64>,
-    /// Joint torques τ \[Nm\] or \[N\] at the torque sensors.
-    pub joint_torque: Joints<f64>,
-    /// The torque sensor is at the end of its range.
-    pub torque_saturated: Joints<bool>,
-    /// Motor currents \[A\].
-    pub motor_current: Joints<f64>,
-    /// Motor torques τ_m \[Nm\] or \[N\] from the currents, with the motor constant that
-    /// is believed.
-    pub motor_torque_from_current: Joints<f64>,
-    /// Temperatures \[degC\].
-    pub temperature: Joints<f64>,
-}
-
-/// What is true, for judges only.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Truth {
-    /// Link positions q and velocities q̇.
-    pub position: Joints<f64>,
-    /// Link velocities q̇.
-    pub velocity: Joints<f64>,
-    /// Motor positions θ.
-    pub motor_position: Joints<f64>,
-    /// Motor velocities θ̇.
-    pub motor_velocity: Joints<f64>,
-    /// Joint torques τ.
-    pub joint_torque: Joints<f64>,
-    /// Temperatures of the gears \[degC\].
-    pub temperature: Joints<f64>,
-    /// The tip's frame in the base frame.
-    pub tip: Placement,
-    /// Velocity of the tip \[m/s\], base frame.
-    pub tip_velocity: Vector3<f64>,
-    /// Angular velocity of the tip \[rad/s\], base frame.
-    pub tip_turning: Vector3<f64>,
-    /// Contact force on the tip \[N\], base frame, all things together.
-    pub force: Vector3<f64>,
-    /// Moment of it about the middle of the tip \[Nm\], base frame.
-    pub moment: Vector3<f64>,
-    /// The thing that pushes most, by its place in the list; `None` without contact.
-    pub object: Option<usize>,
-    /// Its normal force F_N ≥ 0 \[N\].
-    pub normal_force: f64,
-    /// Its normal, out of it.
-    pub normal: Vector3<f64>,
-    /// Velocity of the tip along it \[m/s\].
-    pub sliding: Vector3<f64>,
-    /// Energy of all parts, kinetic, elastic and potential \[J\].
-    pub energy: f64,
-    /// Work that the contact did on the tip since the start \[J\].
-    pub contact_work: f64,
-    /// Work that the motors' torques did since the start \[J\].
-    pub motor_work: f64,
-    /// Heat of friction in all gears since the start \[J\].
-    pub friction_heat: f64,
 }
 
 /// One joint's drive and sensors.
@@ -382,47 +309,4 @@ fn objects(plant: &Plant, parameters: &SerialArmParameters) -> Result<Vec<Object
         Ok(object)
     });
     each.collect()
-}
-
-/// A substep with h ω ≤ 1/2 for the fastest vibration of the tip on what it touches; the
-/// integration breaks down at 2. Gears are integrated at any stiffness.
-fn substep(plant: &Plant, given: Option<f64>) -> Result<f64, ParameterError> {
-    let stiffest = plant
-        .objects
-        .iter()
-        .map(Object::stiffness)
-        .fold(0.0, f64::max);
-    let postures = (0..POSTURES).map(|number| posture(plant.chain(), number));
-    let fastest = std::iter::once(plant.q)
-        .chain(postures)
-        .map(|q| plant.contact_rate(&q, stiffest))
-        .fold(0.0, f64::max);
-    let longest = 0.5 / fastest.sqrt();
-    match given {
-        None => Ok(longest.min(LONGEST_SUBSTEP)),
-        Some(given) if given <= longest => Ok(given),
-        Some(given) => Err(ParameterError::Inconsistent {
-            key: "substep".into(),
-            reason: format!(
-                "{given} s does not resolve how fast the tip vibrates on its stiffest surface \
-                 ({stiffest} N/m); set it to {longest:.1e} s or less, or leave it out"
-            ),
-        }),
-    }
-}
-
-/// One of many postures, spread evenly between the joints' ends.
-fn posture(chain: &Chain, number: usize) -> Joints<f64> {
-    // The additive recurrence of Roberts, in as many dimensions as there are joints.
-    let ratio = 1.0 / 1.08;
-    let mut step = 1.0;
-    Joints::from_fn(chain.count(), |joint| {
-        step *= ratio;
-        let share = (0.5 + number as f64 * step).fract();
-        let turns = chain.kinds()[joint] == JointKind::Revolute;
-        let reach = if turns { std::f64::consts::PI } else { 1.0 };
-        let PositionLimits { lower, upper } = chain.limits()[joint];
-        let (lower, upper) = (lower.max(-reach), upper.min(reach));
-        lower + (upper - lower) * share
-    })
 }
