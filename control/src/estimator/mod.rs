@@ -10,8 +10,11 @@
 //!
 //! Which surface is touched follows from geometry; that it is touched, from
 //! the normal force, with hysteresis. While the tip is surely free, the torque
-//! sensors' zeros are found and taken off ([`zeroing_time`](EstimatorParameters::zeroing_time)).
+//! sensors' zeros are found and taken off ([`zeroing_time`](EstimatorParameters::zeroing_time));
+//! while it slides their gains and the contour's turn, where that is asked for
+//! ([`calibration_time`](EstimatorParameters::calibration_time)).
 
+mod calibration;
 mod coefficient;
 mod estimate;
 mod filter;
@@ -24,6 +27,7 @@ mod split;
 mod systematic;
 mod zeroing;
 
+pub use calibration::{Calibrated, Calibration, Push, SelfCalibration};
 pub use coefficient::{Coefficient, CoefficientEstimator};
 pub use estimate::{ContactEstimate, JointMeasurement};
 pub use filter::DerivativeFilter;
@@ -32,16 +36,18 @@ pub use motor_current::{
     MotorCurrentParameters, MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor,
 };
 pub use parameters::EstimatorParameters;
-pub use systematic::Uncertainty;
+pub use systematic::{
+    ERRORS, SensorErrors, SplitErrors, Uncertainty, independent_gains, sensor_errors, split_errors,
+};
 
 use ferntast_model::arm::Arm;
+use ferntast_model::contour::Surface;
 use ferntast_model::joint::JointParameters;
 use ferntast_model::kinematics::planar;
 use ferntast_model::{ArmModel, JointCount, Joints, ParameterError, Vector2};
 use form::TorqueOfContact;
 use sensors::SensorWatch;
 use split::{Motion, Split};
-use systematic::sensor_errors;
 use zeroing::Zeroing;
 
 /// Beyond these a measurement is broken, whatever the arm.
@@ -59,6 +65,7 @@ pub struct ContactEstimator {
     contact: TorqueOfContact,
     sensors: SensorWatch,
     zeroing: Zeroing,
+    calibration: Option<SelfCalibration>,
     split: Split,
     last: ContactEstimate,
     /// Time since the filters were last moved on \[s\].
@@ -85,7 +92,11 @@ impl ContactEstimator {
         let mut parameters = *parameters;
         if parameters.form == Form::MotorCurrent {
             parameters.zeroing_time = 0.0;
+            parameters.calibration_time = 0.0;
         }
+        let features = model.contour.features();
+        let calibration = (parameters.calibration_time > 0.0)
+            .then(|| SelfCalibration::new(parameters.uncertainty, features.len()));
         Ok(Self {
             arm: Arm::new(&model.arm),
             count,
@@ -94,7 +105,8 @@ impl ContactEstimator {
             contact: TorqueOfContact::new(parameters.form, parameters.cut_off, count),
             sensors: SensorWatch::new(count),
             zeroing: Zeroing::new(ranges),
-            split: Split::new(model.contour.features()),
+            calibration,
+            split: Split::new(features),
             last: ContactEstimate::unknown(count),
             gap: 0.0,
             settling: 0.0,
@@ -105,6 +117,11 @@ impl ContactEstimator {
     /// How many joints it has measurements of.
     pub fn joints(&self) -> JointCount {
         self.count
+    }
+
+    /// What sliding tells of gains and turns, where that is asked for.
+    pub fn calibration(&self) -> Option<&SelfCalibration> {
+        self.calibration.as_ref()
     }
 
     /// Time that the filters take to forget \[s\].
@@ -156,7 +173,15 @@ impl ContactEstimator {
 
         let kinematics = *self.arm.kinematics();
         let singularity = self.parameters.singularity;
-        let torque = motion.contact_torque - self.zeroing.zero();
+        let unscaled = motion.contact_torque - self.zeroing.zero();
+        let felt = self.arm.gravity(&q) - unscaled;
+        let torque = match &mut self.calibration {
+            Some(own) => {
+                own.step(step);
+                unscaled + own.correction(&felt)
+            }
+            None => unscaled,
+        };
         let force = kinematics.tip_force(&q, &torque, singularity);
         let singular = force.is_none();
         let force = force.unwrap_or_else(Vector2::zeros);
@@ -192,14 +217,18 @@ impl ContactEstimator {
         // Behind a low-pass of bandwidth f samples within 1/(2 f) are alike.
         let alike = 0.5 * self.settling_time();
         let zeros = self.zeroing.standard_error(alike, uncertainty.torque_zero);
-        let gain = uncertainty.torque_gain;
-        let errors = sensor_errors(&kinematics, &q, &torque, &zeros, gain, singularity);
+        let gains = match &self.calibration {
+            Some(own) => own.calibration().errors(&felt),
+            None => independent_gains(&torque, uncertainty.torque_gain),
+        };
+        let errors = sensor_errors(&kinematics, &q, &zeros, &gains, singularity);
         let motion = Motion {
             tip,
             errors,
             velocity: tip_velocity,
             present_velocity: jacobian * motion.present_velocity,
             delay: self.contact.delay(),
+            calibration: self.calibration.as_ref(),
             undetermined,
         };
         let last = self.last;
@@ -211,8 +240,51 @@ impl ContactEstimator {
             &force,
             &mut estimate,
         );
+        self.calibrate(step, alike, &q, &unscaled, &estimate);
         self.last = estimate;
         estimate
+    }
+
+    /// Learns gains and turns from `torque` of the contact \[Nm\], by sensors as they are.
+    fn calibrate(
+        &mut self,
+        dt: f64,
+        alike: f64,
+        q: &Vector2<f64>,
+        torque: &Vector2<f64>,
+        estimate: &ContactEstimate,
+    ) {
+        let features = self.split.features();
+        let touched = estimate
+            .feature
+            .and_then(|at| Some((at, features.get(at)?)));
+        let usable = estimate.in_contact && estimate.valid && !estimate.corner;
+        let (Some(own), Some((at, feature)), true) = (&mut self.calibration, touched, usable)
+        else {
+            return;
+        };
+        let (kinematics, singularity) = (self.arm.kinematics(), self.parameters.singularity);
+        let felt = self.arm.gravity(q) - torque;
+        let by_ratio = Vector2::new(0.5 * felt.x, -0.5 * felt.y);
+        let force = |torque| kinematics.tip_force(q, torque, singularity);
+        let Some((force, by_ratio)) = force(torque).zip(force(&by_ratio)) else {
+            return;
+        };
+        let push = Push {
+            feature,
+            tip: kinematics.forward(q),
+            force,
+            by_ratio,
+            direction: self.split.direction(),
+            dt,
+            alike,
+        };
+        let memory = self.parameters.calibration_time;
+        match feature.surface {
+            Surface::Spring => own.press(memory, &push),
+            _ if !estimate.near_rest => own.slide(at, memory, &push),
+            _ => {}
+        }
     }
 
     /// The estimate where there is no measurement.

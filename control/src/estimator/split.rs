@@ -1,7 +1,7 @@
 //! Which surface is touched, and what the force is along and across it.
 
 use super::systematic::{SensorErrors, split_errors};
-use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters};
+use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters, SelfCalibration};
 use ferntast_model::Vector2;
 use ferntast_model::contour::{Feature, Surface, nearest};
 
@@ -21,7 +21,7 @@ const FAINT_TIME: f64 = 0.2;
 const TURN_DELAYS: f64 = 5.0;
 
 /// How the tip moves, base frame.
-pub(super) struct Motion {
+pub(super) struct Motion<'a> {
     /// Newest position \[m\].
     pub(super) tip: Vector2<f64>,
     /// Filtered velocity \[m/s\], as late as the forces.
@@ -32,8 +32,20 @@ pub(super) struct Motion {
     pub(super) delay: f64,
     /// What the torque sensors may have wrong of the force \[N\].
     pub(super) errors: SensorErrors,
+    /// What is known of how edges are turned.
+    pub(super) calibration: Option<&'a SelfCalibration>,
     /// A joint's friction, and so the force, is not determined.
     pub(super) undetermined: bool,
+}
+
+impl Motion<'_> {
+    /// Feature number `index`, turned as far as is known.
+    fn turned(&self, index: usize, feature: &Feature) -> Feature {
+        match self.calibration {
+            Some(own) => feature.turned(own.turn_in_use(index)),
+            None => *feature,
+        }
+    }
 }
 
 /// Splits forces, and remembers how the tip slid.
@@ -72,13 +84,18 @@ impl Split {
         &self.features
     }
 
+    /// Direction of the last motion along the tangent: ±1.
+    pub(super) fn direction(&self) -> f64 {
+        self.direction
+    }
+
     /// Finds the surface touched, and splits the force along it.
     pub(super) fn step(
         &mut self,
         parameters: &EstimatorParameters,
         last: &ContactEstimate,
         dt: f64,
-        motion: &Motion,
+        motion: &Motion<'_>,
         force: &Vector2<f64>,
         estimate: &mut ContactEstimate,
     ) {
@@ -91,8 +108,8 @@ impl Split {
             parameters.contact_on
         };
         let touched = near.and_then(|near| {
-            let feature = self.features.get(near.index)?;
-            (force.dot(&feature.normal) > threshold).then_some((near.index, *feature))
+            let feature = motion.turned(near.index, self.features.get(near.index)?);
+            (force.dot(&feature.normal) > threshold).then_some((near.index, feature))
         });
         let unknown = near.is_none() && force.norm() > UNKNOWN_SURFACE * parameters.contact_on;
         self.unknown_for = if unknown { self.unknown_for + dt } else { 0.0 };
@@ -137,7 +154,7 @@ impl Split {
         let turned_lately =
             self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
         estimate.near_rest = stopping || turned_lately || estimate.corner || motion.undetermined;
-        self.identify(parameters, dt, &feature, &motion.errors, estimate);
+        self.identify(parameters, dt, &feature, motion, estimate);
     }
 
     /// Equation (6), where the tip slides.
@@ -146,7 +163,7 @@ impl Split {
         parameters: &EstimatorParameters,
         dt: f64,
         feature: &Feature,
-        sensors: &SensorErrors,
+        motion: &Motion<'_>,
         estimate: &mut ContactEstimate,
     ) {
         let slot = match feature.surface {
@@ -157,13 +174,15 @@ impl Split {
         };
         let coefficient = &mut self.coefficients[slot];
         if estimate.valid && !estimate.near_rest {
+            let index = estimate.feature.unwrap_or(usize::MAX);
+            let turn = motion.calibration.and_then(|own| own.turn(index));
             let errors = split_errors(
-                sensors,
+                &motion.errors,
                 &feature.normal,
                 &feature.tangent(),
                 estimate.contact_force,
                 self.direction,
-                parameters.uncertainty.contour_turn,
+                turn.map_or(parameters.uncertainty.contour_turn, |turn| turn.error),
             );
             coefficient.step(
                 estimate.normal_force,
