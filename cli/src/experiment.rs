@@ -11,6 +11,7 @@ use ferntast_model::contour::Surface;
 use ferntast_studies::experiment::{
     self, Conditions, ExperimentError, Plan,
     campaign::{self, Mission},
+    identify,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -201,15 +202,40 @@ fn one(plan: &Plan, common: &Common, json: bool) -> Result<ExitCode, Failure> {
         ExperimentError::Stopped { .. } => Failure::failed(error),
         _ => Failure::refused(error),
     })?;
+    let contact = match plan {
+        Plan::Contact { surface, .. } => {
+            Some(identify::Contact::read(&folder, *surface).map_err(Failure::failed)?)
+        }
+        _ => None,
+    };
+    let friction = contact.as_ref().and_then(identify::Contact::friction);
+    let calibration = contact.as_ref().and_then(|own| own.calibration);
     if json {
         print_json(&serde_json::json!({
             "experiment": plan.kind(), "recording": folder, "duration_s": took,
+            "friction": friction, "calibration": calibration,
         }))?;
-    } else {
+        return Ok(ExitCode::SUCCESS);
+    }
+    println!(
+        "{}: {took:.1} s of virtual time in {}",
+        plan.kind(),
+        folder.display()
+    );
+    if let Some(own) = friction {
         println!(
-            "{}: {took:.1} s of virtual time in {}",
-            plan.kind(),
-            folder.display()
+            "b_0T {:.4} ± {:.4} (± {:.4} by noise alone)",
+            own.coefficient, own.std_error, own.random_error
+        );
+    }
+    if let Some(own) = calibration {
+        println!(
+            "gain of torque sensor 1 less that of 2: {:+.4} ± {:.4}; edge turned by {:+.3} ± {:.3} deg \
+             (a gain of both sensors alike does not show)",
+            own.gain_ratio,
+            own.gain_ratio_error,
+            own.turn.to_degrees(),
+            own.turn_error.to_degrees()
         );
     }
     Ok(ExitCode::SUCCESS)

@@ -92,6 +92,19 @@ impl Feature {
         Vector2::new(self.normal.y, -self.normal.x)
     }
 
+    /// The same front, turned by `angle` \[rad\] about its middle.
+    pub fn turned(&self, angle: f64) -> Feature {
+        let (sine, cosine) = angle.sin_cos();
+        let normal = self.normal;
+        Feature {
+            normal: Vector2::new(
+                cosine * normal.x - sine * normal.y,
+                sine * normal.x + cosine * normal.y,
+            ),
+            ..*self
+        }
+    }
+
     /// Φ(r) \[m\]: distance of `tip` from the front's line, negative inside.
     pub fn distance(&self, tip: &Vector2<f64>) -> f64 {
         (tip - self.center).dot(&self.normal)

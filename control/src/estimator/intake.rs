@@ -61,6 +61,7 @@ impl Intake {
         let mut parameters = *parameters;
         if parameters.form == Form::MotorCurrent {
             parameters.zeroing_time = 0.0;
+            parameters.calibration_time = 0.0;
         }
         let intake = Intake {
             count,

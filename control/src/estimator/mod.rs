@@ -10,8 +10,11 @@
 //!
 //! Which surface is touched follows from geometry; that it is touched, from
 //! the normal force, with hysteresis. While the tip is surely free, the torque
-//! sensors' zeros are found and taken off ([`zeroing_time`](EstimatorParameters::zeroing_time)).
+//! sensors' zeros are found and taken off ([`zeroing_time`](EstimatorParameters::zeroing_time));
+//! while it slides their gains and the contour's turn, where that is asked for
+//! ([`calibration_time`](EstimatorParameters::calibration_time)).
 
+mod calibration;
 mod coefficient;
 mod estimate;
 mod filter;
@@ -27,6 +30,7 @@ mod split;
 mod systematic;
 mod zeroing;
 
+pub use calibration::{Calibrated, Calibration, Push, SelfCalibration};
 pub use coefficient::{Coefficient, CoefficientEstimator};
 pub use estimate::{ContactEstimate, JointMeasurement};
 pub use filter::DerivativeFilter;
@@ -36,14 +40,16 @@ pub use motor_current::{
 };
 pub use parameters::EstimatorParameters;
 pub use spatial::{SpatialEstimate, SpatialEstimator};
-pub use systematic::Uncertainty;
+pub use systematic::{
+    ERRORS, SensorErrors, SplitErrors, Uncertainty, independent_gains, sensor_errors, split_errors,
+};
 
 use ferntast_model::arm::Arm;
+use ferntast_model::contour::Surface;
 use ferntast_model::kinematics::planar;
 use ferntast_model::{ArmModel, JointCount, ParameterError, Vector2};
 use intake::Intake;
 use split::{Motion, Split};
-use systematic::SensorErrors;
 use zeroing::Zeroing;
 
 /// Estimates contact forces of a planar arm step by step.
@@ -53,6 +59,7 @@ pub struct ContactEstimator {
     parameters: EstimatorParameters,
     intake: Intake,
     zeroing: Zeroing,
+    calibration: Option<SelfCalibration>,
     split: Split,
     last: ContactEstimate,
 }
@@ -68,11 +75,15 @@ impl ContactEstimator {
         let joints = model.arm.joints_of_links(&model.joint)?;
         let ranges = joints.each_ref().map(|joint| joint.torque_sensor_range);
         let (intake, parameters) = Intake::new(&model.joint, parameters)?;
+        let features = model.contour.features();
+        let calibration = (parameters.calibration_time > 0.0)
+            .then(|| SelfCalibration::new(parameters.uncertainty, features.len()));
         Ok(Self {
             arm: Arm::new(&model.arm),
             parameters,
             zeroing: Zeroing::new(ranges.into()),
-            split: Split::new(model.contour.features()),
+            calibration,
+            split: Split::new(features),
             last: ContactEstimate::unknown(intake.joints()),
             intake,
         })
@@ -81,6 +92,11 @@ impl ContactEstimator {
     /// How many joints it has measurements of.
     pub fn joints(&self) -> JointCount {
         self.intake.joints()
+    }
+
+    /// What sliding tells of gains and turns, where that is asked for.
+    pub fn calibration(&self) -> Option<&SelfCalibration> {
+        self.calibration.as_ref()
     }
 
     /// Takes in a measurement `dt` \[s\] after the last one.
@@ -121,7 +137,15 @@ impl ContactEstimator {
 
         let kinematics = *self.arm.kinematics();
         let singularity = self.parameters.singularity;
-        let torque = with_zero - zero;
+        let unscaled = with_zero - zero;
+        let felt = self.arm.gravity(&q) - unscaled;
+        let torque = match &mut self.calibration {
+            Some(own) => {
+                own.step(step);
+                unscaled + own.correction(&felt)
+            }
+            None => unscaled,
+        };
         let force = kinematics.tip_force(&q, &torque, singularity);
         let singular = force.is_none();
         let force = force.unwrap_or_else(Vector2::zeros);
@@ -151,20 +175,19 @@ impl ContactEstimator {
         let uncertainty = &self.parameters.uncertainty;
         let alike = self.intake.alike();
         let zeros = self.zeroing.standard_error(alike, uncertainty.torque_zero);
-        let gain = uncertainty.torque_gain;
-        let alone = |joint: usize, error: f64| {
-            let mut torque = Vector2::zeros();
-            torque[joint] = error;
-            let force = kinematics.tip_force(&q, &torque, singularity);
-            force.unwrap_or_else(Vector2::zeros)
+        let gains = match &self.calibration {
+            Some(own) => own.calibration().errors(&felt),
+            None => independent_gains(&torque, uncertainty.torque_gain),
         };
-        let none = Vector2::zeros();
+        let zeros = planar(&zeros).unwrap_or_else(Vector2::zeros);
+        let errors = sensor_errors(&kinematics, &q, &zeros, &gains, singularity);
         let motion = Motion {
             tip,
-            errors: SensorErrors::new(torque.as_slice(), &zeros, gain, none, alone),
+            errors,
             velocity: tip_velocity,
             present_velocity: jacobian * present_qd,
             delay: self.intake.delay(),
+            calibration: self.calibration.as_ref(),
             undetermined,
         };
         let last = self.last;
@@ -176,8 +199,51 @@ impl ContactEstimator {
             &force,
             &mut estimate,
         );
+        self.calibrate(step, alike, &q, &unscaled, &estimate);
         self.last = estimate;
         estimate
+    }
+
+    /// Learns gains and turns from `torque` of the contact \[Nm\], by sensors as they are.
+    fn calibrate(
+        &mut self,
+        dt: f64,
+        alike: f64,
+        q: &Vector2<f64>,
+        torque: &Vector2<f64>,
+        estimate: &ContactEstimate,
+    ) {
+        let features = self.split.features();
+        let touched = estimate
+            .feature
+            .and_then(|at| Some((at, features.get(at)?)));
+        let usable = estimate.in_contact && estimate.valid && !estimate.corner;
+        let (Some(own), Some((at, feature)), true) = (&mut self.calibration, touched, usable)
+        else {
+            return;
+        };
+        let (kinematics, singularity) = (self.arm.kinematics(), self.parameters.singularity);
+        let felt = self.arm.gravity(q) - torque;
+        let by_ratio = Vector2::new(0.5 * felt.x, -0.5 * felt.y);
+        let force = |torque| kinematics.tip_force(q, torque, singularity);
+        let Some((force, by_ratio)) = force(torque).zip(force(&by_ratio)) else {
+            return;
+        };
+        let push = Push {
+            feature,
+            tip: kinematics.forward(q),
+            force,
+            by_ratio,
+            direction: self.split.direction(),
+            dt,
+            alike,
+        };
+        let memory = self.parameters.calibration_time;
+        match feature.surface {
+            Surface::Spring => own.press(memory, &push),
+            _ if !estimate.near_rest => own.slide(at, memory, &push),
+            _ => {}
+        }
     }
 
     /// The estimate where there is no measurement.

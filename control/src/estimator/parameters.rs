@@ -34,6 +34,11 @@ parameters! {
         /// friction that is not known is no zero.
         #[serde(default)]
         pub zeroing_time: f64 [0.0..=1e4, "s"],
+        /// Memory of the torque sensors' gains and the contour's turn, which are found while the
+        /// tip slides \[s of that\], within what `uncertainty` states of them; 0 takes both as they
+        /// are. By motor currents there is none.
+        #[serde(default)]
+        pub calibration_time: f64 [0.0..=1e5, "s"],
         /// What the standard error of the coefficient has to take into account.
         #[serde(default)]
         pub uncertainty: Uncertainty [section],

@@ -1,8 +1,8 @@
 //! Which surface is touched, and what the force is along and across it.
 
-use super::systematic::SensorErrors;
+use super::systematic::{SensorErrors, split_errors};
 use super::zeroing::CLEARANCE;
-use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters};
+use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters, SelfCalibration};
 use ferntast_model::Vector2;
 use ferntast_model::contour::{Feature, Surface, nearest};
 
@@ -22,7 +22,7 @@ const FAINT_TIME: f64 = 0.2;
 const TURN_DELAYS: f64 = 5.0;
 
 /// How the tip moves, base frame.
-pub(super) struct Motion {
+pub(super) struct Motion<'a> {
     /// Newest position \[m\].
     pub(super) tip: Vector2<f64>,
     /// Filtered velocity \[m/s\], as late as the forces.
@@ -33,8 +33,20 @@ pub(super) struct Motion {
     pub(super) delay: f64,
     /// What the torque sensors may have wrong of the force \[N\].
     pub(super) errors: SensorErrors<Vector2<f64>>,
+    /// What is known of how edges are turned.
+    pub(super) calibration: Option<&'a SelfCalibration>,
     /// A joint's friction, and so the force, is not determined.
     pub(super) undetermined: bool,
+}
+
+impl Motion<'_> {
+    /// Feature number `index`, turned as far as is known.
+    fn turned(&self, index: usize, feature: &Feature) -> Feature {
+        match self.calibration {
+            Some(own) => feature.turned(own.turn_in_use(index)),
+            None => *feature,
+        }
+    }
 }
 
 /// Splits forces, and remembers how the tip slid.
@@ -68,6 +80,11 @@ impl Split {
         }
     }
 
+    /// What can be touched.
+    pub(super) fn features(&self) -> &[Feature] {
+        &self.features
+    }
+
     /// Whether `tip` \[m\] is surely free: in front of, or beside, all that it can touch.
     pub(super) fn is_free(&self, parameters: &EstimatorParameters, tip: &Vector2<f64>) -> bool {
         let clearance = CLEARANCE * parameters.contact_distance;
@@ -77,13 +94,18 @@ impl Split {
         })
     }
 
+    /// Direction of the last motion along the tangent: ±1.
+    pub(super) fn direction(&self) -> f64 {
+        self.direction
+    }
+
     /// Finds the surface touched, and splits the force along it.
     pub(super) fn step(
         &mut self,
         parameters: &EstimatorParameters,
         last: &ContactEstimate,
         dt: f64,
-        motion: &Motion,
+        motion: &Motion<'_>,
         force: &Vector2<f64>,
         estimate: &mut ContactEstimate,
     ) {
@@ -96,8 +118,8 @@ impl Split {
             parameters.contact_on
         };
         let touched = near.and_then(|near| {
-            let feature = self.features.get(near.index)?;
-            (force.dot(&feature.normal) > threshold).then_some((near.index, *feature))
+            let feature = motion.turned(near.index, self.features.get(near.index)?);
+            (force.dot(&feature.normal) > threshold).then_some((near.index, feature))
         });
         let unknown = near.is_none() && force.norm() > UNKNOWN_SURFACE * parameters.contact_on;
         self.unknown_for = if unknown { self.unknown_for + dt } else { 0.0 };
@@ -142,7 +164,7 @@ impl Split {
         let turned_lately =
             self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
         estimate.near_rest = stopping || turned_lately || estimate.corner || motion.undetermined;
-        self.identify(parameters, dt, &feature, &motion.errors, estimate);
+        self.identify(parameters, dt, &feature, motion, estimate);
     }
 
     /// Equation (6), where the tip slides.
@@ -151,7 +173,7 @@ impl Split {
         parameters: &EstimatorParameters,
         dt: f64,
         feature: &Feature,
-        sensors: &SensorErrors<Vector2<f64>>,
+        motion: &Motion<'_>,
         estimate: &mut ContactEstimate,
     ) {
         let slot = match feature.surface {
@@ -162,14 +184,16 @@ impl Split {
         };
         let coefficient = &mut self.coefficients[slot];
         if estimate.valid && !estimate.near_rest {
-            let (normal, tangent) = (feature.normal, feature.tangent());
-            let direction = self.direction;
-            // A contour turned by δ has F_t + δ F_n along its tangent, and F_n − δ F_t along
-            // its normal.
-            let (turn, [t, n]) = (parameters.uncertainty.contour_turn, estimate.contact_force);
-            let turned = [-turn * t, -direction * turn * n];
-            let of = |error: &Vector2<f64>| [error.dot(&normal), -direction * error.dot(&tangent)];
-            let errors = sensors.split(of, turned);
+            let index = estimate.feature.unwrap_or(usize::MAX);
+            let turn = motion.calibration.and_then(|own| own.turn(index));
+            let errors = split_errors(
+                &motion.errors,
+                &feature.normal,
+                &feature.tangent(),
+                estimate.contact_force,
+                self.direction,
+                turn.map_or(parameters.uncertainty.contour_turn, |turn| turn.error),
+            );
             coefficient.step(
                 estimate.normal_force,
                 estimate.tangential_force,

@@ -11,17 +11,29 @@
 //! zero while the old one goes down to it. Coefficients are taken over where
 //! they are certain, the others stay as configured; all of it is refused when one
 //! of them, or the torque that they give together, is too far from what is
-//! configured.
+//! configured. What was found is known up to the fastest speed that it was found at
+//! ([`FASTEST_SEEN`]), v_s: beyond, the difference to what is configured stays as it is there,
+//!
+//! τ_F(θ, v) = τ_F(θ_configured, v) + τ_F(θ − θ_configured, v_s sign v) for |v| > v_s,
+//!
+//! since a polynomial of the speed runs away where nothing holds it.
+
+mod fed;
+
+pub use fed::FedForward;
 
 use ferntast_model::ParameterError;
 use ferntast_model::friction::{
-    Friction, FrictionState, FrictionTerm, MAX_PARAMETERS, REFERENCE_TEMPERATURE, Signal,
+    FASTEST_SEEN, Friction, FrictionState, MAX_PARAMETERS, REFERENCE_TEMPERATURE, Signal,
     StaticEffect, effect_with,
 };
 use ferntast_model::joint::JointParameters;
 
+use fed::{Fed, Values};
+
 use super::take_over::{
-    FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, TakenOver, unknown_signal, value_of,
+    Declined, FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, TakenOver, unknown_signal,
+    value_of,
 };
 
 /// Effects that are fed forward at most, those on their way out included.
@@ -34,21 +46,6 @@ const POSITIONS: u32 = 40;
 /// stays as it is there.
 const TEMPERATURE_REACH: f64 = 10.0;
 
-type Values = [f64; MAX_PARAMETERS];
-
-/// One parameter of the friction that is fed forward.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FedForward {
-    /// Its name in the arm's file.
-    pub name: &'static str,
-    /// By the arm's file; 0 where that has it not.
-    pub configured: f64,
-    /// In use now.
-    pub value: f64,
-    /// What the value is, or is on its way to.
-    pub target: f64,
-}
-
 /// What is fed forward at one moment \[Nm\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FedTorque {
@@ -56,67 +53,6 @@ pub struct FedTorque {
     pub sliding: f64,
     /// What a joint at rest feels as well: a spring, a weight, a ripple.
     pub standing: f64,
-}
-
-/// One effect on its way; `term` holds the coefficients in use.
-#[derive(Clone, Copy, Debug)]
-struct Fed {
-    term: FrictionTerm,
-    is_configured: bool,
-    configured: Values,
-    from: Values,
-    target: Values,
-}
-
-impl Fed {
-    fn configured(term: FrictionTerm) -> Self {
-        Self {
-            is_configured: true,
-            configured: term.values,
-            from: term.values,
-            target: term.values,
-            term,
-        }
-    }
-
-    fn new(effect: &'static StaticEffect, shape: Values) -> Self {
-        let none = [0.0; MAX_PARAMETERS];
-        Self {
-            is_configured: false,
-            ..Self::configured(FrictionTerm {
-                effect,
-                shape,
-                values: none,
-            })
-        }
-    }
-
-    /// Its torque with other coefficients \[Nm\].
-    fn torque(&self, values: Values, state: &FrictionState) -> f64 {
-        FrictionTerm {
-            values,
-            ..self.term
-        }
-        .torque(state)
-    }
-
-    fn parameters(&self) -> impl Iterator<Item = FedForward> + '_ {
-        let row = &self.term.effect.row;
-        let coefficients = row.coefficients.iter().enumerate();
-        let coefficients = coefficients.map(|(i, own)| FedForward {
-            name: own.key,
-            configured: self.configured[i],
-            value: self.term.values[i],
-            target: self.target[i],
-        });
-        let shape = row.shape.iter().zip(self.term.shape);
-        coefficients.chain(shape.map(|(own, value)| FedForward {
-            name: own.key,
-            configured: if self.is_configured { value } else { 0.0 },
-            value,
-            target: value,
-        }))
-    }
 }
 
 /// Friction of one joint as it is fed forward. Allocates when made, never afterwards.
@@ -132,6 +68,9 @@ pub struct FeedForward {
     reference_temperature: f64,
     /// Temperatures \[degC\] within which friction follows.
     temperature_range: [f64; 2],
+    /// v_s \[rad/s\], and what it was before it is led over.
+    seen: f64,
+    seen_before: f64,
     /// s \[1\].
     share: f64,
     taken_over: bool,
@@ -163,6 +102,8 @@ impl FeedForward {
             temperature: None,
             reference_temperature: 0.0,
             temperature_range: [0.0; 2],
+            seen: f64::INFINITY,
+            seen_before: f64::INFINITY,
             share: 1.0,
             taken_over: false,
         })
@@ -186,15 +127,32 @@ impl FeedForward {
             temperature: temperature.clamp(coldest, warmest) - self.reference_temperature,
             days: 0.0,
         };
+        let known = self.known(&state, self.seen_now());
         let part = |at_rest: bool| {
-            let terms = self.terms.iter().flatten().map(|fed| &fed.term);
+            let terms = self.terms.iter().flatten();
             terms
-                .filter(move |term| term.effect.acts_at_rest() == at_rest)
-                .map(|term| term.torque(&state))
+                .filter(move |fed| fed.term.effect.acts_at_rest() == at_rest)
+                .map(move |fed| fed.torque_as_known(fed.term.values, &state, &known))
         };
         FedTorque {
             sliding: part(false).sum(),
             standing: part(true).fold(-0.0, |sum, torque| sum + torque),
+        }
+    }
+
+    /// v_s while it is led over \[rad/s\].
+    fn seen_now(&self) -> f64 {
+        match self.is_on_the_way() && self.seen_before != self.seen {
+            true => self.seen_before + self.share * (self.seen - self.seen_before),
+            false => self.seen,
+        }
+    }
+
+    /// The nearest state to `state` in which no speed is beyond `seen` \[rad/s\].
+    fn known(&self, state: &FrictionState, seen: f64) -> FrictionState {
+        FrictionState {
+            velocity: state.velocity.clamp(-seen, seen),
+            ..*state
         }
     }
 
@@ -236,6 +194,8 @@ impl FeedForward {
 
     /// Sets out for what is configured.
     pub fn give_back(&mut self) {
+        self.seen = self.seen_now();
+        self.seen_before = self.seen;
         self.head_for_configured();
         self.share = 0.0;
         self.taken_over = false;
@@ -258,6 +218,9 @@ impl FeedForward {
         }
         if share >= 1.0 {
             self.drop_idle();
+            if !self.taken_over {
+                self.seen = f64::INFINITY;
+            }
         }
     }
 
@@ -281,15 +244,30 @@ impl FeedForward {
             value: self.reference_temperature,
             target: self.reference_temperature,
         });
+        let seen = (self.taken_over && self.seen < self.speed_range[1]).then_some(FedForward {
+            name: FASTEST_SEEN,
+            configured: 0.0,
+            value: self.seen,
+            target: self.seen,
+        });
         let effects = self.terms.iter().flatten().flat_map(Fed::parameters);
-        effects.chain(reference)
+        effects.chain(reference).chain(seen)
     }
 
-    /// A copy that heads for what is configured, with T₀ as found.
+    /// A copy that heads for what is configured, with T₀ and v_s as found.
     fn clone_for(&self, found: &[FoundParameter<'_>]) -> Self {
         // Arrays only: nothing is allocated.
         let mut next = self.clone();
         next.head_for_configured();
+        // What is fed forward as configured is known at all speeds: there is nothing to lead over.
+        let led = self.taken_over || self.is_on_the_way();
+        let [_, fastest] = self.speed_range;
+        next.seen = value_of(found, FASTEST_SEEN).map_or(fastest, |own| own.clamp(0.0, fastest));
+        next.seen_before = if led {
+            self.seen_now().min(fastest)
+        } else {
+            next.seen
+        };
         let reference = value_of(found, REFERENCE_TEMPERATURE);
         if let (Some(reference), Some(now)) = (reference, self.temperature) {
             next.reference_temperature = reference;
@@ -351,7 +329,8 @@ impl FeedForward {
         let Some((effect, index)) = effect_with(name) else {
             let is_shape = ferntast_model::friction::of_joint()
                 .any(|effect| effect.row.shape.iter().any(|own| own.name == name));
-            return match is_shape || name == REFERENCE_TEMPERATURE {
+            let comes_along = [REFERENCE_TEMPERATURE, FASTEST_SEEN].contains(&name);
+            return match is_shape || comes_along {
                 true => Ok(0),
                 false => Err(LeftOut::NotStatic.into()),
             };
@@ -461,7 +440,10 @@ impl FeedForward {
     fn check_torque_at(&self, state: &FrictionState) -> Result<(), TakeOverRefusal> {
         let terms = || self.terms.iter().flatten();
         let configured: f64 = terms().map(|fed| fed.torque(fed.configured, state)).sum();
-        let torque: f64 = terms().map(|fed| fed.torque(fed.target, state)).sum();
+        let known = self.known(state, self.seen);
+        let torque: f64 = terms()
+            .map(|fed| fed.torque_as_known(fed.target, state, &known))
+            .sum();
         let reach = self.config.torque_share * configured.abs();
         if (torque - configured).abs() <= reach {
             return Ok(());
@@ -472,26 +454,6 @@ impl FeedForward {
             lower: configured - reach,
             upper: configured + reach,
         })
-    }
-}
-
-/// Why an effect is not among what is taken over.
-enum Declined {
-    /// It alone is left out.
-    LeftOut(LeftOut),
-    /// All is refused for it.
-    Refused(TakeOverRefusal),
-}
-
-impl From<LeftOut> for Declined {
-    fn from(why: LeftOut) -> Self {
-        Self::LeftOut(why)
-    }
-}
-
-impl From<TakeOverRefusal> for Declined {
-    fn from(refusal: TakeOverRefusal) -> Self {
-        Self::Refused(refusal)
     }
 }
 

@@ -120,6 +120,26 @@ pub enum TakeOverRefusal {
     },
 }
 
+/// Why an effect is not among what is taken over.
+pub(super) enum Declined {
+    /// It alone is left out.
+    LeftOut(LeftOut),
+    /// All is refused for it.
+    Refused(TakeOverRefusal),
+}
+
+impl From<LeftOut> for Declined {
+    fn from(why: LeftOut) -> Self {
+        Self::LeftOut(why)
+    }
+}
+
+impl From<TakeOverRefusal> for Declined {
+    fn from(refusal: TakeOverRefusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
+
 /// The signal that `effect` reads and the servo has not: the date of the twin's
 /// first recording, the temperature where nobody measures it.
 pub(super) fn unknown_signal(effect: &StaticEffect, has_temperature: bool) -> Option<Signal> {

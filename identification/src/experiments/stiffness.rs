@@ -20,8 +20,10 @@ const BINS: usize = 12;
 pub struct Stiffness {
     /// K \[Nm/rad\].
     pub stiffness: f64,
-    /// Its standard error \[Nm/rad\].
+    /// Its standard error \[Nm/rad\]: of noise, and of what is wrong all the time.
     pub std_error: f64,
+    /// What noise alone makes of it \[Nm/rad\].
+    pub random_error: f64,
     /// K_3 of τ = K δ + K_3 δ³ \[Nm/rad³\], fitted together with K.
     pub cubic: f64,
     /// Its standard error.
@@ -32,17 +34,18 @@ pub struct Stiffness {
     pub curve: Vec<[f64; 2]>,
 }
 
-/// Motor `position` θ \[rad\] over joint `torque` τ \[Nm\], link at rest:
-/// θ = q_0 + τ/K + c τ, with the compliance c \[rad/Nm\] of what holds the tip,
-/// seen at the joint. `None` when the torque hardly changes.
+/// Motor `position` θ \[rad\] over joint `torque` τ \[Nm\]: θ − q = q_0 + τ/K, with the
+/// position q of the `link` \[rad\] but for a constant, as what holds the tip and the other
+/// joint's deflection have it. `None` when the torque hardly changes.
 #[must_use]
-pub fn stiffness(position: &[f64], torque: &[f64], compliance: f64) -> Option<Stiffness> {
+pub fn stiffness(position: &[f64], link: &[f64], torque: &[f64]) -> Option<Stiffness> {
     let smooth = Kernel::gaussian(SMOOTHING, 0, 1.0);
-    let (position, torque) = (smooth.everywhere(position), smooth.everywhere(torque));
+    let wound: Vec<f64> = position.iter().zip(link).map(|(p, q)| p - q).collect();
+    let (wound, torque) = (smooth.everywhere(&wound), smooth.everywhere(torque));
     let largest = torque
         .iter()
         .fold(0.0_f64, |most, value| most.max(value.abs()));
-    let fixed: Vec<usize> = (0..position.len().min(torque.len()))
+    let fixed: Vec<usize> = (0..wound.len().min(torque.len()))
         .filter(|&at| torque[at].abs() > MIN_TORQUE_SHARE * largest)
         .collect();
     if largest < 0.1 || fixed.len() < 10 * BLOCKS {
@@ -50,10 +53,7 @@ pub fn stiffness(position: &[f64], torque: &[f64], compliance: f64) -> Option<St
     }
     let load: Vec<f64> = fixed.iter().map(|&at| torque[at]).collect();
     let cube: Vec<f64> = load.iter().map(|tau| tau.powi(3)).collect();
-    let wound: Vec<f64> = fixed
-        .iter()
-        .map(|&at| position[at] - compliance * torque[at])
-        .collect();
+    let wound: Vec<f64> = fixed.iter().map(|&at| wound[at]).collect();
     let one = vec![1.0; load.len()];
     let line = by_blocks(&[&one, &load], &wound, BLOCKS)?;
     let (slope, slope_error) = (line.values[1], line.errors[1]);
@@ -67,11 +67,23 @@ pub fn stiffness(position: &[f64], torque: &[f64], compliance: f64) -> Option<St
     Some(Stiffness {
         stiffness,
         std_error: slope_error * stiffness * stiffness,
+        random_error: slope_error * stiffness * stiffness,
         cubic: -curved.values[2] / fourth,
         cubic_error: curved.errors[2] / fourth,
         rms: line.rms,
         curve: curve(&load, &wound, line.values[0]),
     })
+}
+
+impl Stiffness {
+    /// With what independent `changes` \[Nm/rad\] of K, each by one standard uncertainty of
+    /// something that is wrong all the time, add to its standard error.
+    #[must_use]
+    pub fn with_systematic(mut self, changes: &[f64]) -> Self {
+        let squares: f64 = changes.iter().map(|change| change * change).sum();
+        self.std_error = (self.random_error.powi(2) + squares).sqrt();
+        self
+    }
 }
 
 fn curve(load: &[f64], wound: &[f64], origin: f64) -> Vec<[f64; 2]> {
@@ -111,10 +123,13 @@ mod tests {
         let torque = tooth();
         let hold = 1.0 / 25_000.0;
         let position: Vec<f64> = torque.iter().map(|t| 0.3 + t / 4900.0 + t * hold).collect();
-        let found = stiffness(&position, &torque, hold).unwrap();
+        let link: Vec<f64> = torque.iter().map(|t| 0.3 + t * hold).collect();
+        let found = stiffness(&position, &link, &torque).unwrap();
         assert!((found.stiffness - 4900.0).abs() < 1.0, "{found:?}");
         assert!(found.cubic.abs() < 1e6 && found.std_error < 5.0);
-        let without = stiffness(&position, &torque, 0.0).unwrap();
+        let with = found.clone().with_systematic(&[30.0, -40.0]);
+        assert!((with.std_error - 50.0).abs() < 0.1 && with.random_error == found.std_error);
+        let without = stiffness(&position, &[0.3; 3000], &torque).unwrap();
         assert!((without.stiffness - 1.0 / (1.0 / 4900.0 + hold)).abs() < 1.0);
     }
 
@@ -130,13 +145,13 @@ mod tests {
                 })
             })
             .collect();
-        let found = stiffness(&position, &torque, 0.0).unwrap();
+        let found = stiffness(&position, &[0.0; 3000], &torque).unwrap();
         assert!(found.cubic > 8e6 && found.cubic < 3e7, "{found:?}");
         assert!(found.cubic > 10.0 * found.cubic_error);
     }
 
     #[test]
     fn constant_torque_gives_no_stiffness() {
-        assert!(stiffness(&[0.0; 500], &[0.0; 500], 0.0).is_none());
+        assert!(stiffness(&[0.0; 500], &[0.0; 500], &[0.0; 500]).is_none());
     }
 }

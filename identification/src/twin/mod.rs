@@ -11,6 +11,7 @@
 
 mod band;
 mod change;
+mod fastest;
 mod history;
 mod recent_samples;
 mod sample;
@@ -37,6 +38,7 @@ use crate::fit::{Fit, fit};
 use crate::preparation::prepare;
 
 use change::ChangeLog;
+use fastest::Fastest;
 use recent_samples::RecentSamples;
 use sample::TwinRow;
 use sensors::Sensors;
@@ -104,6 +106,7 @@ pub struct Twin {
     names: Vec<(String, String)>,
     off_line: Vec<f64>,
     off_line_errors: Vec<f64>,
+    fastest: Fastest,
     /// Shapes, and T₀ where the temperature is measured: as found off line.
     fixed: Vec<TwinParameter>,
     band: f64,
@@ -183,6 +186,7 @@ impl Twin {
             stream: Stream::new(&prepared, period, &off_line),
             estimator: RecursiveLeastSquares::new(&priors, band, forgetting)?,
             off_line_errors: errors_of(&fitted, &names),
+            fastest: Fastest::new(memory),
             fixed: fixed(&prepared),
             names,
             off_line,
@@ -268,7 +272,8 @@ impl Twin {
     }
 
     /// Current parameters: the coefficients that are estimated on line, then those
-    /// that keep their values off line (shapes of effects, T₀).
+    /// that keep their values off line (shapes of effects, T₀), then the fastest speed that
+    /// the estimates rest on, once there is one.
     #[must_use]
     pub fn parameters(&self) -> Vec<TwinParameter> {
         self.names
@@ -284,6 +289,10 @@ impl Twin {
                 at_bound: self.estimator.at_bound(i),
             })
             .chain(self.fixed.iter().cloned())
+            .chain(self.fastest.seen().map(|fastest| {
+                let unit = friction::SPEED.of(self.joint);
+                constant(friction::FASTEST_SEEN, unit, fastest)
+            }))
             .collect()
     }
 
@@ -331,6 +340,7 @@ impl Twin {
         if row.slides {
             let residual = row.motor_torque - predicted;
             self.settled_rows += 1.0;
+            self.fastest.see(row.time, row.velocity.abs());
             let share = 1.0 / self.settled_rows.min(BAND_ROWS);
             self.mean_square += share * (residual * residual - self.mean_square);
             let update = self
@@ -357,10 +367,9 @@ impl Twin {
     }
 }
 
-/// Shape parameters of the model's effects, and the temperature \[degC\] from
-/// from which terms that read it count.
-fn fixed(prepared: &PreparedModel) -> Vec<TwinParameter> {
-    let fixed = |name: &str, unit: &str, value: f64| TwinParameter {
+/// What is told beside the coefficients, and is not estimated.
+fn constant(name: &str, unit: &str, value: f64) -> TwinParameter {
+    TwinParameter {
         name: name.to_owned(),
         unit: unit.to_owned(),
         off_line: value,
@@ -368,10 +377,16 @@ fn fixed(prepared: &PreparedModel) -> Vec<TwinParameter> {
         std_error: 0.0,
         excitation: 1.0,
         at_bound: false,
-    };
+    }
+}
+
+/// Shape parameters of the model's effects, and the temperature \[degC\] from
+/// from which terms that read it count.
+fn fixed(prepared: &PreparedModel) -> Vec<TwinParameter> {
     let shapes = prepared.terms.iter().flat_map(|term| {
         let quantities = term.effect.description().shape.iter().zip(&term.shape);
-        quantities.map(|(own, value)| fixed(&own.name, own.unit.of(prepared.facts.joint), *value))
+        quantities
+            .map(|(own, value)| constant(&own.name, own.unit.of(prepared.facts.joint), *value))
     });
     let warmed = |term: &BoundTerm| {
         let effect = friction::effect(term.effect.row().id);
@@ -379,7 +394,7 @@ fn fixed(prepared: &PreparedModel) -> Vec<TwinParameter> {
     };
     let reference = prepared.facts.reference_temperature;
     let reference = (prepared.terms.iter().any(warmed))
-        .then(|| fixed(friction::REFERENCE_TEMPERATURE, "degC", reference));
+        .then(|| constant(friction::REFERENCE_TEMPERATURE, "degC", reference));
     shapes.chain(reference).collect()
 }
 

@@ -7,7 +7,7 @@ use std::{
 
 use ferntast_bus::mcap::BagReader;
 use ferntast_identification::{Term, add};
-use ferntast_model::friction::REFERENCE_TEMPERATURE;
+use ferntast_model::friction::{FASTEST_SEEN, REFERENCE_TEMPERATURE};
 use ferntast_msgs::{
     sample::{JointSample, MAX_JOINTS, TwinParametersSample, TwinVerdict},
     topics,
@@ -123,7 +123,8 @@ pub fn from_twin(model: &Path, recording: &Path, output: &Path) -> Result<FromTw
     })?;
     let comparison = opened.compare()?;
     let found = (0..word.len()).map(|i| word.names[i].as_str());
-    for name in found.filter(|name| *name != REFERENCE_TEMPERATURE) {
+    let own = |name: &&str| ![REFERENCE_TEMPERATURE, FASTEST_SEEN].contains(name);
+    for name in found.filter(own) {
         if !comparison.parameters.contains_key(name) {
             return Err(other(format!("its twin has {name}, the model has not")));
         }

@@ -37,6 +37,9 @@ pub use sum::{Friction, FrictionParameters, FrictionTerm, FrictionTorque};
 pub const MAX_PARAMETERS: usize = 4;
 /// Name under which a twin tells T₀ \[degC\] of effects that read the temperature.
 pub const REFERENCE_TEMPERATURE: &str = "T0";
+/// Name under which a twin tells the fastest speed \[rad/s\] that its estimates rest on:
+/// beyond it they are extrapolated.
+pub const FASTEST_SEEN: &str = "v_seen";
 
 /// Every static effect, of joints and of contacts. Columns of a
 /// [`Friction`] are in this order.

@@ -8,9 +8,12 @@ use ferntast_identification::experiments::{
 };
 use ferntast_model::contour::Surface;
 use ferntast_nodes::config::ConfigError;
+use ferntast_nodes::lockstep::RunError;
 use ferntast_sim::arm::ArmConfig;
 
 use super::flexible_joint::{self, FlexibleJointEvidence, FlexibleJointJob};
+use super::friction_felt::{self, FrictionFelt};
+use super::sensor_truth::{self, SensorTruthJob, SensorTruthRun};
 use crate::experiment::{
     Conditions, ExperimentError, IdentifyError, Plan, campaign,
     campaign::{CampaignError, Mission, Run, RunResult},
@@ -66,6 +69,9 @@ pub enum PaperError {
         /// The operating system's reason.
         source: std::io::Error,
     },
+    /// A session in virtual time failed.
+    #[error(transparent)]
+    Session(#[from] RunError),
     /// The page cannot be made.
     #[error("the page: {0}")]
     Page(#[from] serde_json::Error),
@@ -105,6 +111,10 @@ pub struct Evidence {
     pub campaign: Vec<RunResult>,
     /// The second paper's joint: in motion, and with a long rest.
     pub flexible_joint: FlexibleJointEvidence,
+    /// Sensors and contour that are off, before and after they are found.
+    pub sensor_truth: Vec<SensorTruthRun>,
+    /// What the friction found is worth in the hand.
+    pub friction_felt: FrictionFelt,
 }
 
 /// One experiment apart from the campaign.
@@ -119,6 +129,8 @@ enum Job {
     Single(Single),
     Campaign(Run),
     FlexibleJoint(FlexibleJointJob),
+    SensorTruth(SensorTruthJob),
+    FrictionFelt,
 }
 
 enum Done {
@@ -127,9 +139,20 @@ enum Done {
     Contact(Contact),
     Campaign(Box<RunResult>),
     FlexibleJoint([Vec<Row>; 3]),
+    SensorTruth(SensorTruthRun),
+    FrictionFelt(Box<FrictionFelt>),
 }
 
 const FIG_16_FORCE: f64 = 20.0;
+
+/// In space on `day`, at the sets' temperature.
+fn space(day: f64) -> Conditions {
+    Conditions {
+        day: Some(day),
+        temperature: Some(TEMPERATURE),
+        ..Conditions::default()
+    }
+}
 
 fn singles() -> Vec<Single> {
     let spring = |joint| Plan::Spring {
@@ -143,11 +166,6 @@ fn singles() -> Vec<Single> {
     };
     let ground = Conditions {
         ground: true,
-        ..Conditions::default()
-    };
-    let space = |day| Conditions {
-        day: Some(day),
-        temperature: Some(TEMPERATURE),
         ..Conditions::default()
     };
     let single = |name, plan, conditions, set| Single {
@@ -261,6 +279,8 @@ fn jobs(mission: &Mission) -> Vec<Job> {
     singles
         .chain(mission.runs().into_iter().map(Job::Campaign))
         .chain(flexible_joint::jobs().map(Job::FlexibleJoint))
+        .chain(sensor_truth::jobs().map(Job::SensorTruth))
+        .chain(std::iter::once(Job::FrictionFelt))
         .collect()
 }
 
@@ -284,6 +304,10 @@ pub fn duration() -> Result<f64, PaperError> {
     sum += flexible_joint::jobs()
         .map(|one| one.duration())
         .sum::<f64>();
+    sum += friction_felt::duration(&arm)?;
+    for one in sensor_truth::jobs() {
+        sum += one.plan().program(&arm)?.duration();
+    }
     Ok(sum)
 }
 
@@ -321,10 +345,21 @@ pub fn collect(
                 progress(one.duration());
                 Ok(Done::FlexibleJoint(rows))
             }
+            Job::SensorTruth(one) => {
+                let conditions = space(MARCH_DAY);
+                let run = one.run(&arm, &conditions, seed, folder, &progress)?;
+                Ok(Done::SensorTruth(run))
+            }
+            Job::FrictionFelt => {
+                let conditions = space(MARCH_DAY);
+                let felt = friction_felt::collect(&arm, &conditions, seed, folder, &progress)?;
+                Ok(Done::FrictionFelt(Box::new(felt)))
+            }
         }
     })?;
     let (mut joints, mut stiffnesses, mut contacts, mut campaign, mut rows) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut sensor_truth, mut friction_felt) = (Vec::new(), None);
     for one in done {
         match one {
             Done::Joint(one) => joints.push(*one),
@@ -332,6 +367,8 @@ pub fn collect(
             Done::Contact(one) => contacts.push(one),
             Done::Campaign(one) => campaign.push(*one),
             Done::FlexibleJoint(one) => rows.push(one),
+            Done::SensorTruth(one) => sensor_truth.push(one),
+            Done::FrictionFelt(one) => friction_felt = Some(*one),
         }
     }
     let missing = || {
@@ -361,5 +398,7 @@ pub fn collect(
             motion: rows.next().ok_or_else(missing)?,
             rest: rows.next().ok_or_else(missing)?,
         },
+        sensor_truth,
+        friction_felt: friction_felt.ok_or_else(missing)?,
     })
 }

@@ -10,9 +10,11 @@
 mod contacts;
 pub mod evidence;
 mod flexible_joint;
+mod friction_felt;
 mod item;
 mod joints;
 mod page;
+mod sensor_truth;
 mod stiffness;
 mod table1;
 mod temperature;
@@ -22,7 +24,8 @@ pub use evidence::{Evidence, PaperError, collect, duration};
 pub use item::{Chart, Curve, Item, OnLineItem, Section, Settling};
 pub use page::render;
 
-/// Judges what was recorded: table 1, Figs. 4 to 17, and the second paper.
+/// Judges what was recorded: table 1, Figs. 4 to 17, the second paper, and what sensors that are
+/// off and friction that is found are to the forces felt.
 pub fn judge(evidence: &Evidence) -> Vec<Section> {
     let mut sections = vec![table1::section(evidence)];
     sections.extend(joints::linear_and_cubic(evidence));
@@ -34,5 +37,7 @@ pub fn judge(evidence: &Evidence) -> Vec<Section> {
     sections.push(stiffness::section(evidence));
     sections.extend(contacts::sections(evidence));
     sections.push(flexible_joint::section(evidence));
+    sections.push(sensor_truth::section(&evidence.sensor_truth));
+    sections.push(friction_felt::section(&evidence.friction_felt));
     sections
 }

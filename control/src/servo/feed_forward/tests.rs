@@ -199,6 +199,59 @@ fn temperature_counts_within_a_reach() {
     assert!((at(&mut own, 90.0) - reference - 1.5).abs() < 1e-12);
 }
 
+/// Found at up to 0.1 rad/s, with a polynomial that runs away beyond: what is fed forward there
+/// is what is configured and the difference that was seen last, led over without a jump.
+#[test]
+fn beyond_the_speeds_seen_the_difference_stays() {
+    let mut own = feed_forward();
+    let configured = own.clone();
+    let mut far = found(1.2).to_vec();
+    far[3].value = 0.6 * CONFIGURED[3].2;
+    far[4].value = 1.5 * CONFIGURED[4].2;
+    let refused = own.take_over(&far).unwrap_err();
+    assert!(
+        matches!(refused, TakeOverRefusal::Torque { .. }),
+        "{refused}"
+    );
+    far.push(certain(FASTEST_SEEN, 0.1));
+    assert_eq!(own.take_over(&far).unwrap().count, 5);
+    settle(&mut own);
+    assert_eq!(own.parameters().last().map(|one| one.value), Some(0.1));
+    let difference = |own: &FeedForward, speed: f64| {
+        let torque = |of: &FeedForward| of.torque(0.0, speed, 5.0).sliding;
+        torque(own) - torque(&configured)
+    };
+    let seen = difference(&own, 0.1);
+    assert!(seen > 5.0, "{seen} Nm");
+    for (speed, sign) in [(0.2, 1.0), (0.5, 1.0), (0.9, 1.0), (-0.5, -1.0)] {
+        assert!(
+            (difference(&own, speed) - sign * seen).abs() < 1e-9,
+            "{speed}"
+        );
+    }
+    assert!(difference(&own, 0.07) < seen);
+    // On to what was seen at other speeds, and back, without a jump at any speed.
+    let speeds = [0.05, 0.2, 0.6];
+    let mut last = speeds.map(|speed| difference(&own, speed));
+    far[5].value = 0.15;
+    far[3].value = 0.95 * CONFIGURED[3].2;
+    far[4].value = 1.1 * CONFIGURED[4].2;
+    own.take_over(&far).unwrap();
+    for step in 0..5_000 {
+        if step == 2_500 {
+            own.give_back();
+        }
+        own.step(1e-3);
+        let now = speeds.map(|speed| difference(&own, speed));
+        for (now, last) in now.iter().zip(last) {
+            assert!((now - last).abs() < 0.02, "{now} after {last}");
+        }
+        last = now;
+    }
+    assert_eq!(last, [0.0; 3]);
+    assert!(own.parameters().all(|one| one.name != FASTEST_SEEN));
+}
+
 proptest! {
     /// Whatever is found, what is fed forward is finite and against the motion.
     #[test]
