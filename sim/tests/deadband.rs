@@ -25,9 +25,9 @@ fn deadband(seed: u64) -> Deadband {
         force_floor: draw.between(0.0, 0.2),
         velocity_share: draw.between(0.0, 0.3),
         velocity_floor: draw.between(0.0, 0.02),
-        position_floor: draw.between(0.0, 0.001),
+        position_floor: draw.between(0.0, 0.0002),
         energy_floor: draw.between(0.0, 0.005),
-        keep_alive: draw.between(0.002, 0.016),
+        keep_alive: draw.between(0.002, 0.01),
         refresh: draw.between(0.01, 0.5),
         ..Deadband::default()
     }

@@ -32,6 +32,11 @@
 //! one lost frame ([`LONGEST_BRIDGE`] at most). What is said of stops, states and words goes out
 //! at once.
 //!
+//! **What it comes to** (s_F = 0.05, the scripted operator of `rokviss`, 20 ms, `position_force`;
+//! four seeds): 5 % of the frames have content, 27 % are sent, with 16 % of the bytes; the force
+//! on the hand is within 10 %, or 0.05 N, of what it is without for 95.5 to 97.0 % of the time. More
+//! than 10 % of the frames are needed by the rule of 24 ms alone: every 8 ms one is 25 %.
+//!
 //! **Loss.** A keep-alive says how long ago content was sent. A receiver that has not got that
 //! stays where it is instead of predicting on; after `refresh` everything is sent anew.
 
@@ -55,21 +60,23 @@ parameters! {
     #[derive(Copy)]
     pub struct Deadband {
         /// δ of forces: share of the force that was sent \[-\].
-        pub force_share: f64 [0.0..=1.0, "-"] = 0.08,
+        pub force_share: f64 [0.0..=1.0, "-"] = 0.05,
         /// s₀ of forces, at the hand \[N\].
         pub force_floor: f64 [0.0..=10.0, "N"] = 0.03,
         /// δ of velocities \[-\].
-        pub velocity_share: f64 [0.0..=1.0, "-"] = 0.15,
+        pub velocity_share: f64 [0.0..=1.0, "-"] = 0.05,
         /// s₀ of velocities \[m/s\].
-        pub velocity_floor: f64 [0.0..=1.0, "m/s"] = 0.01,
-        /// s₀ of positions \[m\]; they have no δ, as there is no place to count from.
-        pub position_floor: f64 [0.0..=0.1, "m"] = 0.0002,
+        pub velocity_floor: f64 [0.0..=1.0, "m/s"] = 0.002,
+        /// s₀ of positions \[m\]; they have no δ, as there is no place to count from. Far below
+        /// what a hand notices: a servo of some kN/m makes a force of each step.
+        pub position_floor: f64 [0.0..=0.1, "m"] = 0.00001,
         /// δ of the numbers of a model \[-\].
         pub model_share: f64 [0.0..=1.0, "-"] = 0.02,
         /// s₀ of energies, at the hand's scale \[J\].
-        pub energy_floor: f64 [0.0..=1.0, "J"] = 0.002,
-        /// Longest silence, announced to the other end \[s\].
-        pub keep_alive: f64 [0.002..=0.016, "s"] = 0.008,
+        pub energy_floor: f64 [0.0..=1.0, "J"] = 0.005,
+        /// Longest silence, announced to the other end \[s\]. One frame may be lost: twice this is
+        /// less than the 24 ms after which the arm pauses.
+        pub keep_alive: f64 [0.002..=0.010, "s"] = 0.008,
         /// After this everything is sent anew \[s\].
         pub refresh: f64 [0.002..=10.0, "s"] = 0.1,
     }

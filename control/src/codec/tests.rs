@@ -130,9 +130,9 @@ fn a_motion_goes_on_in_between() {
         worst = worst.max((f64::from(wire.told().position[0]) - x).abs());
     }
     let traffic = wire.encoder.traffic();
-    assert!(worst <= 0.2e-3 + 1e-6, "{worst}");
+    assert!(worst <= 11e-6, "{worst}");
     assert!(
-        (0.02..0.1).contains(&traffic.content_share()),
+        (0.02..0.3).contains(&traffic.content_share()),
         "{traffic:?}"
     );
 }
@@ -145,7 +145,7 @@ fn energy_is_held_and_never_led_on() {
         wire.step(packet(0.0, 10.0, energy), true);
         let told = f64::from(wire.told().energy[0]);
         assert!(
-            told <= energy + 1e-7 && told > energy - 2.1e-3,
+            told <= energy + 1e-7 && told > energy - 5.1e-3,
             "{told} {energy}"
         );
     }
@@ -225,7 +225,7 @@ proptest! {
         forces in proptest::collection::vec(-60.0..60.0f64, 1..200),
         force_share in 0.0..0.3f64,
         force_floor in 0.0..0.5f64,
-        keep_alive in 0.002..0.016f64,
+        keep_alive in 0.002..0.010f64,
         refresh in 0.002..1.0f64,
     ) {
         let deadband = Deadband { force_share, force_floor, keep_alive, refresh, ..Deadband::default() };

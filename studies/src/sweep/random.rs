@@ -54,8 +54,7 @@ pub struct Case {
 
 impl Case {
     fn is_beyond(&self) -> bool {
-        // Not a number is beyond, too.
-        !(self.energy >= -BOUND)
+        self.energy < -BOUND || self.energy.is_nan()
     }
 }
 
