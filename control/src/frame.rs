@@ -85,7 +85,7 @@ pub struct LinkFrame {
     pub pace: u8,
     /// How many frames ago the content was sent; 0: in this one.
     pub since_content: u8,
-    /// What the delay law sends; empty in a frame without content.
+    /// What the delay law sends; of it a frame without content has only whether it is valid.
     pub packet: Packet,
 }
 
@@ -222,7 +222,10 @@ pub fn decode(bytes: &[u8], now_ns: i64, ahead_ns: i64) -> Result<LinkFrame, Fra
             vector: numbers(bytes, 30, "velocity or force", VECTOR_LIMIT)?,
             energy: numbers(bytes, 42, "energy", ENERGY_LIMIT)?,
         },
-        _ => Packet::default(),
+        _ => Packet {
+            valid: bytes[5] & VALID != 0,
+            ..Packet::default()
+        },
     };
     let there_ns = now_ns.saturating_add(ahead_ns);
     // The time nearest to now that ends in these bits.

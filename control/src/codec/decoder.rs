@@ -15,6 +15,8 @@ struct Heard {
     /// When it was taken here \[ns\].
     taken_ns: i64,
     pace: u8,
+    /// The sender's packet means something, as the newest frame says.
+    valid: bool,
 }
 
 /// What counts for a packet from the other end at one moment.
@@ -67,6 +69,7 @@ impl Decoder {
             sent_ns: frame.sent_ns,
             taken_ns,
             pace: frame.pace,
+            valid: frame.packet.valid,
         });
         if let Some(content) = content {
             self.learn(content, &samples(content.law));
@@ -100,6 +103,7 @@ impl Decoder {
         };
         if let Some(decoded) = &mut self.decoded {
             decoded.fresh = false;
+            decoded.packet.valid &= heard.valid;
         }
         let due = self.given.is_none_or(|(given_ns, _)| {
             let passed_ns = now_ns.saturating_sub(given_ns);
@@ -113,9 +117,10 @@ impl Decoder {
             true => self.forward(heard.stamp_ns.saturating_add(heard.since_ns(now_ns))),
             false => heard.stamp_ns,
         };
-        let Some((law, packet)) = self.predictor.at(at_ns) else {
+        let Some((law, mut packet)) = self.predictor.at(at_ns) else {
             return;
         };
+        packet.valid &= heard.valid;
         let ahead_ns = at_ns.saturating_sub(heard.stamp_ns);
         self.news = false;
         self.given = Some((now_ns, at_ns));

@@ -7,9 +7,14 @@ use crate::frame::{FrameBytes, LARGEST_PACE, LinkFrame, SEAL_LENGTH, SEND_PERIOD
 use crate::nanoseconds;
 use crate::operating::OperatingState;
 
+/// So many frames in a row tell that the sender asks to hold, that a state changed, or of a word, as
+/// one may be lost: 12 ms.
+const URGENT: u8 = 6;
+
 /// What a frame says beside its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Header {
+    valid: bool,
     hold: bool,
     state: OperatingState,
     arming: u8,
@@ -27,6 +32,8 @@ enum Due {
 #[derive(Clone, Copy, Debug)]
 struct Sent {
     header: Header,
+    /// How many of the next frames are sent whatever they say.
+    urgent: u8,
     at_ns: i64,
     content_ns: i64,
     since_content: u8,
@@ -66,6 +73,7 @@ impl Encoder {
         };
         let now_ns = whole.stamp_ns;
         let header = Header {
+            valid: whole.packet.valid,
             hold: whole.hold,
             state: whole.state,
             arming: whole.arming,
@@ -79,7 +87,10 @@ impl Encoder {
                 let frame = LinkFrame {
                     pace,
                     since_content: sent.since_content.saturating_add(1),
-                    packet: Packet::default(),
+                    packet: Packet {
+                        valid: whole.packet.valid,
+                        ..Packet::default()
+                    },
                     ..whole
                 };
                 (frame, sent.content_ns)
@@ -90,8 +101,13 @@ impl Encoder {
                 (frame, now_ns)
             }
         };
+        let urgent = match self.sent {
+            Some(sent) if sent.header == header => sent.urgent.saturating_sub(1),
+            _ => URGENT,
+        };
         self.sent = Some(Sent {
             header,
+            urgent,
             at_ns: now_ns,
             content_ns,
             since_content: frame.since_content,
@@ -124,7 +140,8 @@ impl Encoder {
             || is_news(deadband, samples, &predicted, packet);
         if news {
             Due::Content
-        } else if sent.header != header || late(sent.at_ns, deadband.keep_alive) {
+        } else if sent.header != header || sent.urgent > 0 || late(sent.at_ns, deadband.keep_alive)
+        {
             Due::KeepAlive
         } else {
             Due::Nothing
