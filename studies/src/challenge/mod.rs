@@ -6,5 +6,5 @@ mod blind;
 mod folder;
 
 pub use bench::{TestBench, WriteError, hidden_by};
-pub use blind::{BlindTest, Count, FollowedUp, Miss, Plan, run as blind_test};
+pub use blind::{BlindTest, Count, Coverage, FollowedUp, Miss, Plan, run as blind_test};
 pub use folder::{Answer, ChallengeError, create, reveal};
