@@ -145,7 +145,7 @@ fn the_verdict_is_asked_for_at_two_other_cut_offs() {
 #[test]
 fn a_complete_model_is_complete_in_the_samples_used() {
     let found = diagnose(
-        &recording(1, plain),
+        &recording(4, plain),
         &model(&["coulomb", "viscous"]),
         &mut |_| (),
     )

@@ -8,5 +8,5 @@ mod folder;
 
 pub use asked::{Asked, make};
 pub use bench::{TestBench, WriteError, hidden_by};
-pub use blind::{BlindTest, Count, FollowedUp, Miss, Plan, run as blind_test};
+pub use blind::{BlindTest, Count, Coverage, FollowedUp, Miss, Plan, run as blind_test};
 pub use folder::{Answer, ChallengeError, create, reveal};
