@@ -4,11 +4,12 @@ import { fill, make } from "../common/dom.js";
 import { percent, significant } from "../common/numbers.js";
 import { colours } from "../common/theme.js";
 import { axis, draw, tidy } from "./charts.js";
+import { offer } from "./formulas.js";
 
 const VERDICTS = {
   missing: ["An effect is missing.", (best) => `${best} explains what the model leaves.`],
   complete: ["The model is complete.", () => "What is left is noise."],
-  unexplained: ["Something is missing that has no name.", () => "The residual depends on signals below, and no effect of the catalogue has that shape. Write an expression of your own."],
+  unexplained: ["Something is missing that has no name.", () => "The residual depends on signals below, and no effect of the catalogue has that shape. Search for a formula, or write an expression of your own."],
 };
 
 const words = (effect) => effect.replaceAll("_", " ");
@@ -38,6 +39,7 @@ export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
     make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict },
       make("b", { textContent: title }), text(words(found.candidates[0]?.effect || ""))),
     make("p", { className: "quiet small", textContent: `${found.tried} variants tried, ${found.used.toLocaleString("en")} rows, error ${significant(found.rms.held_out)} ${unit} on data held out.` }),
+    found.verdict === "unexplained" ? offer(actions) : null,
     rows.length ? make("div", { className: "scroll" }, make("table", {},
       make("thead", {}, make("tr", {}, make("th", { textContent: "effect" }), make("th", { className: "right", textContent: "error on data held out" }), make("th", { className: "right", textContent: "change" }), make("th", {}))),
       make("tbody", {}, rows))) : null,

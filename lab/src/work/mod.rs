@@ -14,7 +14,8 @@ mod units;
 use std::path::Path;
 
 use ferntast_identification::{
-    Comparison, Dataset, Diagnosis, compare, comparison::compare_drawing, diagnose,
+    Comparison, Dataset, Diagnosis, Discovery, compare, comparison::compare_drawing, diagnose,
+    discover,
 };
 
 use crate::{
@@ -106,6 +107,26 @@ impl Opened {
             units::in_units_of(&self.experiment, &mut candidate.parameters);
         }
         Ok(diagnosis)
+    }
+
+    /// Formulas for what no effect of the catalogue explains. `progress` is called
+    /// with the share done, 0 … 1.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Prepare`]: what data or model lack.
+    pub fn discover(
+        &self,
+        seed: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Discovery, WorkError> {
+        let found = discover(&self.dataset, &self.experiment.model, seed, progress);
+        let mut discovery = found.map_err(|error| self.refuse(error))?;
+        for formula in &mut discovery.formulas {
+            units::in_units_of(&self.experiment, &mut formula.parameters);
+            units::of_extra_signals(&self.experiment, &mut formula.parameters);
+        }
+        Ok(discovery)
     }
 
     fn refuse(&self, source: ferntast_identification::PrepareError) -> WorkError {

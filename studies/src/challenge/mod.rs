@@ -3,8 +3,10 @@
 
 mod bench;
 mod blind;
+mod discovery;
 mod folder;
 
 pub use bench::{TestBench, WriteError, hidden_by};
 pub use blind::{BlindTest, Count, FollowedUp, Miss, Plan, run as blind_test};
+pub use discovery::{Answered, DiscoveryTest, LawPlan, run as discovery_test};
 pub use folder::{Answer, ChallengeError, create, reveal};

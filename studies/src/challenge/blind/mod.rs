@@ -15,6 +15,7 @@ use std::{
 
 use super::TestBench;
 
+pub(super) use ask::true_model_reaches;
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 
 /// What is tried.
