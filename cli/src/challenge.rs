@@ -7,7 +7,9 @@ use std::{
 
 use clap::Subcommand;
 use ferntast_benches::{bench::BenchError, contact_bench, joint_bench};
-use ferntast_studies::challenge::{self, Asked, BlindTest, Count, Plan, TestBench};
+use ferntast_studies::challenge::{
+    self, Answered, Asked, BlindTest, Count, LawPlan, Plan, TestBench,
+};
 use indicatif::ProgressBar;
 use serde_json::json;
 
@@ -90,6 +92,24 @@ enum Action {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Put laws that no catalogue has to `ferntast lab discover`, and print how it did.
+    Discover {
+        /// Laws at each strength.
+        #[arg(long, default_value_t = 10)]
+        laws: usize,
+
+        /// Strengths of the laws.
+        #[arg(long, value_delimiter = ',', default_values_t = [1.0, 0.5, 0.25])]
+        strengths: Vec<f64>,
+
+        /// Recordings that hide nothing.
+        #[arg(long, default_value_t = 100)]
+        nothing: usize,
+
+        /// Seed of the first recording.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
 }
 
 /// Runs it.
@@ -140,6 +160,20 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 false => blind::<joint_bench::HiddenEffect>(&plan, &hide, json),
             }
         }
+        Action::Discover {
+            laws,
+            strengths,
+            nothing,
+            seed,
+        } => {
+            let plan = LawPlan {
+                seed,
+                laws,
+                strengths,
+                nothing,
+            };
+            discover(&plan, json)
+        }
     }
 }
 
@@ -154,6 +188,59 @@ fn check_answer(guess: &str) -> Result<(), Failure> {
             "{guess:?} is no answer, and the seal stays closed: give an effect (ferntast lab effects), \"complete\" or \"unexplained\""
         ))),
     }
+}
+
+fn discover(plan: &LawPlan, json: bool) -> Result<ExitCode, Failure> {
+    let bar = ProgressBar::new(0);
+    let test = challenge::discovery_test(plan, &|done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let test = test.map_err(Failure::refused)?;
+    if json {
+        print_json(&test)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for (strength, count) in test.as_good_as_true.iter().rev() {
+        let proposed = test.proposed.get(strength).copied().unwrap_or_default();
+        println!(
+            "strength {strength:<5} first formula within 1.1 of the true law {}/{} ({:.1} %), proposed {}/{}, in the catalogue {}",
+            count.found,
+            count.tried,
+            count.share() * 100.0,
+            proposed.found,
+            proposed.tried,
+            test.in_catalogue.get(strength).map_or(0, |own| own.found)
+        );
+    }
+    let alarms = test.false_alarms;
+    println!(
+        "nothing hidden, yet proposed: {}/{} ({:.1} %)",
+        alarms.found,
+        alarms.tried,
+        alarms.share() * 100.0
+    );
+    let missed = |own: &&Answered| match own.law {
+        Some(_) => !own.is_as_good(),
+        None => own.formula.is_some(),
+    };
+    for own in test.answers.iter().filter(missed) {
+        println!(
+            "  seed {:<9} strength {:<5} {:?} {}: {:.4} before, {} after, {:.4} true\n    {}\n    {}",
+            own.seed,
+            own.strength,
+            own.verdict,
+            own.named.as_deref().unwrap_or("-"),
+            own.before,
+            own.after
+                .map_or_else(|| "-".to_owned(), |after| format!("{after:.4}")),
+            own.truth,
+            own.law.as_deref().unwrap_or("nothing"),
+            own.formula.as_deref().unwrap_or("no formula"),
+        );
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 fn reveal(folder: &Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {

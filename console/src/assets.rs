@@ -53,6 +53,7 @@ const ASSETS: &[Asset] = assets![
     "/lab/charts.js" SCRIPT "lab/charts.js",
     "/lab/files.js" SCRIPT "lab/files.js",
     "/lab/findings.js" SCRIPT "lab/findings.js",
+    "/lab/formulas.js" SCRIPT "lab/formulas.js",
     "/lab/mapping.js" SCRIPT "lab/mapping.js",
     "/lab/model.js" SCRIPT "lab/model.js",
 ];

@@ -4,6 +4,7 @@ mod add;
 mod auto;
 mod compare;
 mod diagnose;
+mod discover;
 mod history;
 mod new;
 mod open;
@@ -25,6 +26,7 @@ use super::Failure;
     ferntast lab compare E.toml              # how far off, and where\n  \
     ferntast lab diagnose E.toml             # which effect is missing\n  \
     ferntast lab add E.toml stribeck -o E2.toml\n  \
+    ferntast lab discover E.toml             # where the catalogue ends: a formula\n  \
     ferntast lab history E2.toml             # the error falling\n  \
     ferntast lab report E2.toml -o report.html\n  \
     ferntast lab trend E.toml later.toml     # what changed\n\n  All of it in the browser: ferntast lab serve\n\n\
@@ -62,6 +64,8 @@ enum Action {
     Compare(compare::Arguments),
     /// Tell which effect is missing, if any.
     Diagnose(diagnose::Arguments),
+    /// Propose formulas for what no effect of the catalogue explains.
+    Discover(discover::Arguments),
     /// Add an effect, refit, and write the new experiment file.
     Add(add::Arguments),
     /// Diagnose and add until the model is complete or what is left has no name.
@@ -84,6 +88,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         Action::New(arguments) => new::run(arguments, json),
         Action::Compare(arguments) => compare::run(&arguments, json),
         Action::Diagnose(arguments) => diagnose::run(&arguments, json),
+        Action::Discover(arguments) => discover::run(&arguments, json),
         Action::Add(arguments) => add::run(&arguments, json),
         Action::Auto(arguments) => auto::run(arguments, json),
         Action::History(arguments) => history::run(&arguments, json),

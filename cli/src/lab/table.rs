@@ -1,9 +1,9 @@
 //! Results for people at a terminal.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::Path};
 
 use ferntast_identification::{
-    Comparison, Diagnosis, Usage, Verdict,
+    Comparison, Diagnosis, Discovery, Usage, Verdict,
     comparison::residual_map::ResidualMap,
     diagnosis::NamedCandidate,
     fit::{Parameter, Soundness},
@@ -159,6 +159,66 @@ fn residual_map(map: &ResidualMap, unit: &str) {
             false => (String::new(), "#".repeat(length)),
         };
         println!("  {:>11} {left:>HALF$}|{right}", significant(bin.at));
+    }
+}
+
+/// The formulas that are proposed, and how to accept one.
+pub fn discovery(discovery: &Discovery, experiment: Option<&Path>, unit: &str) {
+    println!("{}", discovery.verdict.name());
+    if discovery.tried == 0 {
+        println!("no formula is searched");
+        return;
+    }
+    if let Some(named) = discovery.named.first() {
+        println!(
+            "add {} first; a formula is proposed only where it is certainly better",
+            named.effect
+        );
+    }
+    if discovery.formulas.is_empty() {
+        println!(
+            "no formula explains what is left better than chance does ({} terms tried)",
+            discovery.tried
+        );
+    }
+    for (formula, number) in discovery.formulas.iter().zip(1..) {
+        println!();
+        println!("{number}. {}", formula.expression);
+        println!(
+            "   error {} {unit} before, {} {unit} after on data held out ({:+.1} %); p {:.1e}, complexity {}",
+            significant(formula.held_out_before),
+            significant(formula.held_out_after),
+            (formula.held_out_after / formula.held_out_before - 1.0) * 100.0,
+            formula.p_value,
+            formula.complexity
+        );
+        println!("   {}", formula.form);
+        for (name, own) in &formula.parameters {
+            let error = own
+                .std_error
+                .map_or_else(String::new, |error| format!(" ± {}", significant(error)));
+            println!(
+                "     {name} = {}{error} {}",
+                significant(own.value),
+                own.unit
+            );
+        }
+        if !formula.cannot_be_told_from.is_empty() {
+            println!("   these data cannot tell it from");
+        }
+        for rival in &formula.cannot_be_told_from {
+            println!("     {rival}");
+        }
+        println!("   {}", formula.separate_by);
+    }
+    if let (Some(formula), Some(path)) = (discovery.formulas.first(), experiment) {
+        println!();
+        println!(
+            "to accept the first:  ferntast lab add {} '{}={}'",
+            path.display(),
+            formula.name,
+            formula.expression
+        );
     }
 }
 

@@ -4,11 +4,12 @@ import { fill, make } from "../common/dom.js";
 import { percent, significant } from "../common/numbers.js";
 import { colours } from "../common/theme.js";
 import { axis, draw, tidy } from "./charts.js";
+import { offer } from "./formulas.js";
 
 const VERDICTS = {
   missing: "An effect is missing.",
   complete: "Nothing more is found.",
-  unexplained: "Something is missing that has no name. Write an expression of your own.",
+  unexplained: "Something is missing that has no name. Search for a formula, or write an expression of your own.",
 };
 
 const words = (effect) => effect.replaceAll("_", " ");
@@ -41,6 +42,7 @@ export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
       make("b", { textContent: VERDICTS[found.verdict] }), `${words(found.claim)}.`),
     found.warning ? make("p", { className: "note warning", id: "cutoff-warning", textContent: found.warning }) : null,
     make("p", { className: "quiet small", textContent: `${found.tried} variants tried, ${found.used.rows.toLocaleString("en")} rows, error ${significant(found.rms.held_out)} ${unit} on data held out.` }),
+    found.verdict === "unexplained" ? offer(actions) : null,
     found.candidates.length ? ranking(rowsOf(found.candidates)) : null,
     found.helps_in_part.length ? [
       make("h2", { textContent: "These help in part, and are not the explanation", style: "margin-top:14px" }),

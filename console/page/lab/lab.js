@@ -5,11 +5,12 @@ import { getJson, work } from "../common/server.js";
 import { prepare } from "./charts.js";
 import * as files from "./files.js";
 import * as findings from "./findings.js";
+import * as formulas from "./formulas.js";
 import * as mapping from "./mapping.js";
 import * as model from "./model.js";
 
-/** What is open: { path, joint, view (of the server), comparison, diagnosis }. */
-const state = { path: null, joint: 0, view: null, results: null, diagnosis: null, busy: false };
+/** What is open: { path, joint, view (of the server), comparison, diagnosis, discovery }. */
+const state = { path: null, joint: 0, view: null, results: null, diagnosis: null, discovery: null, busy: false };
 let place = null;
 let side = null;
 
@@ -41,7 +42,7 @@ async function long(text, path, body) {
 }
 
 function frame() {
-  for (const name of ["head", "trouble", "progress", "diagnosis", "charts"]) {
+  for (const name of ["head", "trouble", "progress", "diagnosis", "discovery", "charts"]) {
     sections[name] = make(name === "charts" ? "div" : "section", { className: name === "charts" ? "work" : "panel", id: `lab-${name}`, hidden: true });
   }
   fill(place, Object.values(sections));
@@ -50,7 +51,7 @@ function frame() {
 /** Opens a file of the list: an experiment, or a recording. */
 async function open(entry, joint = 0) {
   if (state.busy) return;
-  Object.assign(state, { path: entry.path, joint, view: null, results: null, diagnosis: null });
+  Object.assign(state, { path: entry.path, joint, view: null, results: null, diagnosis: null, discovery: null });
   files.mark(entry.path);
   frame();
   busy(`Reading ${entry.path} …`);
@@ -104,6 +105,14 @@ async function diagnose() {
   return diagnosis;
 }
 
+async function discover() {
+  const discovery = await long("Searching for a formula …", "/api/lab/discover", target());
+  if (!discovery) return;
+  state.discovery = discovery;
+  sections.discovery.hidden = false;
+  await formulas.show(sections.discovery, state, actions);
+}
+
 async function add(effect, bounds = []) {
   sections.trouble.hidden = true;
   const done = await long(`Adding ${effect} and fitting again …`, "/api/lab/add", { path: state.path, effect, bounds });
@@ -145,7 +154,7 @@ function own() {
 }
 
 const actions = {
-  diagnose, add, auto, undo, report, own,
+  diagnose, discover, add, auto, undo, report, own,
   joint: (number) => open({ path: state.path, kind: "experiment" }, number),
   open: (path) => open({ path, kind: "experiment" }),
 };

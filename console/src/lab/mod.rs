@@ -252,6 +252,7 @@ pub fn routes(lab: Arc<Lab>) -> Router {
         .route("/api/lab/start", post(work::start))
         .route("/api/lab/compare", post(work::compare))
         .route("/api/lab/diagnose", post(work::diagnose))
+        .route("/api/lab/discover", post(work::discover))
         .route("/api/lab/add", post(work::add))
         .route("/api/lab/report", post(work::report))
         .route(

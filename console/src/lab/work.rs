@@ -176,6 +176,17 @@ struct Diagnosed {
     warning: Option<String>,
 }
 
+/// Decides what chance is taken to be when formulas are searched, as for the
+/// command line unless another is asked for.
+const SEED: u64 = 1;
+
+/// Proposes formulas for what no effect of the catalogue explains.
+pub async fn discover(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> Response {
+    in_lines(&lab, move |lab, progress| {
+        with_joint(lab, &joint, |opened| Ok(opened.discover(SEED, progress)?))
+    })
+}
+
 /// What is to be added to which experiment.
 #[derive(Debug, Deserialize)]
 pub struct Addition {

@@ -46,13 +46,7 @@ pub(super) fn polish(rows: &Rows, state: &State) -> Option<State> {
 }
 
 /// Refines one constant; the error that is left then.
-fn refine(
-    rows: &Rows,
-    terms: &mut Vec<Term>,
-    at: At,
-    error: f64,
-    narrower: f64,
-) -> Option<f64> {
+fn refine(rows: &Rows, terms: &mut Vec<Term>, at: At, error: f64, narrower: f64) -> Option<f64> {
     let mut others = Vec::new();
     for (_, other) in (terms.iter().enumerate()).filter(|(own, _)| *own != at.term) {
         extend_basis(&mut others, rows.column_of(other)?);
@@ -72,7 +66,11 @@ fn refine(
     let value = constant(terms, at);
     let [low, high] = bounds(rows.channels.get(factor.signal)?, at.which, value);
     // A scale is searched by ratio, with its sign.
-    let sign = if at.which == 1 && value < 0.0 { -1.0 } else { 1.0 };
+    let sign = if at.which == 1 && value < 0.0 {
+        -1.0
+    } else {
+        1.0
+    };
     let (to, from): (fn(f64) -> f64, fn(f64) -> f64) = match at.which {
         1 => (|x| x.abs().ln(), |x| x.exp()),
         _ => (|x| x, |x| x),

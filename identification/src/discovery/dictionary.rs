@@ -147,6 +147,9 @@ fn factors(number: usize, channel: &Channel) -> Factors {
                 make(Shape::Shifted, middle, 1.0),
                 make(Shape::Shifted, low - 0.5 * width, 1.0),
                 make(Shape::Growth, 0.0, -width),
+                make(Shape::Step, low + 0.3 * width, 0.2 * width),
+                make(Shape::Step, low + 0.5 * width, 0.2 * width),
+                make(Shape::Step, low + 0.7 * width, 0.2 * width),
             ],
         },
     }
@@ -181,14 +184,6 @@ impl Dictionary {
             columns: Vec::new(),
         };
         let direction = rows.direction();
-        dictionary.push(
-            rows,
-            Term {
-                direction: true,
-                factors: Vec::new(),
-            },
-            &[&direction],
-        );
         let mut both = |factors: &[Factor], samples: &[&[f64]]| {
             for turns in [false, true] {
                 if turns && !may_turn(factors) {
@@ -205,6 +200,7 @@ impl Dictionary {
                 dictionary.push(rows, term, &all);
             }
         };
+        both(&[], &[]);
         for own in &of_signals {
             for factor in &own.alone {
                 let samples = rows.factor(factor);
@@ -258,8 +254,8 @@ pub(super) fn bounds(channel: &Channel, which: usize, value: f64) -> [f64; 2] {
         (0, Kind::Slow) => [low - 3.0 * width, high + 3.0 * width],
         (0, _) => [low - 0.5 * width, high + 0.5 * width],
         (_, Kind::Place) => [0.02 * width, 3.0 * width],
-        (_, Kind::Slow) if value < 0.0 => [-10.0 * width, -0.2 * width],
-        (_, Kind::Slow) => [0.2 * width, 10.0 * width],
+        (_, Kind::Slow) if value > 0.0 => [0.05 * width, 10.0 * width],
+        (_, Kind::Slow) => [-10.0 * width, -0.2 * width],
         _ => [0.01 * largest, 4.0 * largest],
     }
 }

@@ -13,6 +13,7 @@
 mod constants;
 mod dictionary;
 mod dimension;
+mod map;
 mod proposals;
 mod results;
 mod rows;
@@ -29,8 +30,9 @@ use crate::fit::fit;
 use crate::preparation::Filtered;
 
 use dictionary::Dictionary;
+pub use map::FormulaMap;
 use proposals::Judge;
-pub use results::{Discovery, Formula};
+pub use results::{Discovery, Formula, NamedEffect};
 use rows::Rows;
 use search::search;
 
@@ -81,4 +83,14 @@ pub fn discover(
     });
     progress(1.0);
     Ok(discovery)
+}
+
+/// Whether the search finds a term that chance does not explain, whatever a diagnosis
+/// says.
+#[cfg(test)]
+pub(crate) fn finds_anything(dataset: &Dataset, spec: &ModelSpec) -> bool {
+    let prepared = crate::prepare(dataset, spec).unwrap();
+    let rows = Rows::new(&prepared, &Design::new(&prepared), &[]);
+    let dictionary = Dictionary::new(&rows, &mut |_| ());
+    !search(&rows, &dictionary, 1, &mut |_| ()).is_empty()
 }

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use ferntast_model::friction::Proposal;
 
 use super::constants::errors;
+use super::map::draw;
 use super::results::Formula;
 use super::rows::{Kind, Rows};
 use super::search::{SIGNIFICANCE, State};
@@ -24,6 +25,9 @@ use crate::validation::left_out::LeftOut;
 
 /// Formulas of so many terms that are judged.
 const JUDGED: [usize; 3] = [4, 4, 3];
+/// Largest p-value of a coefficient between sessions: whether anything is there is told
+/// by blocks of time, this one only whether it goes with what differs between sessions.
+const BETWEEN_SESSIONS: f64 = 0.05;
 /// Smallest share of the mean square that a formula explains.
 const MIN_SHARE: f64 = 0.01;
 /// A simpler formula that leaves at most this error, as a ratio, is as good, …
@@ -34,7 +38,8 @@ const NEARLY_EQUAL: f64 = 1.04;
 const CLEARLY_LESS: f64 = 0.99;
 /// Formulas that are named as not to be told from one, at most.
 const MAX_RIVALS: usize = 4;
-/// Name under which a formula is judged.
+/// Name under which a formula is judged and proposed; with a number where the model
+/// has it already.
 const NAME: &str = "formula";
 
 /// What formulas are judged by.
@@ -116,8 +121,9 @@ impl Judge<'_> {
         let coefficients = coefficient_names(terms.len(), &signals);
         let names = constant_names(&terms, &signals);
         let expression = text(&terms, &signals, &coefficients, &texts);
+        let name = self.free_name();
         let effect = Term::Custom(CustomEffect {
-            name: NAME.to_owned(),
+            name: name.clone(),
             expression: expression.clone(),
             bounds: BTreeMap::new(),
         });
@@ -125,34 +131,38 @@ impl Judge<'_> {
         let decrease = addition.decrease;
         let share = decrease.mean_square / decrease.before.powi(2).max(1e-300);
         let mut parameters = BTreeMap::new();
-        let mut p_value = state.p_value;
+        let mut holds = true;
         let own = addition.parameters.values();
-        let own = own.filter(|parameter| parameter.effect == NAME);
-        for (((name, term), fitted), error) in
-            coefficients.iter().zip(&terms).zip(own).zip(of_coefficients)
+        let own = own.filter(|parameter| parameter.effect == name);
+        for (((own, term), fitted), error) in coefficients
+            .iter()
+            .zip(&terms)
+            .zip(own)
+            .zip(of_coefficients)
         {
             let conditional = fitted.std_error.unwrap_or(0.0);
-            p_value = p_value.max(self.p_value_between_sessions(term, fitted));
+            holds &= self.holds_between_sessions(term, fitted);
             let parameter = Parameter {
                 // What places and scales may be makes a coefficient less certain.
                 std_error: Some(conditional.max(*error)),
                 unit: term.unit(&signals).text(self.prepared.facts.joint),
                 ..fitted.clone()
             };
-            parameters.insert(name.clone(), parameter);
+            parameters.insert(own.clone(), parameter);
         }
-        for ((at, name), error) in order.iter().zip(&names).zip(of_constants) {
+        for ((at, own), error) in order.iter().zip(&names).zip(of_constants) {
             let parameter = Parameter {
                 value: constant(&terms, *at),
                 std_error: Some(*error),
                 unit: self.unit_of_constant(&terms, at, &signals),
-                effect: NAME.to_owned(),
+                effect: name.clone(),
             };
-            parameters.insert(name.clone(), parameter);
+            parameters.insert(own.clone(), parameter);
         }
         let read = read_by(&terms);
         let named = read.iter().filter_map(|at| signals.get(*at));
         let formula = Formula {
+            name,
             form: text(&terms, &signals, &coefficients, &names),
             expression,
             parameters,
@@ -161,13 +171,21 @@ impl Judge<'_> {
             held_out_after: addition.held_out_after,
             share,
             share_std_error: decrease.std_error / decrease.before.powi(2).max(1e-300),
-            p_value,
+            p_value: state.p_value,
             complexity: state.complexity(),
             cannot_be_told_from: Vec::new(),
             next_experiment: Proposal::LoadSteps,
             separate_by: String::new(),
+            map: draw(
+                self.rows,
+                &terms,
+                &signals,
+                &read,
+                self.prepared.facts.joint,
+            ),
         };
-        let is_certain = addition.lowers_error && p_value <= SIGNIFICANCE && share > MIN_SHARE;
+        let is_certain = addition.lowers_error && holds && share > MIN_SHARE;
+        let is_certain = is_certain && state.p_value <= SIGNIFICANCE;
         is_certain.then_some(Judged {
             formula,
             left_out,
@@ -175,16 +193,24 @@ impl Judge<'_> {
         })
     }
 
-    /// What hardly varies within a session has as many values as there are sessions:
-    /// its coefficient has to hold from one to the other, too.
-    fn p_value_between_sessions(&self, term: &FormulaTerm, fitted: &Parameter) -> f64 {
+    /// A name that no effect of the model has.
+    fn free_name(&self) -> String {
+        let is_free = |name: &String| self.spec.effects.iter().all(|own| own.name() != name);
+        let numbered = (2..).map(|number| format!("{NAME}_{number}"));
+        let mut names = std::iter::once(NAME.to_owned()).chain(numbered);
+        names.find(is_free).unwrap_or_default()
+    }
+
+    /// Whether the coefficient of what hardly varies within a session, of which there
+    /// are as many values as sessions, holds from one session to the other.
+    fn holds_between_sessions(&self, term: &FormulaTerm, fitted: &Parameter) -> bool {
         let kind = |signal: usize| self.rows.channels.get(signal).map(|own| own.kind);
         if term.signals().all(|own| kind(own) != Some(Kind::Slow)) {
-            return 0.0;
+            return true;
         }
         let error = fitted.std_error.unwrap_or(f64::INFINITY).max(1e-300);
         let freedom = self.prepared.facts.sessions as f64 - 1.0;
-        f_tail((fitted.value / error).powi(2), 1.0, freedom)
+        f_tail((fitted.value / error).powi(2), 1.0, freedom) < BETWEEN_SESSIONS
     }
 
     fn unit_of_constant(
@@ -193,13 +219,13 @@ impl Judge<'_> {
         at: &super::term::At,
         signals: &[Signal],
     ) -> String {
-        let factor = terms.get(at.term).and_then(|own| own.factors.get(at.factor));
+        let factor = terms
+            .get(at.term)
+            .and_then(|own| own.factors.get(at.factor));
         let signal = factor.and_then(|own| signals.get(own.signal));
         match signal.and_then(|own| own.place_unit) {
             Some(unit) if at.which == 0 => unit.to_owned(),
-            _ => signal.map_or_else(String::new, |own| {
-                own.unit.text(self.prepared.facts.joint)
-            }),
+            _ => signal.map_or_else(String::new, |own| own.unit.text(self.prepared.facts.joint)),
         }
     }
 
@@ -260,11 +286,18 @@ impl Judge<'_> {
         let mut votes: Vec<usize> = Vec::new();
         for rival in rivals {
             let only = |a: &[usize], b: &[usize]| -> Vec<usize> {
-                a.iter().filter(|signal| !b.contains(signal)).copied().collect()
+                a.iter()
+                    .filter(|signal| !b.contains(signal))
+                    .copied()
+                    .collect()
             };
             let mut apart = only(&own.signals, &rival.signals);
             apart.extend(only(&rival.signals, &own.signals));
-            votes.extend(if apart.is_empty() { own.signals.clone() } else { apart });
+            votes.extend(if apart.is_empty() {
+                own.signals.clone()
+            } else {
+                apart
+            });
         }
         if votes.is_empty() {
             votes.clone_from(&own.signals);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use ferntast_model::friction::Proposal;
 use serde::Serialize;
 
+use super::map::FormulaMap;
 use crate::diagnosis::dependence::Dependence;
 use crate::diagnosis::{Diagnosis, Verdict};
 use crate::fit::{Parameter, Rms};
@@ -12,6 +13,8 @@ use crate::fit::{Parameter, Rms};
 /// A formula that explains what the model leaves.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Formula {
+    /// A name for it that the model has not yet.
+    pub name: String,
     /// The torque (of a contact the force) that it adds, as
     /// [`CustomEffect::expression`](crate::CustomEffect::expression) has it: places and
     /// scales are numbers in it, the coefficients are fitted.
@@ -41,6 +44,17 @@ pub struct Formula {
     pub next_experiment: Proposal,
     /// What to do, in words.
     pub separate_by: String,
+    /// The formula beside what was measured.
+    pub map: FormulaMap,
+}
+
+/// An effect of the catalogue that is missing.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NamedEffect {
+    /// Its id.
+    pub effect: String,
+    /// RMS on rows left out with it \[Nm\].
+    pub held_out_after: f64,
 }
 
 /// Formulas for what a model leaves, and the verdict that led there.
@@ -53,7 +67,7 @@ pub struct Discovery {
     /// What the catalogue says.
     pub verdict: Verdict,
     /// Effects of the catalogue that are missing, best first.
-    pub named: Vec<String>,
+    pub named: Vec<NamedEffect>,
     /// Error of the model as it is.
     pub rms: Rms,
     /// RMS between repeats \[Nm\], where anything was repeated.
@@ -74,7 +88,12 @@ impl Discovery {
             samples: diagnosis.samples,
             used: diagnosis.used,
             verdict: diagnosis.verdict,
-            named: named.map(|own| own.effect.clone()).collect(),
+            named: named
+                .map(|own| NamedEffect {
+                    effect: own.effect.clone(),
+                    held_out_after: own.held_out_after,
+                })
+                .collect(),
             rms: diagnosis.rms,
             noise_floor: diagnosis.noise_floor,
             residual_depends_on: diagnosis.residual_depends_on.clone(),

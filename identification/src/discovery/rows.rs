@@ -45,6 +45,8 @@ pub(super) struct Channel {
     pub(super) kind: Kind,
     /// 2 % and 98 % of its values at the rows.
     pub(super) range: [f64; 2],
+    /// Its value at every row.
+    pub(super) values: Vec<f64>,
     /// Samples of the first row, of the second, ….
     samples: Vec<f64>,
 }
@@ -104,7 +106,10 @@ impl Rows {
                     values.push((source.read)(signals, at as usize));
                     for tap in 0..rows.taps.len() {
                         let sample = at - reach + (tap * stride) as isize;
-                        samples.push((source.read)(signals, sample.clamp(0, last.max(0)) as usize));
+                        samples.push((source.read)(
+                            signals,
+                            sample.clamp(0, last.max(0)) as usize,
+                        ));
                     }
                 }
             }
@@ -133,11 +138,15 @@ impl Rows {
         }
         rows.channels = channels
             .into_iter()
-            .map(|(source, samples, mut values)| Channel {
-                signal: source.signal,
-                kind: source.kind,
-                range: [0.02, 0.98].map(|share| quantile_or_zero(&mut values, share)),
-                samples,
+            .map(|(source, samples, values)| {
+                let mut sorted = values.clone();
+                Channel {
+                    signal: source.signal,
+                    kind: source.kind,
+                    range: [0.02, 0.98].map(|share| quantile_or_zero(&mut sorted, share)),
+                    values,
+                    samples,
+                }
             })
             .collect();
         rows

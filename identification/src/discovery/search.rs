@@ -137,10 +137,7 @@ fn choose(
     let mut chosen: Vec<(Term, f64)> = Vec::new();
     for at in order {
         let p_value = chance.p_value(gains[at]);
-        if chosen.len() >= most
-            || p_value > SIGNIFICANCE
-            || gains[at] < MIN_SHARE_OF_BEST * best
-        {
+        if chosen.len() >= most || p_value > SIGNIFICANCE || gains[at] < MIN_SHARE_OF_BEST * best {
             break;
         }
         let term = &dictionary.terms[at];

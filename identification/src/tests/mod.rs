@@ -3,6 +3,7 @@
 mod acceptance;
 mod compensation;
 mod contact;
+mod discovery;
 mod formulas;
 mod honesty;
 pub mod recordings;

@@ -18,8 +18,8 @@ mod units;
 use std::path::Path;
 
 use ferntast_identification::{
-    Comparison, Dataset, Diagnosis, Usage, compare, comparison::compare_drawing, diagnose,
-    diagnose_at_cutoffs,
+    Comparison, Dataset, Diagnosis, Discovery, Usage, compare, comparison::compare_drawing, diagnose,
+    diagnose_at_cutoffs, discover,
 };
 use serde::Serialize;
 
@@ -178,6 +178,26 @@ impl Opened {
         for (reason, samples) in self.tallies.iter().flat_map(Tally::left_out) {
             used.add(reason, samples);
         }
+    }
+
+    /// Formulas for what no effect of the catalogue explains. `progress` is called
+    /// with the share done, 0 … 1.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Prepare`]: what data or model lack.
+    pub fn discover(
+        &self,
+        seed: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Discovery, WorkError> {
+        let found = discover(&self.dataset, &self.experiment.model, seed, progress);
+        let mut discovery = found.map_err(|error| self.refuse(error))?;
+        for formula in &mut discovery.formulas {
+            units::in_units_of(&self.experiment, &mut formula.parameters);
+            units::of_extra_signals(&self.experiment, &mut formula.parameters);
+        }
+        Ok(discovery)
     }
 
     fn refuse(&self, source: ferntast_identification::PrepareError) -> WorkError {

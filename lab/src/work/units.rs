@@ -27,6 +27,20 @@ pub(super) fn implausible(experiment: &Experiment, soundness: &mut Soundness) {
     }
 }
 
+/// Units of extra signals as stated, in place of their names in brackets.
+pub(super) fn of_extra_signals(
+    experiment: &Experiment,
+    parameters: &mut BTreeMap<String, Parameter>,
+) {
+    for signal in experiment.signals.extra.keys() {
+        if let Some(unit) = experiment.signals.unit(&format!("extra.{signal}")) {
+            for own in parameters.values_mut() {
+                own.unit = own.unit.replace(&format!("[{signal}]"), unit.name());
+            }
+        }
+    }
+}
+
 /// The same of the signals of maps; of extra signals as stated.
 pub(super) fn maps(experiment: &Experiment, maps: &mut [ResidualMap]) {
     for map in maps {

@@ -42,11 +42,7 @@ impl Function {
     /// other than zero (`placed`).
     pub(super) fn draw(odd: bool, placed: bool, random: &mut Random) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * random.uniform();
-        let (width, place, power) = (
-            between(0.15, 0.5),
-            between(0.25, 0.75),
-            between(0.5, 2.6),
-        );
+        let (width, place, power) = (between(0.15, 0.5), between(0.25, 0.75), between(0.5, 2.6));
         let pick = (between(0.0, 1.0) * 6.0) as usize;
         match (placed, odd) {
             (true, _) => match pick {

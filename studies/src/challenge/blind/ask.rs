@@ -131,7 +131,7 @@ fn describe(error: impl Display) -> String {
 /// At turns the friction of everybody's model jumps with the sign of a velocity
 /// that nobody can measure; a true model that is smooth there leaves noise and
 /// scatter, as it does in sliding.
-fn true_model_reaches<H: TestBench>(
+pub(in crate::challenge) fn true_model_reaches<H: TestBench>(
     data: &Dataset,
     believed: &ModelSpec,
     recording: &H::Recording,

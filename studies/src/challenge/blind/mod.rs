@@ -16,6 +16,7 @@ use std::{
 
 use super::TestBench;
 
+pub(super) use ask::true_model_reaches;
 pub use coverage::Coverage;
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 

@@ -21,7 +21,7 @@ pub struct Count {
 }
 
 impl Count {
-    pub(super) fn note(&mut self, found: bool) {
+    pub(in crate::challenge) fn note(&mut self, found: bool) {
         self.found += usize::from(found);
         self.tried += 1;
     }

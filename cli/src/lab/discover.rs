@@ -1,0 +1,53 @@
+//! `ferntast lab discover`.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use super::{super::Failure, open, table};
+
+/// Propose formulas for what no effect of the catalogue explains.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Where `ferntast lab diagnose` ends with \"unexplained\", short formulas over the signals are searched: \
+    their units work out, their constants have standard errors, and they lower the error on data held out by more \
+    than its uncertainty and by more than chance does in the same search (p-value). Nothing is proposed where \
+    nothing is left, and where an effect of the catalogue is missing only what is certainly better.\n\n\
+    Read them, and accept the one that you believe:\n  \
+    ferntast lab discover E.toml\n  \
+    ferntast lab add E.toml 'film=c1*tanh(qd/0.21)*tau^2'     # the expression as printed: the error promised\n\n\
+    Which formulas cannot be told apart by these data, and the recording that would, stands below each. The same \
+    seed gives the same answer."
+)]
+pub struct Arguments {
+    /// Experiment file, or the recording of a session.
+    experiment: PathBuf,
+
+    /// Decides what chance is taken to be.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// Runs it.
+pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let mut results = Vec::new();
+    for opened in open::open(&arguments.experiment)? {
+        let bar = open::bar("discover");
+        let result = opened.discover(arguments.seed, &mut |share| {
+            bar.set_position((share * 1000.0) as u64);
+        });
+        bar.finish_and_clear();
+        let result = result.map_err(Failure::refused)?;
+        if !json {
+            println!("{}", opened.experiment.title);
+            let path = opened.experiment.path.as_deref();
+            table::discovery(&result, path, opened.torque_unit());
+        }
+        results.push(open::InUnit {
+            unit: opened.torque_unit(),
+            result,
+        });
+    }
+    if json {
+        open::print_results(&results)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
