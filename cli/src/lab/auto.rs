@@ -3,11 +3,12 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_identification::{Diagnosis, Term, Verdict};
-use ferntast_lab::work::{Added, beside};
+use ferntast_lab::work::Added;
 use serde::Serialize;
 
 use super::{
     super::{Failure, output::print_json},
+    arm,
     diagnose::with_bar,
     open, table,
 };
@@ -43,6 +44,9 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
     }
+    if let Some(opened) = arm::open(&path)? {
+        return arm::auto(opened, &path, arguments.output.as_deref(), json);
+    }
     let mut steps: Vec<Added> = Vec::new();
     let last = loop {
         let opened = open::open_file(&path)?;
@@ -58,10 +62,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             break diagnosis;
         };
         let effect = Term::Catalogue(best.effect.clone());
-        let mut output = beside(&path, effect.name());
-        if let (Some(folder), Some(name)) = (&arguments.output, output.file_name()) {
-            output = folder.join(name);
-        }
+        let output = open::output_of(&path, effect.name(), arguments.output.as_deref());
         let added = opened.add(&effect, &output).map_err(Failure::refused)?;
         if !json {
             println!(

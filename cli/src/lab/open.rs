@@ -1,6 +1,6 @@
 //! From what the user names to data and model.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ferntast_lab::work;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -56,5 +56,14 @@ pub fn print_results<T: Serialize>(results: &[T]) -> Result<(), Failure> {
     match results {
         [result] => print_json(result),
         results => print_json(&results),
+    }
+}
+
+/// The file of the next step: beside the one before, or in a folder of its own.
+pub fn output_of(path: &Path, effect: &str, folder: Option<&Path>) -> PathBuf {
+    let output = work::beside(path, effect);
+    match (folder, output.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => output,
     }
 }

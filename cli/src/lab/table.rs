@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use ferntast_identification::{
-    Comparison, Diagnosis, Verdict, comparison::residual_map::ResidualMap, fit::Parameter,
+    Comparison, Diagnosis, Verdict, comparison::residual_map::ResidualMap,
+    diagnosis::NamedCandidate, fit::Parameter,
 };
 
 pub use ferntast_lab::report::significant;
@@ -110,16 +111,51 @@ fn residual_map(map: &ResidualMap, unit: &str) {
     }
 }
 
-/// The verdict, the ranking, and what to do next.
-pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
-    let verdict = match diagnosis.verdict {
+/// A verdict in words.
+pub fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
         Verdict::Missing => "missing: an effect of the catalogue explains what the model leaves",
         Verdict::Complete => "complete: what is left is noise",
         Verdict::Unexplained => {
             "unexplained: something is missing that the catalogue does not have"
         }
-    };
-    println!("{verdict}");
+    }
+}
+
+/// What a verdict does not rest on.
+pub fn not_tested(effects: &[String]) {
+    if !effects.is_empty() {
+        println!();
+        println!(
+            "not tested, since the motions of other joints are not among the signals: {}",
+            effects.join(", ")
+        );
+    }
+}
+
+/// One line of the ranking, `name` so wide, and what these data cannot tell it from.
+pub fn candidate(name: &str, candidate: &NamedCandidate, width: usize) {
+    println!(
+        "{name:<width$} {:>12} {:>12} {:>7.1}% {:>9.1e}",
+        significant(candidate.held_out_before),
+        significant(candidate.held_out_after),
+        (candidate.held_out_after / candidate.held_out_before - 1.0) * 100.0,
+        candidate.p_value
+    );
+    if !candidate.indistinguishable_from.is_empty() {
+        println!(
+            "    these data cannot tell it from {}",
+            candidate.indistinguishable_from.join(", ")
+        );
+    }
+    if !candidate.separate_by.is_empty() {
+        println!("    {}", candidate.separate_by);
+    }
+}
+
+/// The verdict, the ranking, and what to do next.
+pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
+    println!("{}", verdict(diagnosis.verdict));
     println!(
         "error {} {unit} on data held out; {} variants tried",
         significant(diagnosis.rms.held_out),
@@ -132,24 +168,8 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
             "effect", "before", "after", "", "p"
         );
     }
-    for candidate in &diagnosis.candidates {
-        println!(
-            "{:<24} {:>12} {:>12} {:>7.1}% {:>9.1e}",
-            candidate.effect,
-            significant(candidate.held_out_before),
-            significant(candidate.held_out_after),
-            (candidate.held_out_after / candidate.held_out_before - 1.0) * 100.0,
-            candidate.p_value
-        );
-        if !candidate.indistinguishable_from.is_empty() {
-            println!(
-                "    these data cannot tell it from {}",
-                candidate.indistinguishable_from.join(", ")
-            );
-        }
-        if !candidate.separate_by.is_empty() {
-            println!("    {}", candidate.separate_by);
-        }
+    for own in &diagnosis.candidates {
+        candidate(&own.effect, own, 24);
     }
     for suspect in &diagnosis.suspected {
         println!(
@@ -171,4 +191,5 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
             dependence.strength * 100.0
         );
     }
+    not_tested(&diagnosis.not_tested);
 }
