@@ -6,7 +6,7 @@ use ferntast_lab::work::{beside, own_effect, refuse_existing};
 
 use super::{
     super::{Failure, output::print_json},
-    open, table,
+    arm, open, table,
 };
 
 /// Add an effect, refit, and write the new experiment file.
@@ -15,13 +15,16 @@ use super::{
     ferntast lab add E.toml stribeck -o E2.toml\n  \
     ferntast lab add E.toml 'cogging=a*sin(6*q) + b*cos(6*q)'\n  \
     ferntast lab add E.toml 'bump=a*exp(-(qd/vs)^2)' --bound vs=0.005,0.2\n  \
-    ferntast lab add contact.toml 'film=c*F_N*rd'")]
+    ferntast lab add contact.toml 'film=c*F_N*rd'\n  \
+    ferntast lab add arm.toml stribeck@elbow_joint\n  \
+    ferntast lab add arm.toml payload")]
 pub struct Arguments {
     /// Experiment file.
     experiment: PathBuf,
 
     /// Effect: an id of the catalogue (`ferntast lab effects`), or NAME=EXPRESSION over q, qd,
     /// qdd, tau, tau_m, T, t and extra signals; of a contact over r, rd, rdd, F_N, F_T, T, t.
+    /// Of an arm EFFECT@JOINT, without @JOINT of every joint, or one of the arm.
     effect: String,
 
     /// Bounds of a parameter of the expression that is searched, not fitted.
@@ -44,7 +47,6 @@ pub struct Arguments {
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     let effect = own_effect(&arguments.effect, &arguments.bounds).map_err(Failure::refused)?;
-    let opened = open::open_file(&arguments.experiment)?;
     let output = arguments
         .output
         .clone()
@@ -52,6 +54,10 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     if !arguments.force {
         refuse_existing(&output).map_err(Failure::refused)?;
     }
+    if let Some(opened) = arm::open(&arguments.experiment)? {
+        return arm::add(&opened, &effect, &output, json);
+    }
+    let opened = open::open_file(&arguments.experiment)?;
     let added = opened.add(&effect, &output).map_err(Failure::refused)?;
     if json {
         print_json(&added)?;

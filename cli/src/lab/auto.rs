@@ -7,6 +7,7 @@ use indicatif::ProgressBar;
 
 use super::{
     super::{Failure, output::print_json},
+    arm,
     open, table,
 };
 
@@ -39,6 +40,15 @@ pub struct Arguments {
 
 /// Runs it.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let options = AutoOptions {
+        folder: arguments.output,
+        partial: arguments.partial,
+        quick: arguments.quick,
+        force: arguments.force,
+    };
+    if let Some(opened) = arm::open(&arguments.experiment)? {
+        return arm::auto(opened, &arguments.experiment, &options, json);
+    }
     let mut bar = ProgressBar::hidden();
     let mut tell = |event: AutoEvent<'_>| match event {
         AutoEvent::Opened(opened) => {
@@ -60,12 +70,6 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             step.added.experiment.display()
         ),
         AutoEvent::Added(..) => {}
-    };
-    let options = AutoOptions {
-        folder: arguments.output,
-        partial: arguments.partial,
-        quick: arguments.quick,
-        force: arguments.force,
     };
     let found = work::auto(&arguments.experiment, &options, &mut tell).map_err(Failure::refused)?;
     match json {

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use super::{super::Failure, open, table};
+use super::{super::Failure, arm, open, table};
 
 /// Fit the model, tell its error on data it was not fitted to, and where it fails.
 #[derive(Debug, clap::Args)]
@@ -17,6 +17,9 @@ pub struct Arguments {
 
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if let Some(opened) = arm::open(&arguments.experiment)? {
+        return arm::compare(&opened, json);
+    }
     let mut results = Vec::new();
     for opened in open::open(&arguments.experiment)? {
         let result = opened.compare().map_err(Failure::refused)?;

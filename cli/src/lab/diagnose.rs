@@ -6,6 +6,7 @@ use ferntast_identification::Diagnosis;
 
 use super::{
     super::Failure,
+    arm,
     open::{self, Opened},
     table,
 };
@@ -45,6 +46,9 @@ pub fn with_bar(opened: &Opened, quick: bool) -> Result<Diagnosis, Failure> {
 
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if let Some(opened) = arm::open(&arguments.experiment)? {
+        return arm::diagnose(&opened, json);
+    }
     let mut results = Vec::new();
     for opened in open::open(&arguments.experiment)? {
         let result = with_bar(&opened, arguments.quick)?;

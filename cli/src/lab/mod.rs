@@ -1,6 +1,7 @@
 //! `ferntast lab`: recordings against models.
 
 mod add;
+mod arm;
 mod auto;
 mod compare;
 mod diagnose;
@@ -16,7 +17,7 @@ mod trend;
 use std::process::ExitCode;
 
 use clap::Subcommand;
-use ferntast_identification::Subject;
+use ferntast_identification::{Subject, arm::ArmEffect};
 
 use super::Failure;
 
@@ -48,6 +49,16 @@ use super::Failure;
     position = \"/follower/measured_cp.pose.position.x\"                 # along the contour; or tip = [x, y]\n  \
     [model]                                  # with tip: contour = [[x, y], ...] in [contact]\n  \
     effects = [\"contact_coulomb\"]\n\n\
+    A whole arm in place of a joint, every joint in one run:\n  \
+    [arm]\n  \
+    urdf = \"arm.urdf\"\n  \
+    joints = [\"joint_1\", \"joint_2\"]         # from the base on\n  \
+    armature = [0.6, 0.4]                    # kg m2, motor and gear; left out: fitted\n  \
+    [signals]\n  \
+    position = \"/joint_states.position\"     # arrays by joint name; in tables \"q_{joint}\" or a list\n  \
+    motor_torque = \"/joint_states.effort\"\n  \
+    [model]                                  # of every joint, of one, of the arm\n  \
+    effects = [\"coulomb\", \"viscous\", \"stribeck@joint_2\", \"payload\"]\n\n\
     A message path may end in functions: .@negative turns the sign, .@deg2rad and .@rad2deg angles, .@mul(X), .@div(X), \
     .@add(X), .@sub(X) reckon, .@abs takes the size.\n\n\
     A recording of a session can be given in place of an experiment file.")]
@@ -110,6 +121,10 @@ fn effects(json: bool) -> Result<ExitCode, Failure> {
         for effect in catalogue.iter().filter(|effect| effect.of == subject) {
             println!("  {:24} {}", effect.id, effect.equation);
         }
+    }
+    println!("of an arm");
+    for effect in ArmEffect::all(1) {
+        println!("  {:24} {}", effect.id(), effect.equation());
     }
     Ok(ExitCode::SUCCESS)
 }

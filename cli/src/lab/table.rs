@@ -222,6 +222,37 @@ pub fn discovery(discovery: &Discovery, experiment: Option<&Path>, unit: &str) {
     }
 }
 
+/// What a verdict does not rest on.
+pub fn not_tested(effects: &[String]) {
+    if !effects.is_empty() {
+        println!();
+        println!(
+            "not tested, since the motions of other joints are not among the signals: {}",
+            effects.join(", ")
+        );
+    }
+}
+
+/// One line of the ranking, `name` so wide, and what these data cannot tell it from.
+pub fn candidate(name: &str, candidate: &NamedCandidate, width: usize) {
+    println!(
+        "{name:<width$} {:>12} {:>12} {:>7.1}% {:>9.1e}",
+        significant(candidate.held_out_before),
+        significant(candidate.held_out_after),
+        (candidate.held_out_after / candidate.held_out_before - 1.0) * 100.0,
+        candidate.p_value
+    );
+    if !candidate.indistinguishable_from.is_empty() {
+        println!(
+            "    these data cannot tell it from {}",
+            candidate.indistinguishable_from.join(", ")
+        );
+    }
+    if !candidate.separate_by.is_empty() {
+        println!("    next experiment: {}", candidate.separate_by);
+    }
+}
+
 /// The verdict, the ranking, and what to do next.
 pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
     println!("{}: {}", diagnosis.verdict.name(), diagnosis.claim());
@@ -284,6 +315,7 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
             );
         }
     }
+    not_tested(&diagnosis.not_tested);
 }
 
 /// Effects with what they do to the error, and what would prove them.
@@ -294,23 +326,7 @@ fn candidates(candidates: &[NamedCandidate]) {
             "effect", "before", "after", "", "p"
         );
     }
-    for candidate in candidates {
-        println!(
-            "{:<24} {:>12} {:>12} {:>7.1}% {:>9.1e}",
-            candidate.effect,
-            significant(candidate.held_out_before),
-            significant(candidate.held_out_after),
-            (candidate.held_out_after / candidate.held_out_before - 1.0) * 100.0,
-            candidate.p_value
-        );
-        if !candidate.indistinguishable_from.is_empty() {
-            println!(
-                "    these data cannot tell it from {}",
-                candidate.indistinguishable_from.join(", ")
-            );
-        }
-        if !candidate.separate_by.is_empty() {
-            println!("    next experiment: {}", candidate.separate_by);
-        }
+    for own in candidates {
+        candidate(&own.effect, own, 24);
     }
 }

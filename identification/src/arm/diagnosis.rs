@@ -24,6 +24,11 @@ use crate::effects::COUPLING;
 use crate::fit::Rms;
 use ferntast_model::friction::Proposal;
 
+/// Probability of a false alarm over all joints together.
+const SIGNIFICANCE: f64 = 0.01;
+/// Smallest share of a joint's mean square that a name explains: the links' torques are
+/// those of smoothed motions, and not exact to the last percent of light joints' noise.
+const MIN_SHARE: f64 = 0.025;
 /// Share of the work that the first look at all joints is.
 const FIRST_LOOK: f64 = 0.6;
 
@@ -209,12 +214,30 @@ fn look(
     let each = which.iter().enumerate().map(|(done, at)| {
         let joint = &arm.joints[*at];
         let own = &mut |share: f64| progress((done as f64 + share) / count);
-        diagnosis::diagnose(&joint.dataset, &joint.spec, own).map_err(|source| ArmError::Joint {
+        let told = diagnosis::diagnose(&joint.dataset, &joint.spec, own);
+        let told = told.map_err(|source| ArmError::Joint {
             joint: joint.name.clone(),
             source: Box::new(source),
-        })
+        })?;
+        Ok(corrected(told, arm.joints.len()))
     });
     each.collect()
+}
+
+/// Without what may be chance where so many joints are looked at (Bonferroni), and what
+/// is too little to be told from the links' own error.
+fn corrected(mut told: Diagnosis, joints: usize) -> Diagnosis {
+    let is_certain = |p_value: f64| p_value * (joints as f64) < SIGNIFICANCE;
+    (told.candidates).retain(|own| is_certain(own.p_value) && own.share > MIN_SHARE);
+    told.residual_depends_on
+        .retain(|own| is_certain(own.p_value));
+    let (named, left) = (&told.candidates, &told.residual_depends_on);
+    told.verdict = match (told.verdict, named.is_empty(), left.is_empty()) {
+        (Verdict::Missing, false, _) => Verdict::Missing,
+        (Verdict::Missing | Verdict::Unexplained, _, false) => Verdict::Unexplained,
+        _ => Verdict::Complete,
+    };
+    told
 }
 
 /// The model with one more effect.

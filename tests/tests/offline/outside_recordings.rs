@@ -342,3 +342,66 @@ fn real_recordings_are_identified() {
         );
     }
 }
+
+fn whole_arm(name: &str) -> String {
+    let path = data().join("whole_arm").join(name);
+    path.to_str().expect("a path in UTF-8").to_owned()
+}
+
+#[test]
+#[ignore = "needs outside recordings: whole_arm"]
+fn hidden_effects_of_arms_are_found_in_their_joints() {
+    let session = Session::new();
+    let text = fs::read_to_string(whole_arm("answers.json")).expect("answers");
+    let answers: Value = serde_json::from_str(&text).expect("JSON");
+    for (case, answer) in answers.as_object().expect("cases") {
+        let experiment = whole_arm(&format!("{case}.toml"));
+        let told = run(&session, &["lab", "diagnose", &experiment, "--json"])
+            .success()
+            .json();
+        assert_eq!(told["not_tested"], json!([]), "{case}");
+        let joints = told["joints"].as_object().expect("joints");
+        for (name, own) in joints {
+            let hidden = answer["joint"] == name.as_str();
+            let of_arm = answer["joint"].is_null() && answer["effect"] != "none";
+            let complete = own["verdict"] == "complete";
+            assert!(complete != hidden || of_arm, "{case} {name}: {told:#}");
+        }
+        let accepted = names(&answer["accepted"]);
+        if answer["effect"] == "none" {
+            assert_eq!(told["verdict"], "complete", "{case}: {told:#}");
+            assert_eq!(told["candidates"], json!([]), "{case}");
+        } else if accepted.is_empty() {
+            assert_eq!(told["verdict"], "unexplained", "{case}: {told:#}");
+            let first = &told["residual_depends_on"][0];
+            assert_eq!(first["joint"], answer["joint"], "{case}");
+            let both = ["position_panda_joint3", "position_panda_joint4"];
+            assert_eq!(names(&first["signals"]), both, "{case}");
+        } else {
+            let first = &told["candidates"][0];
+            let named = first["effect"].as_str().expect("effect");
+            assert!(accepted.contains(&named), "{case}: {told:#}");
+            assert_eq!(first["joint"], answer["joint"], "{case}");
+            assert!(number(first, "held_out_after") < 0.6 * number(first, "held_out_before"));
+        }
+    }
+}
+
+#[test]
+#[ignore = "needs outside recordings: whole_arm"]
+fn an_arm_is_completed_step_by_step() {
+    let session = Session::new();
+    let from = whole_arm("panda-payload-100.toml");
+    let auto = run(&session, &["lab", "auto", &from, "-o", "steps", "--json"])
+        .success()
+        .json();
+    assert_eq!(auto["verdict"], "complete", "{auto:#}");
+    assert_eq!(auto["steps"][0]["effect"], "payload");
+    assert_eq!(auto["steps"].as_array().expect("steps").len(), 1);
+    let last = auto["experiment"].as_str().expect("a path");
+    let compared = run(&session, &["lab", "compare", last, "--json"])
+        .success()
+        .json();
+    let mass = number(&compared["arm"]["payload"]["mass"], "value");
+    assert!((mass - 1.2).abs() < 0.01, "{mass} kg");
+}

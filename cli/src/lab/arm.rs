@@ -1,0 +1,242 @@
+//! The commands of the lab on an experiment about a whole arm.
+
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use ferntast_identification::{
+    Term, Verdict,
+    arm::{ArmCandidate, ArmComparison, ArmDiagnosis},
+};
+use ferntast_lab::work::{self, AddedToArm, AutoOptions, InUnit, OpenedArm, refuse_existing};
+use serde::Serialize;
+
+use super::{
+    super::{Failure, output::print_json},
+    open,
+    table::{self, significant},
+};
+
+/// No arm has so many effects that these data can tell apart.
+const MAX_STEPS: usize = 12;
+
+/// Opens an experiment file that is about an arm; `None` where it is about something else.
+pub fn open(path: &Path) -> Result<Option<OpenedArm>, Failure> {
+    let opened = work::open_arm(path).map_err(Failure::refused)?;
+    if let Some(opened) = &opened {
+        opened
+            .notes
+            .iter()
+            .for_each(|note| eprintln!("note: {note}"));
+    }
+    Ok(opened)
+}
+
+/// `ferntast lab compare`.
+pub fn compare(opened: &OpenedArm, json: bool) -> Result<ExitCode, Failure> {
+    let result = opened.compare().map_err(Failure::refused)?;
+    let unit = opened.torque_unit();
+    if json {
+        print_json(&InUnit { unit, result })?;
+    } else {
+        print_comparison(opened, &result);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// `ferntast lab diagnose`.
+pub fn diagnose(opened: &OpenedArm, json: bool) -> Result<ExitCode, Failure> {
+    let result = with_bar(opened)?;
+    let unit = opened.torque_unit();
+    if json {
+        print_json(&InUnit { unit, result })?;
+    } else {
+        println!("{}", opened.experiment.title);
+        print_diagnosis(&result, unit);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn with_bar(opened: &OpenedArm) -> Result<ArmDiagnosis, Failure> {
+    let bar = open::bar("diagnose");
+    let result = opened.diagnose(&mut |share| bar.set_position((share * 1000.0) as u64));
+    bar.finish_and_clear();
+    result.map_err(Failure::refused)
+}
+
+/// `ferntast lab add`.
+pub fn add(
+    opened: &OpenedArm,
+    effect: &Term,
+    output: &Path,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let added = opened.add(effect, output).map_err(Failure::refused)?;
+    if json {
+        print_json(&added)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    print_added(&added, opened.torque_unit());
+    table::parameters(&added.parameters, &added.not_excited);
+    Ok(ExitCode::SUCCESS)
+}
+
+#[derive(Debug, Serialize)]
+struct Outcome {
+    steps: Vec<AddedToArm>,
+    verdict: Verdict,
+    /// The last experiment file.
+    experiment: PathBuf,
+    /// What is left after the last step.
+    last: ArmDiagnosis,
+}
+
+/// `ferntast lab auto`: diagnoses and adds until every joint is complete, or what is left
+/// has no name.
+pub fn auto(
+    mut opened: OpenedArm,
+    path: &Path,
+    options: &AutoOptions,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    if let Some(folder) = &options.folder {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
+    }
+    let mut path = path.to_owned();
+    let mut steps: Vec<AddedToArm> = Vec::new();
+    let last = loop {
+        let diagnosis = with_bar(&opened)?;
+        let best = diagnosis.candidates.first();
+        let Some(best) = best.filter(|_| steps.len() < MAX_STEPS) else {
+            if !json {
+                print_diagnosis(&diagnosis, opened.torque_unit());
+            }
+            break diagnosis;
+        };
+        let name = name_of(best);
+        let output = open::output_of(&path, &name, options.folder.as_deref());
+        if !options.force {
+            refuse_existing(&output).map_err(Failure::refused)?;
+        }
+        let added = opened.add(&Term::Catalogue(name), &output);
+        let added = added.map_err(Failure::refused)?;
+        if !json {
+            print_added(&added, opened.torque_unit());
+        }
+        path.clone_from(&added.experiment);
+        steps.push(added);
+        let next = open(&path)?;
+        opened = next.ok_or_else(|| Failure::failed(format!("{}: no arm", path.display())))?;
+    };
+    if json {
+        print_json(&Outcome {
+            steps,
+            verdict: last.verdict,
+            experiment: path,
+            last,
+        })?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The candidate as it is written in a file.
+fn name_of(candidate: &ArmCandidate) -> String {
+    match &candidate.joint {
+        Some(joint) => format!("{}@{joint}", candidate.named.effect),
+        None => candidate.named.effect.clone(),
+    }
+}
+
+fn print_added(added: &AddedToArm, unit: &str) {
+    let place = added.joint.as_ref().map(|joint| format!("@{joint}"));
+    println!(
+        "{:<32} {:>12} -> {} {unit} on data held out ({:+.1} %); {}",
+        format!("{}{}", added.effect, place.unwrap_or_default()),
+        significant(added.held_out_before),
+        significant(added.held_out_after),
+        (added.held_out_after / added.held_out_before - 1.0) * 100.0,
+        added.experiment.display()
+    );
+}
+
+fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
+    let unit = opened.torque_unit();
+    println!("{}", opened.experiment.title);
+    println!(
+        "{} samples of {} joints, {} rows used",
+        comparison.samples,
+        comparison.joints.len(),
+        comparison.used
+    );
+    println!();
+    println!(
+        "{:<26} {:>12} {:>12} {:>10}",
+        "joint", "fitted", "held out", "of torque"
+    );
+    for name in &opened.dataset.joints {
+        let Some(own) = comparison.joints.get(name) else {
+            continue;
+        };
+        println!(
+            "{name:<26} {:>9} {unit} {:>9} {unit} {:>8.1} %",
+            significant(own.rms.train),
+            significant(own.rms.held_out),
+            own.relative_error_held_out * 100.0
+        );
+    }
+    for (effect, parameters) in &comparison.arm {
+        println!();
+        println!("{effect}");
+        table::parameters(parameters, &[]);
+    }
+    for name in &opened.dataset.joints {
+        if let Some(own) = comparison.joints.get(name) {
+            println!();
+            println!("{name}");
+            table::parameters(&own.parameters, &own.not_excited);
+        }
+    }
+}
+
+fn print_diagnosis(diagnosis: &ArmDiagnosis, unit: &str) {
+    println!("{}", diagnosis.verdict.name());
+    println!("{} variants tried", diagnosis.tried);
+    println!();
+    println!("{:<26} {:<12} {:>12}", "joint", "", "held out");
+    for (name, own) in &diagnosis.joints {
+        println!(
+            "{name:<26} {:<12} {:>9} {unit}",
+            own.verdict.name(),
+            significant(own.rms.held_out)
+        );
+    }
+    if !diagnosis.candidates.is_empty() {
+        println!();
+        println!(
+            "{:<40} {:>12} {:>12} {:>8} {:>9}",
+            "effect", "before", "after", "", "p"
+        );
+    }
+    for candidate in &diagnosis.candidates {
+        let mut name = name_of(candidate);
+        if let Some(partner) = &candidate.partner {
+            name.push_str(&format!(" from {partner}"));
+        }
+        table::candidate(&name, &candidate.named, 40);
+    }
+    if !diagnosis.residual_depends_on.is_empty() {
+        println!();
+        println!("residuals depend on");
+    }
+    for own in &diagnosis.residual_depends_on {
+        println!(
+            "  {:<22} {:<44} {:.1} % of its mean square",
+            own.joint,
+            own.dependence.signals.join(" and "),
+            own.dependence.strength * 100.0
+        );
+    }
+    table::not_tested(&diagnosis.not_tested);
+}
