@@ -16,6 +16,7 @@ mod own_tools;
 mod refusals;
 mod rigid_body;
 mod ros;
+mod serial_arm;
 mod session;
 mod soak;
 mod twin;
