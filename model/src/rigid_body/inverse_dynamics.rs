@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::Joints;
 
-use super::{chain::Chain, motion::LinkMotion};
+use super::{chain::Chain, motion::LinkMotion, posture::Posture};
 
 impl Chain {
     /// Joint torques τ \[Nm\] or \[N\] that the motion q, q̇, q̈ takes in `gravity`
@@ -21,17 +21,26 @@ impl Chain {
         qdd: &Joints<f64>,
         gravity: &Vector3<f64>,
     ) -> Joints<f64> {
-        self.expect_joints(q);
+        self.inverse_dynamics_in(&self.posture(q), qd, qdd, gravity)
+    }
+
+    /// [`inverse_dynamics`](Self::inverse_dynamics) in a posture of this chain.
+    pub fn inverse_dynamics_in(
+        &self,
+        posture: &Posture,
+        qd: &Joints<f64>,
+        qdd: &Joints<f64>,
+        gravity: &Vector3<f64>,
+    ) -> Joints<f64> {
         self.expect_joints(qd);
         self.expect_joints(qdd);
-        let mut placements = [super::Placement::identity(); crate::MAX_JOINTS];
+        let placements = &posture.joints;
         let mut forces = [Vector3::zeros(); crate::MAX_JOINTS];
         let mut moments = [Vector3::zeros(); crate::MAX_JOINTS];
 
         let mut motion = LinkMotion::of_base(gravity);
         for (joint, link) in self.links.iter().enumerate() {
-            let placement = link.placement(q[joint]);
-            motion = motion.next(link, &placement, qd[joint], qdd[joint]);
+            motion = motion.next(link, &placements[joint], qd[joint], qdd[joint]);
             let LinkMotion {
                 turning,
                 turning_rate,
@@ -45,7 +54,6 @@ impl Chain {
             moments[joint] = rotational * turning_rate
                 + turning.cross(&(rotational * turning))
                 + lever.cross(&acceleration);
-            placements[joint] = placement;
         }
 
         // Forces, from the tip on: each joint carries what all links behind it need.

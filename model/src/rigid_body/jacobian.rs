@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, Vector3};
 
 use crate::{Joints, MAX_JOINTS};
 
-use super::{chain::Chain, placement::Placement};
+use super::{chain::Chain, placement::Placement, posture::Posture};
 
 /// One column for each joint, zero behind the last one. Rows 1 to 3: velocity of the tip
 /// \[m/s per rad/s or m/s\]; rows 4 to 6: angular velocity \[rad/s per rad/s or m/s\].
@@ -20,7 +20,12 @@ impl Chain {
 
     /// The tip's frame and Jacobian at once, for loops that need both.
     pub fn forward_and_jacobian(&self, q: &Joints<f64>) -> (Placement, Jacobian) {
-        let placements = self.link_placements(q);
+        self.forward_and_jacobian_in(&self.posture(q))
+    }
+
+    /// [`forward_and_jacobian`](Self::forward_and_jacobian) in a posture of this chain.
+    pub fn forward_and_jacobian_in(&self, posture: &Posture) -> (Placement, Jacobian) {
+        let placements = self.links_of(posture);
         let tip = self.tip_on(&placements);
         let mut jacobian = Jacobian::zeros();
         for (joint, link) in self.links.iter().enumerate() {

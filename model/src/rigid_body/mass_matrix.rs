@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, Vector3};
 
 use crate::{Joints, MAX_JOINTS};
 
-use super::{Placement, chain::Chain};
+use super::{chain::Chain, posture::Posture};
 
 /// Symmetric, a row and a column for each joint, zero behind the last one
 /// \[kg m², kg m or kg, after the two joints\].
@@ -15,11 +15,12 @@ impl Chain {
     /// kinetic energy is ½ q̇ᵀ M q̇. The composite-rigid-body algorithm (Featherstone
     /// 2008, table 6.2).
     pub fn mass_matrix(&self, q: &Joints<f64>) -> MassMatrix {
-        self.expect_joints(q);
-        let mut placements = [Placement::identity(); MAX_JOINTS];
-        for (joint, link) in self.links.iter().enumerate() {
-            placements[joint] = link.placement(q[joint]);
-        }
+        self.mass_matrix_in(&self.posture(q))
+    }
+
+    /// [`mass_matrix`](Self::mass_matrix) in a posture of this chain.
+    pub fn mass_matrix_in(&self, posture: &Posture) -> MassMatrix {
+        let placements = &posture.joints;
         let mut mass = MassMatrix::zeros();
         // All links from this one to the tip, as if they were one body, in its frame.
         let mut composite = self.links[self.links.len() - 1].inertia;

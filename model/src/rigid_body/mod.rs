@@ -29,6 +29,7 @@ mod jacobian;
 mod mass_matrix;
 mod motion;
 mod placement;
+mod posture;
 mod regressor;
 #[cfg(test)]
 mod tests;
@@ -39,4 +40,5 @@ pub use jacobian::Jacobian;
 pub use mass_matrix::MassMatrix;
 pub use nalgebra::{Matrix3, Vector3, Vector6};
 pub use placement::Placement;
+pub use posture::Posture;
 pub use regressor::{REGRESSOR_COLUMNS, Regressor};

@@ -15,7 +15,7 @@
 
 use ferntast_model::{
     JointCount, Joints,
-    rigid_body::{Chain, Jacobian, MassMatrix, Placement, Vector3, Vector6},
+    rigid_body::{Chain, Jacobian, MassMatrix, Placement, Posture, Vector3, Vector6},
 };
 
 use super::{braking::Braking, cholesky::Factor, world::Object};
@@ -179,15 +179,16 @@ impl Plant {
     ) {
         let (count, half) = (self.count(), 0.5 * dt);
         let middle = Joints::from_fn(count, |joint| self.q[joint] + half * self.qd[joint]);
-        let (contact, jacobian) = self.touch(&middle, dt);
+        let posture = self.chain.posture(&middle);
+        let (contact, jacobian) = self.touch(&posture, dt);
         // Coriolis torques are quadratic in q̇: taken with the velocity that is to be
         // expected in the middle.
         let expected = Joints::from_fn(count, |joint| self.qd[joint] + half * self.qdd[joint]);
         let rest = Joints::filled(count, 0.0);
         let bias = self
             .chain
-            .inverse_dynamics(&middle, &expected, &rest, &self.gravity);
-        let mut matrix: MassMatrix = self.chain.mass_matrix(&middle) * (2.0 / dt);
+            .inverse_dynamics_in(&posture, &expected, &rest, &self.gravity);
+        let mut matrix: MassMatrix = self.chain.mass_matrix_in(&posture) * (2.0 / dt);
         let mut right = Joints::from_fn(count, |joint| {
             let along: f64 = (0..count.get())
                 .map(|other| matrix[(joint, other)] * self.qd[other])
@@ -258,13 +259,13 @@ impl Plant {
         self.contact_work += self.wrench.dot(&twist(&jacobian, &along));
     }
 
-    /// What the contact does to the joints at positions `q`, half a step ahead.
-    fn touch(&mut self, q: &Joints<f64>, dt: f64) -> (Joints<f64>, Jacobian) {
+    /// What the contact does to the joints in the `posture` half a step ahead.
+    fn touch(&mut self, posture: &Posture, dt: f64) -> (Joints<f64>, Jacobian) {
         let count = self.count();
         if self.objects.is_empty() {
             return (Joints::filled(count, 0.0), Jacobian::zeros());
         }
-        let (tip, jacobian) = self.chain.forward_and_jacobian(q);
+        let (tip, jacobian) = self.chain.forward_and_jacobian_in(posture);
         let twist = twist(&jacobian, &self.qd);
         let (velocity, turning) = (twist.fixed_rows::<3>(0), twist.fixed_rows::<3>(3));
         let velocity_at = |lever: &Vector3<f64>| velocity + turning.cross(lever);
