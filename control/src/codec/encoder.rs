@@ -191,7 +191,11 @@ fn differs(deadband: &Deadband, sample: Sample, predicted: &[f32; 3], own: &[f32
         Sample::Force { at_hand } => {
             at_hand * off > (deadband.force_share * at_hand * size).max(deadband.force_floor)
         }
-        Sample::Model => off > deadband.model_share * size,
+        Sample::Place => {
+            let [place, friction] = [0, 1].map(|of| f64::from(own[of]) - f64::from(predicted[of]));
+            place.abs() > deadband.place_floor || friction.abs() > deadband.surface_share
+        }
+        Sample::Stiffness => off > deadband.surface_share * size,
         Sample::Integral => off > 0.0,
     }
 }

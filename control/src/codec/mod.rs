@@ -70,8 +70,10 @@ parameters! {
         /// s₀ of positions \[m\]; they have no δ, as there is no place to count from. Far below
         /// what a hand notices: a servo of some kN/m makes a force of each step.
         pub position_floor: f64 [0.0..=0.1, "m"] = 0.00001,
-        /// δ of the numbers of a model \[-\].
-        pub model_share: f64 [0.0..=1.0, "-"] = 0.02,
+        /// s₀ of the place of a surface \[m\].
+        pub place_floor: f64 [0.0..=0.1, "m"] = 0.0001,
+        /// δ of the stiffness of a surface, s₀ of its friction \[-\].
+        pub surface_share: f64 [0.0..=1.0, "-"] = 0.02,
         /// s₀ of energies, at the hand's scale \[J\].
         pub energy_floor: f64 [0.0..=1.0, "J"] = 0.005,
         /// Longest silence, announced to the other end \[s\]. One frame may be lost: twice this is

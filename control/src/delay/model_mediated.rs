@@ -88,7 +88,7 @@ law_ends!(
 
 impl ModelMediated {
     fn samples(&self) -> [Samples; 2] {
-        [Samples::position_and_force(1.0), Samples::MODEL]
+        [Samples::position_and_force(1.0), Samples::SURFACE]
     }
 }
 

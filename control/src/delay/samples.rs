@@ -16,8 +16,10 @@ pub enum Sample {
         /// \[-\]
         at_hand: f64,
     },
-    /// Numbers of a model of what is touched, which stand until they are told anew.
-    Model,
+    /// Place \[m\] and friction \[-\] of a surface, which stand until they are told anew.
+    Place,
+    /// Stiffness of a surface along its normal \[N/m\], which stands until it is told anew.
+    Stiffness,
     /// An integral, whose rate is what counts: every packet is news.
     Integral,
 }
@@ -40,10 +42,10 @@ impl Samples {
         vector: Sample::Velocity,
         energy: false,
     };
-    /// Numbers of a model.
-    pub(super) const MODEL: Samples = Samples {
-        position: Sample::Model,
-        vector: Sample::Model,
+    /// A surface.
+    pub(super) const SURFACE: Samples = Samples {
+        position: Sample::Place,
+        vector: Sample::Stiffness,
         energy: false,
     };
     /// Position and an integral.
