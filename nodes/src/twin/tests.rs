@@ -219,7 +219,8 @@ fn a_right_model_is_silent() {
         .map(|diagnosis| diagnosis.verdict);
     assert_eq!(last.verdict, TwinVerdict::COMPLETE, "{own:?}");
     assert!(published.faults.is_empty(), "{:?}", published.words);
-    // A message with the first row after a tenth of a second; lists with the model's two parameters.
+    // A message with the first row after a tenth of a second; lists with the model's two parameters,
+    // and the fastest speed that they rest on.
     assert!((1000..=1300).contains(&published.parameters.len()));
     let names: Vec<&str> = last
         .names
@@ -227,7 +228,8 @@ fn a_right_model_is_silent() {
         .take(last.len())
         .map(Text::as_str)
         .collect();
-    assert_eq!(names, ["b0", "b1"]);
+    assert_eq!(names, ["b0", "b1", "v_seen"]);
+    assert!((0.1..1.0).contains(&last.values[2]), "{}", last.values[2]);
     assert!((last.values[0] - 6.0).abs() < 0.1 && (last.values[1] - 13.0).abs() < 0.3);
     // Stamps are those of the samples, in order; the other joint is zero.
     let predicted = &published.predicted;
