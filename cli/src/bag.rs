@@ -113,7 +113,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             let start_date = info.start.map(date);
             match (json, &start_date) {
                 (true, _) => print_json(&Dated { start_date, info })?,
-                (false, Some(date)) => print!("{info}  began {date}\n"),
+                (false, Some(date)) => println!("{info}  began {date}"),
                 (false, None) => print!("{info}"),
             }
         }

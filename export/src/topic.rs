@@ -72,7 +72,7 @@ impl TopicNumbers {
             let selection = Selection::new(numbers.reader.layout(), &path).ok()?;
             let unit = unit_at(&topic.schema_name, &topic.schema_text, &path.steps);
             numbers.columns.push(match unit {
-                Some(unit) => format!("{inside}_{}", unit.replace('/', "_").replace(' ', "_")),
+                Some(unit) => format!("{inside}_{}", unit.replace(['/', ' '], "_")),
                 None => inside,
             });
             numbers.paths.push(path);
