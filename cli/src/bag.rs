@@ -2,11 +2,13 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_bus::mcap;
+use ferntast_bus::mcap::{self, BagInfo};
+use ferntast_export::{self as export, lerobot};
+use ferntast_msgs::Time;
 
 use super::{Failure, output::print_json};
 
-/// Look into recordings, mend them.
+/// Look into recordings, mend them, write them for other programs.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     #[command(subcommand)]
@@ -28,6 +30,79 @@ enum Action {
         #[arg(short, long, value_name = "FILE|DIR")]
         output: Option<PathBuf>,
     },
+    /// Write a recording for other programs: tables, or a dataset of LeRobot.
+    #[command(subcommand)]
+    Export(Export),
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Export {
+    /// CSV: one table a topic, or with --rate one of all.
+    Csv(Tables),
+    /// Apache Parquet: one table a topic, or with --rate one of all.
+    Parquet(Tables),
+    /// A dataset of LeRobot (layout v3.0, without pictures), an episode a recording.
+    #[command(
+        after_help = "Of sessions, observation.state is position, velocity and torque of the joints and the contact force, \
+        action the commanded place of the tip. Of other recordings:\n  \
+        ferntast bag export lerobot run_1 run_2 -o dataset --task 'pick up the cube' \\\n    \
+        --state '/joint_states.position[0]' --state '/joint_states.position[1]' --action '/joint_commands.position[0]'\n\n\
+        In Python: LeRobotDataset('local/dataset', root='dataset')"
+    )]
+    Lerobot {
+        /// Rosbag2 directories or .mcap files.
+        #[arg(required = true)]
+        recordings: Vec<PathBuf>,
+        /// The dataset's folder, which must not exist yet.
+        #[arg(short, long, value_name = "DIR")]
+        output: PathBuf,
+        /// Frames in a second.
+        #[arg(long, value_name = "HZ", default_value_t = 50.0)]
+        rate: f64,
+        /// Message path of an element of observation.state (may be given again).
+        #[arg(long, value_name = "PATH")]
+        state: Vec<String>,
+        /// Message path of an element of action (may be given again).
+        #[arg(long, value_name = "PATH")]
+        action: Vec<String>,
+        /// What was done, in words.
+        #[arg(long, value_name = "TEXT", default_value = "teleoperate")]
+        task: String,
+    },
+}
+
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Columns are the numbers of messages with their units, as far as the types say them (position[0]_rad); t_s is the \
+    log time since the recording's start, stamp_s the stamp of the header since then. Texts are left out, of arrays all \
+    but the first eight elements. With --rate a row has what was heard last, at its time."
+)]
+struct Tables {
+    /// A rosbag2 directory or an .mcap file.
+    recording: PathBuf,
+    /// Folder for the tables, which must not exist yet.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Only these topics.
+    #[arg(long, value_name = "TOPIC,…", value_delimiter = ',')]
+    topics: Vec<String>,
+    /// All topics in one table, with so many rows in a second.
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
+}
+
+/// What a recording holds, with its date.
+#[derive(serde::Serialize)]
+struct Dated {
+    start_date: Option<String>,
+    #[serde(flatten)]
+    info: BagInfo,
+}
+
+/// A time as people read it.
+fn date(time: Time) -> String {
+    let date = chrono::DateTime::from_timestamp_nanos(time.nanos());
+    date.format("%Y-%m-%d %H:%M:%S%.3f UTC").to_string()
 }
 
 /// Runs it.
@@ -35,10 +110,11 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     match arguments.action {
         Action::Info { recording } => {
             let info = mcap::info(&recording).map_err(Failure::refused)?;
-            if json {
-                print_json(&info)?;
-            } else {
-                print!("{info}");
+            let start_date = info.start.map(date);
+            match (json, &start_date) {
+                (true, _) => print_json(&Dated { start_date, info })?,
+                (false, Some(date)) => println!("{info}  began {date}"),
+                (false, None) => print!("{info}"),
             }
         }
         Action::Repair { recording, output } => {
@@ -49,6 +125,68 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 print!("{report}");
             }
         }
+        Action::Export(Export::Csv(arguments)) => tables(arguments, export::Format::Csv, json)?,
+        Action::Export(Export::Parquet(arguments)) => {
+            tables(arguments, export::Format::Parquet, json)?;
+        }
+        Action::Export(Export::Lerobot {
+            recordings,
+            output,
+            rate,
+            state,
+            action,
+            task,
+        }) => dataset(
+            &lerobot::Request {
+                recordings,
+                output,
+                rate_hz: rate,
+                state,
+                action,
+                task,
+            },
+            json,
+        )?,
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn tables(arguments: Tables, format: export::Format, json: bool) -> Result<(), Failure> {
+    let request = export::Request {
+        recording: arguments.recording,
+        output: arguments.output,
+        format,
+        topics: arguments.topics,
+        rate_hz: arguments.rate,
+    };
+    let written = export::tables(&request).map_err(Failure::refused)?;
+    if json {
+        return print_json(&written);
+    }
+    for table in written {
+        println!(
+            "{}: {} rows of {} columns",
+            table.file.display(),
+            table.rows,
+            table.columns.len()
+        );
+    }
+    Ok(())
+}
+
+fn dataset(request: &lerobot::Request, json: bool) -> Result<(), Failure> {
+    let dataset = lerobot::export(request).map_err(Failure::refused)?;
+    if json {
+        return print_json(&dataset);
+    }
+    println!(
+        "{}: {} episodes, {} frames, {} a second",
+        dataset.folder.display(),
+        dataset.episodes,
+        dataset.frames,
+        dataset.fps
+    );
+    println!("observation.state: {}", dataset.state.join(", "));
+    println!("action: {}", dataset.action.join(", "));
+    Ok(())
 }

@@ -145,7 +145,8 @@ def test_arrays_and_frames_give_the_truth(package, kind):
     values = {own["effect"]: own["value"] for own in parameters.to_dict().values()}
     assert values["coulomb"] == pytest.approx(3, rel=0.02)
     assert values["viscous"] == pytest.approx(5, rel=0.02)
-    assert 0.01 < comparison.rms.held_out < 0.2
+    # The noise is 0.02 Nm before the filter.
+    assert 0.002 < comparison.rms.held_out < 0.02
 
 
 def test_units_holes_and_dates_are_read(package):
@@ -191,7 +192,7 @@ def test_errors_are_exceptions_with_the_lab_s_text(package, riddle, ferntast):
         package.compare({"a": np.arange(9.0), "b": np.arange(9.0)}, position="b")
     with pytest.raises(package.RefusedError, match="has no named columns"):
         package.compare(np.zeros((9, 2)))
-    with pytest.raises(package.RefusedError, match="no law"):
+    with pytest.raises(package.RefusedError, match="no delay law"):
         package.lockstep(law="none")
     with pytest.raises(package.RefusedError, match="the sweep has"):
         package.sweep(laws=["none"])
@@ -199,11 +200,11 @@ def test_errors_are_exceptions_with_the_lab_s_text(package, riddle, ferntast):
 
 
 def test_lockstep_and_sweep(package, ferntast, tmp_path):
-    outcome = package.lockstep(duration=3, seed=3, record=tmp_path / "a")
-    said = told(ferntast, "lockstep", "--duration", 3, "--seed", 3, "--record", tmp_path / "b")
+    outcome = package.lockstep(duration=3, seed=3, record=tmp_path / "ours" / "run")
+    said = told(ferntast, "lockstep", "--duration", 3, "--seed", 3, "--record", tmp_path / "theirs" / "run")
     same = ["scenario", "seed", "duration_s", "link", "contact", "leader", "states", "friction"]
     assert {key: outcome.to_dict()[key] for key in same} == {key: said[key] for key in same}
-    ours, theirs = (tmp_path / name / f"{name}_0.mcap" for name in "ab")
+    ours, theirs = (tmp_path / name / "run" / "run_0.mcap" for name in ("ours", "theirs"))
     assert ours.read_bytes() == theirs.read_bytes()
 
     text = (ROOT / "config" / "scenarios" / "delay_sweep.toml").read_text()
