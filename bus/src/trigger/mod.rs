@@ -17,7 +17,7 @@ pub struct TriggerService {
 
 #[derive(Debug)]
 enum Kind {
-    Dds(dds::DdsTrigger),
+    Dds(Box<dds::DdsTrigger>),
     Zenoh(Box<zenoh::ZenohTrigger>),
 }
 
@@ -42,7 +42,7 @@ impl TriggerService {
     /// [`OpenError::BadName`], [`OpenError::Middleware`].
     pub fn open(bus: &Bus, name: &str) -> Result<Option<TriggerService>, OpenError> {
         let kind = match bus {
-            Bus::Dds(bus) => Kind::Dds(dds::DdsTrigger::open(bus, name)?),
+            Bus::Dds(bus) => Kind::Dds(Box::new(dds::DdsTrigger::open(bus, name)?)),
             Bus::Zenoh(bus) => Kind::Zenoh(Box::new(zenoh::ZenohTrigger::open(bus, name)?)),
             Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) | Bus::Foxglove(_) => {
                 return Ok(None);

@@ -16,7 +16,7 @@ use super::effects::ArmEffect;
 use super::prepared::{ArmJoint, PreparedArm};
 use super::shared::{SharedFit, weighted, weighted_decrease};
 use super::trial::{Tried, try_all, try_one};
-use crate::comparison::noise_floor::NoiseFloor;
+use crate::comparison::{Usage, noise_floor::NoiseFloor};
 use crate::data::Term;
 use crate::diagnosis::dependence::Dependence;
 use crate::diagnosis::{self, Diagnosis, NamedCandidate, Suspect, Verdict};
@@ -78,8 +78,8 @@ pub struct JointDiagnosis {
     pub noise_floor: Option<f64>,
     /// The same, and variation between sessions.
     pub noise: NoiseFloor,
-    /// Rows of its regression.
-    pub used: usize,
+    /// What became of its samples.
+    pub used: Usage,
 }
 
 /// Result of a diagnosis of an arm.
@@ -286,7 +286,7 @@ fn joints(
             rms: own.rms,
             noise_floor: own.noise_floor,
             noise: own.noise,
-            used: own.used,
+            used: own.used.clone(),
         };
         (joint.name.clone(), told)
     })

@@ -34,12 +34,13 @@ impl Motion {
                     position: session.position.get(joint).cloned().unwrap_or_default(),
                     ..RecordedSession::default()
                 };
-                Filters::for_dataset(&Dataset {
+                let joint = Dataset {
                     sessions: dataset.sessions.iter().map(own).collect(),
                     joint: kinds(joint),
                     filter: dataset.filter,
                     ..Dataset::default()
-                })
+                };
+                Filters::at_cut_off(&joint, 1.0)
             })
             .collect();
         let by = filters.first().map_or(1, |filters| filters.thinning);

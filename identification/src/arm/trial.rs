@@ -155,6 +155,8 @@ pub(super) fn parameters(
         let parameter = Parameter {
             value,
             std_error: Some(error),
+            freedom: None,
+            interval_95: None,
             unit: unit.to_owned(),
             effect: effect.id().to_owned(),
         };

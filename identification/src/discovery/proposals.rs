@@ -132,6 +132,7 @@ impl Judge<'_> {
         let share = decrease.mean_square / decrease.before.powi(2).max(1e-300);
         let mut parameters = BTreeMap::new();
         let mut holds = true;
+        let mut freedom = 1.0;
         let own = addition.parameters.values();
         let own = own.filter(|parameter| parameter.effect == name);
         for (((own, term), fitted), error) in coefficients
@@ -142,21 +143,23 @@ impl Judge<'_> {
         {
             let conditional = fitted.std_error.unwrap_or(0.0);
             holds &= self.holds_between_sessions(term, fitted);
-            let parameter = Parameter {
+            freedom = fitted.freedom.unwrap_or(freedom);
+            let parameter = Parameter::measured(
+                fitted.value,
                 // What places and scales may be makes a coefficient less certain.
-                std_error: Some(conditional.max(*error)),
-                unit: term.unit(&signals).text(self.prepared.facts.joint),
-                ..fitted.clone()
-            };
+                (conditional.max(*error), freedom),
+                &term.unit(&signals).text(self.prepared.facts.joint),
+                &name,
+            );
             parameters.insert(own.clone(), parameter);
         }
         for ((at, own), error) in order.iter().zip(&names).zip(of_constants) {
-            let parameter = Parameter {
-                value: constant(&terms, *at),
-                std_error: Some(*error),
-                unit: self.unit_of_constant(&terms, at, &signals),
-                effect: name.clone(),
-            };
+            let parameter = Parameter::measured(
+                constant(&terms, *at),
+                (*error, freedom),
+                &self.unit_of_constant(&terms, at, &signals),
+                &name,
+            );
             parameters.insert(own.clone(), parameter);
         }
         let read = read_by(&terms);

@@ -86,7 +86,7 @@ impl Discovery {
         let named = diagnosis.candidates.iter();
         Self {
             samples: diagnosis.samples,
-            used: diagnosis.used,
+            used: diagnosis.used.rows,
             verdict: diagnosis.verdict,
             named: named
                 .map(|own| NamedEffect {

@@ -61,8 +61,7 @@ impl<'a> TipForce<'a> {
         let mobility = squares[rank - 1].max(0.0).sqrt() / LENGTH;
         let damped = weighted + Matrix3::identity() * (DAMPING * DAMPING);
         let inverse = damped.try_inverse();
-        // NaN counts as singular.
-        let singular = !(mobility >= singularity) || inverse.is_none();
+        let singular = mobility.is_nan() || mobility < singularity || inverse.is_none();
         Self {
             jacobian,
             weights,
