@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::ServoConfig;
-use super::tip::{Led, PlanarTip, SerialTip, TipKinematics};
+use super::planar_tip::PlanarTip;
+use super::serial_tip::SerialTip;
+use super::tip::{Led, TipKinematics};
 use crate::{nanoseconds, seconds};
 use ferntast_model::kinematics::{Kinematics, LINKS};
 use ferntast_model::serial_arm::SerialArm;

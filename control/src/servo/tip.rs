@@ -1,17 +1,11 @@
 //! What the servo needs to be told tips: where the tip is, and which joint positions bring
 //! it somewhere.
 
-mod planar;
-mod serial;
-
 use std::fmt::Debug;
 
 use super::CommandRefusal;
 use ferntast_model::{JointCount, Joints};
 use nalgebra::Vector3;
-
-pub(super) use planar::PlanarTip;
-pub(super) use serial::SerialTip;
 
 /// Where a command led.
 #[derive(Clone, Copy, Debug)]

@@ -5,6 +5,8 @@ use std::{io, path::PathBuf};
 use ferntast_emulation::hand::RecordingError;
 use ferntast_model::ParameterError;
 
+use super::serial::SerialError;
+
 /// Why configuration cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
@@ -53,7 +55,7 @@ pub enum ConfigError {
         /// The file.
         path: String,
         /// What is wrong, and how to correct it.
-        source: super::serial::SerialError,
+        source: SerialError,
     },
     /// A recorded hand motion cannot be used.
     #[error("{path}: {source}")]
@@ -73,4 +75,14 @@ pub enum ConfigError {
         /// The missing key.
         missing: &'static str,
     },
+}
+
+impl From<(&str, SerialError)> for ConfigError {
+    /// What is wrong in the file of that path.
+    fn from((path, source): (&str, SerialError)) -> ConfigError {
+        ConfigError::Serial {
+            path: path.to_owned(),
+            source,
+        }
+    }
 }

@@ -22,6 +22,8 @@ const FELT: f64 = 2.0;
 const ALIKE: f64 = 0.866;
 /// The hand has to go so far for a stiffness to be told \[m\].
 const WAY: f64 = 5e-4;
+/// Further to the side than this it slides \[m\].
+const ASIDE: f64 = 1e-3;
 /// Looks that are kept.
 const MOST: usize = 20_000;
 
@@ -112,8 +114,14 @@ impl TouchMeter {
     /// How much more the force on the hand is for each metre that the hand goes further into
     /// the first thing touched, both at the tip's scale \[N/m\].
     pub(super) fn stiffness(&self) -> Option<f64> {
-        let first = self.pressed.first()?[1].normalize();
-        let alike = |own: &&[Vector3<f64>; 2]| own[1].dot(&first) > ALIKE * own[1].norm();
+        let [place, force] = self.pressed.first()?;
+        let first = force.normalize();
+        // Where it slides, friction tilts the force.
+        let alike = |own: &&[Vector3<f64>; 2]| {
+            let way = own[0] - place;
+            let aside = way - first * first.dot(&way);
+            aside.norm() < ASIDE && own[1].dot(&first) > ALIKE * own[1].norm()
+        };
         let alike = || self.pressed.iter().filter(alike);
         let normal = alike().map(|own| own[1]).sum::<Vector3<f64>>().normalize();
         let points: Vec<[f64; 2]> = alike()

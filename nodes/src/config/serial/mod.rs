@@ -21,8 +21,6 @@ use serde::{Deserialize, Serialize};
 pub use file::load_serial;
 pub(super) use task::fit;
 
-use super::ConfigError;
-
 /// A serial arm's file with nothing left out.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -181,13 +179,4 @@ pub enum SerialError {
         /// What is wrong.
         message: String,
     },
-}
-
-impl From<(&str, SerialError)> for ConfigError {
-    fn from((path, source): (&str, SerialError)) -> ConfigError {
-        ConfigError::Serial {
-            path: path.to_owned(),
-            source,
-        }
-    }
 }

@@ -7,8 +7,8 @@
 //! stands before it. Where the last look found none within reach, steps are the same without
 //! the looking, Δq = h + J⁺ (e − J h) with h towards home.
 
-use super::{Led, TipKinematics};
-use crate::servo::{CommandRefusal, Range};
+use super::tip::{Led, TipKinematics};
+use super::{CommandRefusal, Range};
 use ferntast_model::rigid_body::inverse_kinematics::{Settings, Task, motion_to};
 use ferntast_model::rigid_body::{Chain, Jacobian, Placement};
 use ferntast_model::serial_arm::SerialArm;
@@ -35,7 +35,7 @@ const JOINTS_OF_POSE: usize = 6;
 
 /// The arm's links with how they are led.
 #[derive(Clone, Debug)]
-pub(in crate::servo) struct SerialTip {
+pub(super) struct SerialTip {
     chain: Chain,
     home: Joints<f64>,
     orientation: Matrix3<f64>,
@@ -43,7 +43,7 @@ pub(in crate::servo) struct SerialTip {
 }
 
 impl SerialTip {
-    pub(in crate::servo) fn new(arm: &SerialArm) -> SerialTip {
+    pub(super) fn new(arm: &SerialArm) -> SerialTip {
         let task = match arm.count().get() < JOINTS_OF_POSE {
             true => Task::Position,
             false => Task::Pose,

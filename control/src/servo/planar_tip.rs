@@ -1,17 +1,17 @@
 //! The planar arm of two links, in closed form.
 
-use super::{Led, TipKinematics};
-use crate::servo::{CommandRefusal, Range};
+use super::tip::{Led, TipKinematics};
+use super::{CommandRefusal, Range};
 use ferntast_model::kinematics::{Elbow, Kinematics, planar};
 use ferntast_model::{JointCount, Joints, Vector2};
 use nalgebra::Vector3;
 
 /// The plane z = 0: what is commanded of z is not looked at.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::servo) struct PlanarTip {
-    pub(in crate::servo) kinematics: Kinematics,
+pub(super) struct PlanarTip {
+    pub(super) kinematics: Kinematics,
     /// Two.
-    pub(in crate::servo) count: JointCount,
+    pub(super) count: JointCount,
 }
 
 impl TipKinematics for PlanarTip {
