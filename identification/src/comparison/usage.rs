@@ -163,7 +163,7 @@ impl Usage {
         left
     }
 
-    /// Samples used, in words: "22 % of the samples".
+    /// Samples used, in words: "87 % of the samples".
     #[must_use]
     pub fn claim(&self) -> String {
         let percent = self.share * 100.0;

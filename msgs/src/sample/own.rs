@@ -313,7 +313,7 @@ codes! {
     pub struct TwinVerdict {
         /// Too little came in yet.
         PENDING = 0 "pending",
-        /// What is left is noise.
+        /// No systematic rest in the samples used.
         COMPLETE = 1 "complete",
         /// An effect of the catalogue is missing.
         MISSING = 2 "missing",
