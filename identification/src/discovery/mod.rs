@@ -84,13 +84,3 @@ pub fn discover(
     progress(1.0);
     Ok(discovery)
 }
-
-/// Whether the search finds a term that chance does not explain, whatever a diagnosis
-/// says.
-#[cfg(test)]
-pub(crate) fn finds_anything(dataset: &Dataset, spec: &ModelSpec) -> bool {
-    let prepared = crate::prepare(dataset, spec).unwrap();
-    let rows = Rows::new(&prepared, &Design::new(&prepared), &[]);
-    let dictionary = Dictionary::new(&rows, &mut |_| ());
-    !search(&rows, &dictionary, 1, &mut |_| ()).is_empty()
-}

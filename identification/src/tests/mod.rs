@@ -3,7 +3,6 @@
 mod acceptance;
 mod compensation;
 mod contact;
-mod discovery;
 mod formulas;
 mod honesty;
 pub mod recordings;
