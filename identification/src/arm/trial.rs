@@ -15,7 +15,7 @@ use crate::validation::{Score, gain_of_folds};
 /// Rounds in which an effect is linearised again.
 const ROUNDS: usize = 3;
 /// Smallest share of the weighted mean square that an effect of the arm explains.
-const MIN_SHARE: f64 = 0.005;
+const MIN_SHARE: f64 = 0.02;
 /// Smallest certainty of its prediction of rows left out, in standard errors.
 const MIN_CERTAINTY: f64 = 3.0;
 /// Probability of a false alarm over all that are tried.
