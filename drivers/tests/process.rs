@@ -33,7 +33,7 @@ fn command(options: &str) -> String {
 }
 
 fn names() -> JointNames {
-    JointNames::new(["lift", "reach", "turn"]).unwrap()
+    JointNames::new(["lift", "reach", "turn"]).expect("a session with a plant")
 }
 
 fn start_with(command: &str, patience: Patience) -> Result<ProcessPlant, PlantError> {
@@ -47,7 +47,7 @@ fn start(options: &str) -> Result<ProcessPlant, PlantError> {
 
 /// What goes wrong within 10 ms, and the faults that it raises.
 fn told(options: &str, patience: Patience) -> (String, NodeHealth) {
-    let mut plant = start_with(&command(options), patience).unwrap();
+    let mut plant = start_with(&command(options), patience).expect("a session with a plant");
     for step in 0..10 {
         let command = DriverCommand {
             torque: Joints::from([1.0; 3]),
@@ -58,7 +58,7 @@ fn told(options: &str, patience: Patience) -> (String, NodeHealth) {
         if plant.read(&mut health).is_none() {
             // It stays so.
             assert_eq!(plant.read(&mut health), None);
-            return (plant.failure().unwrap(), health);
+            return (plant.failure().expect("a session with a plant"), health);
         }
     }
     panic!("nothing went wrong");
@@ -175,18 +175,19 @@ fn of_an_arm_that_is_not_believed_nothing_is_published() {
 /// A session of the shipped scenario whose arm is another program.
 fn session(options: &str) -> (tempfile::TempDir, Result<(), RunError>, Vec<u8>) {
     let loaded = common::scenario(1, false);
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a session with a plant");
     let mut context = SessionContext::in_virtual_time(loaded);
     context.driver = Some(format!("process:{}", command(options)));
     context.bag = Some(folder.path().join("bag"));
     let graph = session_graph(ferntast_drivers::row());
-    let mut session = LockstepSession::new(&graph, &context).unwrap();
+    let mut session = LockstepSession::new(&graph, &context).expect("a session with a plant");
     session.run(2.0);
     let end = session.finish();
-    let file = std::fs::read_dir(folder.path().join("bag")).unwrap();
-    let mut files = file.map(|entry| entry.unwrap().path());
+    let file = std::fs::read_dir(folder.path().join("bag")).expect("a session with a plant");
+    let mut files = file.map(|entry| entry.expect("a session with a plant").path());
     let recording = files.find(|path| path.extension().is_some_and(|own| own == "mcap"));
-    let bytes = std::fs::read(recording.unwrap()).unwrap();
+    let bytes =
+        std::fs::read(recording.expect("a session with a plant")).expect("a session with a plant");
     (folder, end, bytes)
 }
 

@@ -15,10 +15,8 @@ impl Factor {
         let mut rows = [[0.0; MAX_JOINTS]; MAX_JOINTS];
         for row in 0..count.get() {
             for column in 0..=row {
-                let mut left = matrix[(row, column)];
-                for inner in 0..column {
-                    left -= rows[row][inner] * rows[column][inner];
-                }
+                let found = dot(&rows[row][..column], &rows[column][..column]);
+                let left = matrix[(row, column)] - found;
                 rows[row][column] = if row == column {
                     // A matrix of masses is positive definite; rounding must not make a NaN.
                     1.0 / left.max(f64::MIN_POSITIVE).sqrt()
@@ -58,27 +56,27 @@ impl Factor {
         let count = self.count.get();
         // The columns of L⁻¹, each in a row of this.
         let mut columns = [[0.0; MAX_JOINTS]; MAX_JOINTS];
-        for column in 0..count {
-            columns[column][column] = self.rows[column][column];
+        for (column, own) in columns.iter_mut().enumerate().take(count) {
+            own[column] = self.rows[column][column];
             for row in column + 1..count {
-                let mut left = 0.0;
-                for inner in column..row {
-                    left -= self.rows[row][inner] * columns[column][inner];
-                }
-                columns[column][row] = left * self.rows[row][row];
+                let found = dot(&self.rows[row][column..row], &own[column..row]);
+                own[row] = -found * self.rows[row][row];
             }
         }
         let mut inverse = [[0.0; MAX_JOINTS]; MAX_JOINTS];
         for row in 0..count {
             for column in 0..=row {
-                let pairs = columns[row].iter().zip(&columns[column]);
-                let value = pairs.map(|(a, b)| a * b).sum();
+                let value = dot(&columns[row], &columns[column]);
                 inverse[row][column] = value;
                 inverse[column][row] = value;
             }
         }
         inverse
     }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

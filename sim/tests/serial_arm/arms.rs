@@ -52,7 +52,7 @@ pub fn seven_joints() -> Chain {
         joint(JointKind::Revolute, placement, Vector3::z(), mass)
     });
     let tip = Placement::from_roll_pitch_yaw(Vector3::new(0.0, 0.0, 0.107), [0.0, 0.3, 0.0]);
-    Chain::new(&joints, tip).unwrap()
+    Chain::new(&joints, tip).expect("a chain")
 }
 
 /// A table that slides along x and, on it, a ram of 2 kg that goes up and down z: its tip is
@@ -65,7 +65,7 @@ pub fn slides() -> Chain {
         joint
     };
     let joints = [slide(Vector3::x(), 1.0), slide(Vector3::z(), 2.0)];
-    Chain::new(&joints, Placement::identity()).unwrap()
+    Chain::new(&joints, Placement::identity()).expect("a chain")
 }
 
 /// A planar arm of two links along x, as ROKVISS is one.
@@ -86,5 +86,5 @@ pub fn planar(links: &[ferntast_model::arm::LinkParameters; 2]) -> Chain {
             ..joint(JointKind::Revolute, places[at], Vector3::z(), 1.0)
         }
     });
-    Chain::new(&joints, along(links[1].length)).unwrap()
+    Chain::new(&joints, along(links[1].length)).expect("a chain")
 }

@@ -9,7 +9,7 @@ fn told(text: &str) -> String {
     let chain = arms::seven_joints();
     let parameters = parameters(text);
     let arm = SerialArm::new(&chain, &arms::any_torque(&chain), &parameters, 1);
-    arm.unwrap_err().to_string()
+    arm.expect_err("refused").to_string()
 }
 
 const FLOOR: &str = "[[object]]\nname = \"floor\"\nshape = { kind = \"plane\", point = [0, 0, 0.4], \

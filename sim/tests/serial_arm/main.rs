@@ -15,11 +15,11 @@ const TICK: f64 = 1e-3;
 
 /// What a file says; the rest is left out.
 fn parameters(text: &str) -> SerialArmParameters {
-    toml::from_str(text).unwrap()
+    toml::from_str(text).expect("parameters")
 }
 
 fn arm(chain: &Chain, text: &str) -> SerialArm {
-    SerialArm::new(chain, &arms::any_torque(chain), &parameters(text), 1).unwrap()
+    SerialArm::new(chain, &arms::any_torque(chain), &parameters(text), 1).expect("an arm")
 }
 
 fn no_torque(chain: &Chain) -> Joints<f64> {

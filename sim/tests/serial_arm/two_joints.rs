@@ -34,8 +34,8 @@ fn both(config: &ArmConfig) -> (SimulatedArm, SerialArm) {
         ..Default::default()
     };
     let limits = Joints::from([1e3, 1e3]);
-    let serial = SerialArm::new(&chain, &limits, &parameters, 1).unwrap();
-    (SimulatedArm::new(config, 1).unwrap(), serial)
+    let serial = SerialArm::new(&chain, &limits, &parameters, 1).expect("an arm");
+    (SimulatedArm::new(config, 1).expect("an arm"), serial)
 }
 
 #[test]
