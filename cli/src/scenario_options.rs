@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use ferntast_control::codec::Codec;
 use ferntast_drivers::simulated;
 use ferntast_msgs::sample::JointNames;
 use ferntast_nodes::{
@@ -31,6 +32,11 @@ pub struct ScenarioOptions {
     /// Constant round-trip time of the channel instead of the one in the link's file [ms].
     #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     pub rtt: Option<f64>,
+
+    /// Which frames the link carries: all of them, at 500 Hz, or with deadband those that a hand could tell
+    /// from what was sent before, and keep-alives ([link] deadband sets how far).
+    #[arg(long, value_name = "none|deadband", value_parser = Codec::NAMES)]
+    pub codec: Option<String>,
 
     /// Whose hand: scripted, crtk (a CRTK client on ROS 2), or a CSV file with recorded motion
     /// (t_s,x_m,y_m).
@@ -97,6 +103,9 @@ impl ScenarioOptions {
         scenario.gateway.commands |= self.ros_commands;
         if let Some(law) = &self.law {
             scenario.set_law(law).map_err(Failure::refused)?;
+        }
+        if let Some(codec) = self.codec.as_deref().and_then(Codec::by_name) {
+            scenario.link.codec = codec;
         }
         if let Some(endpoint) = &self.link_endpoint {
             scenario.link.endpoint.clone_from(endpoint);

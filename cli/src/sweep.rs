@@ -7,7 +7,9 @@ use std::{
     time::Instant,
 };
 
-use ferntast_studies::sweep::{self, Row, SweepConfig};
+use ferntast_control::codec::Codec;
+use ferntast_nodes::process::stop_on_signals;
+use ferntast_studies::sweep::{self, RandomCases, Row, SweepConfig};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{Failure, output::print_json};
@@ -17,7 +19,13 @@ use super::{Failure, output::print_json};
 #[command(
     after_help = "Every trial is an operator at a task (presses and slides, taps, lets go) on the simulated arm with the servo, the\n\
     estimator and the limits of the hand's force that a session has, in virtual time, on every processor.\n\
-    With -o DIR: DIR/sweep.json (every trial) and DIR/sweep.html (stability maps and curves)."
+    With -o DIR: DIR/sweep.json (every trial) and DIR/sweep.html (stability maps and curves).\n\n\
+    With --random N: N cases of each law in which scales, both channels (delay to 1 s, jitter, loss, reordering, copies,\n\
+    bandwidth, outages), hand, surface and task are drawn from the case's seed; a line a law with the energy that was made\n\
+    at hand and tip, by the simulated bodies. Ctrl-C ends it and tells what is done. Case S+k is the same in any run:\n  \
+    ferntast sweep --random 10000 --law two_layer          # in one go\n  \
+    ferntast sweep --random 1000 --seed 3000 --json        # a slice\n\n\
+    Exit code 1: a law that claims to be passive makes more than 0.02 J."
 )]
 pub struct Arguments {
     /// What is swept over: the shipped delay_sweep or a file.
@@ -31,6 +39,18 @@ pub struct Arguments {
     /// Only these laws of the sweep (may be given again).
     #[arg(long, value_name = "NAME")]
     law: Vec<String>,
+
+    /// So many cases of each law, drawn at random, in place of the file's conditions.
+    #[arg(long, value_name = "N", conflicts_with = "output", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    random: Option<u64>,
+
+    /// Seed of the first case, with --random.
+    #[arg(long, value_name = "S", default_value_t = 0, requires = "random")]
+    seed: u64,
+
+    /// Which frames the link carries: all of them, or with deadband those that say something new.
+    #[arg(long, value_name = "none|deadband", value_parser = Codec::NAMES)]
+    codec: Option<String>,
 }
 
 /// Runs it.
@@ -50,15 +70,18 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             .laws
             .retain(|law| arguments.law.iter().any(|name| name == law.name()));
     }
+    if let Some(codec) = arguments.codec.as_deref().and_then(Codec::by_name) {
+        config.codec = codec;
+    }
+    if let Some(cases) = arguments.random {
+        return run_random(&config, arguments.seed, cases, json);
+    }
     if let Some(folder) = &arguments.output {
         // Before the work, so that it is not done in vain.
         fs::create_dir_all(folder)
             .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
     }
-    let bar = ProgressBar::new(config.conditions().len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} trials, {eta} left") {
-        bar.set_style(style);
-    }
+    let bar = progress(config.conditions().len() as u64);
     let begun = Instant::now();
     let rows = sweep::run(&config, || bar.inc(1)).map_err(Failure::refused)?;
     bar.finish_and_clear();
@@ -79,6 +102,40 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         println!("{}", sweep::table(&rows));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Runs `cases` of each law from `seed` on.
+fn run_random(
+    config: &SweepConfig,
+    seed: u64,
+    cases: u64,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let stop = stop_on_signals().map_err(Failure::failed)?;
+    let bar = progress(cases.saturating_mul(config.laws.len() as u64));
+    let begun = Instant::now();
+    let found =
+        sweep::random(config, seed, cases, &stop, || bar.inc(1)).map_err(Failure::refused)?;
+    bar.finish_and_clear();
+    let run: u64 = found.iter().map(|own| own.cases).sum();
+    eprintln!("{run} cases in {:.1} s", begun.elapsed().as_secs_f64());
+    if json {
+        print_json(&found)?;
+    } else {
+        println!("{}", sweep::random_table(&found));
+    }
+    Ok(match found.iter().any(RandomCases::breaks_its_claim) {
+        true => ExitCode::FAILURE,
+        false => ExitCode::SUCCESS,
+    })
+}
+
+fn progress(trials: u64) -> ProgressBar {
+    let bar = ProgressBar::new(trials);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} trials, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
 }
 
 fn write_rows(path: &Path, rows: &[Row]) -> Result<(), Failure> {

@@ -7,13 +7,18 @@
 //! |---:|---|---|
 //! | 0 | u32 | sequence number, one more with every frame sent |
 //! | 4 | u8 | bits 0–3 code of the delay law whose packet it carries; bits 4–7 arming counter |
-//! | 5 | u8 | flags: bit 0 content valid, bit 1 hold, bits 2–3 operating state of the sender's device |
+//! | 5 | u8 | flags: bit 0 content valid, bit 1 hold, bits 2–3 operating state of the sender's device; bits 4–7 pace |
 //! | 6 | u32 | sent: sender's clock in units of 8 ns, the low 32 bits (34 s) |
 //! | 10 | u32 | echo: `sent` of the newest frame received by the sender |
 //! | 14 | u32 | how long the sender had held that frame \[ns\]; 2³² − 1: there is none |
 //! | 18 | f32 × 3 | position \[m\] |
 //! | 30 | f32 × 3 | velocity \[m/s\] or force \[N\], as the delay law has it |
 //! | 42 | f32 × 2 | energy that entered and left the sender's port \[J\] |
+//!
+//! **Pace.** Zero: a frame is due every 2 ms. Otherwise the sender leaves out what the other end
+//! can tell for itself ([`crate::codec`]), and announces that it is never silent for longer than
+//! so many times 2 ms. A frame that only says so, a keep-alive, ends behind byte 17 with one that
+//! says how many frames ago the content was sent (255: so many or more): 19 bytes, sealed 29.
 //!
 //! Echo and hold time give the round trip without clocks that agree
 //! (RFC 3550, section 6.4.1, fields LSR and DLSR):
@@ -23,17 +28,26 @@
 use crate::delay::{ENERGY_LIMIT, POSITION_LIMIT, Packet, VECTOR_LIMIT};
 use crate::operating::OperatingState;
 use crate::{nanoseconds, seconds};
+use std::ops::Deref;
 
+/// Time between two frames, where none is left out \[ns\]: 500 Hz.
+pub const SEND_PERIOD_NS: i64 = 2_000_000;
 /// Length of a frame's content \[bytes\].
 pub const FRAME_LENGTH: usize = 50;
+/// Length of a frame without content \[bytes\].
+pub const KEEP_ALIVE_LENGTH: usize = 19;
+/// What a seal adds to a frame \[bytes\].
+pub const SEAL_LENGTH: usize = 10;
 /// Length of a frame on the wire, sealed \[bytes\].
-pub const WIRE_LENGTH: usize = 60;
+pub const WIRE_LENGTH: usize = FRAME_LENGTH + SEAL_LENGTH;
 /// Unit of the times of sending \[ns\].
 const TIME_UNIT: i64 = 8;
 /// The held time that says that there is no echo.
 const NO_ECHO: u32 = u32::MAX;
 /// Largest code of a delay law: it has four bits.
 pub const LAST_LAW_CODE: u8 = 15;
+/// Largest pace: it has four bits.
+pub const LARGEST_PACE: u8 = 15;
 
 /// Frames stamped further ahead than this are refused \[s\].
 pub const FUTURE_TOLERANCE: f64 = 0.050;
@@ -66,8 +80,28 @@ pub struct LinkFrame {
     /// laws are being switched, frames of both are on their way, and a packet
     /// means nothing to the other law.
     pub law: u8,
-    /// What the delay law sends.
+    /// Longest silence that the sender announces, in times between two frames; 0: it leaves
+    /// no frame out.
+    pub pace: u8,
+    /// How many frames ago the content was sent; 0: in this one.
+    pub since_content: u8,
+    /// What the delay law sends; of it a frame without content has only whether it is valid.
     pub packet: Packet,
+}
+
+/// A frame as bytes, of one of its two lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameBytes {
+    bytes: [u8; FRAME_LENGTH],
+    length: usize,
+}
+
+impl Deref for FrameBytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.bytes[..self.length.min(FRAME_LENGTH)]
+    }
 }
 
 /// The newest frame that the sender had received.
@@ -82,8 +116,10 @@ pub struct Echo {
 /// Why a frame was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FrameError {
-    /// Not 50 bytes.
-    #[error("a frame has {FRAME_LENGTH} bytes, this has {found}; is the peer another program?")]
+    /// Neither 50 bytes nor a keep-alive.
+    #[error(
+        "a frame has {FRAME_LENGTH} or {KEEP_ALIVE_LENGTH} bytes, this has {found}; is the peer another program?"
+    )]
     Length {
         /// Bytes received.
         found: usize,
@@ -126,10 +162,11 @@ impl LinkFrame {
     }
 }
 
-/// Writes `frame` into `bytes`. Values are written as they are; [`decode`]
-/// refuses those that are out of range.
-pub fn encode(frame: &LinkFrame, bytes: &mut [u8; FRAME_LENGTH]) {
-    let mut flags = frame.state.code() << 2;
+/// The bytes of `frame`. Values are written as they are; [`decode`] refuses those that are
+/// out of range.
+pub fn encode(frame: &LinkFrame) -> FrameBytes {
+    let mut bytes = [0; FRAME_LENGTH];
+    let mut flags = frame.state.code() << 2 | frame.pace.min(LARGEST_PACE) << 4;
     if frame.packet.valid {
         flags |= VALID;
     }
@@ -145,6 +182,13 @@ pub fn encode(frame: &LinkFrame, bytes: &mut [u8; FRAME_LENGTH]) {
     });
     bytes[10..14].copy_from_slice(&echo.to_le_bytes());
     bytes[14..18].copy_from_slice(&held.to_le_bytes());
+    if frame.since_content > 0 {
+        bytes[18] = frame.since_content;
+        return FrameBytes {
+            bytes,
+            length: KEEP_ALIVE_LENGTH,
+        };
+    }
     let packet = &frame.packet;
     let numbers = packet
         .position
@@ -153,6 +197,10 @@ pub fn encode(frame: &LinkFrame, bytes: &mut [u8; FRAME_LENGTH]) {
         .chain(&packet.energy);
     for (place, number) in bytes[18..].chunks_exact_mut(4).zip(numbers) {
         place.copy_from_slice(&number.to_le_bytes());
+    }
+    FrameBytes {
+        bytes,
+        length: FRAME_LENGTH,
     }
 }
 
@@ -165,12 +213,19 @@ pub fn encode(frame: &LinkFrame, bytes: &mut [u8; FRAME_LENGTH]) {
 /// [`FrameError::Length`], [`FrameError::Value`]. Never panics, whatever the bytes.
 pub fn decode(bytes: &[u8], now_ns: i64, ahead_ns: i64) -> Result<LinkFrame, FrameError> {
     let found = bytes.len();
-    let bytes: &[u8; FRAME_LENGTH] = bytes.try_into().map_err(|_| FrameError::Length { found })?;
-    let packet = Packet {
-        valid: bytes[5] & VALID != 0,
-        position: numbers(bytes, 18, "position", POSITION_LIMIT)?,
-        vector: numbers(bytes, 30, "velocity or force", VECTOR_LIMIT)?,
-        energy: numbers(bytes, 42, "energy", ENERGY_LIMIT)?,
+    let (bytes, since_content) = whole(bytes).ok_or(FrameError::Length { found })?;
+    let bytes = &bytes;
+    let packet = match since_content {
+        0 => Packet {
+            valid: bytes[5] & VALID != 0,
+            position: numbers(bytes, 18, "position", POSITION_LIMIT)?,
+            vector: numbers(bytes, 30, "velocity or force", VECTOR_LIMIT)?,
+            energy: numbers(bytes, 42, "energy", ENERGY_LIMIT)?,
+        },
+        _ => Packet {
+            valid: bytes[5] & VALID != 0,
+            ..Packet::default()
+        },
     };
     let there_ns = now_ns.saturating_add(ahead_ns);
     // The time nearest to now that ends in these bits.
@@ -193,8 +248,23 @@ pub fn decode(bytes: &[u8], now_ns: i64, ahead_ns: i64) -> Result<LinkFrame, Fra
         state: OperatingState::from_code((bytes[5] >> 2) & 3).unwrap_or(OperatingState::Fault),
         arming: bytes[4] >> 4,
         law: bytes[4] & LAST_LAW_CODE,
+        pace: bytes[5] >> 4,
+        since_content,
         packet,
     })
+}
+
+/// The bytes of a frame, zeros where it has no content, and how many frames ago that was sent;
+/// `None` where they are none.
+fn whole(bytes: &[u8]) -> Option<([u8; FRAME_LENGTH], u8)> {
+    if let Ok(all) = bytes.try_into() {
+        return Some((all, 0));
+    }
+    let [header @ .., since_content] = <&[u8; KEEP_ALIVE_LENGTH]>::try_from(bytes).ok()?;
+    let mut all = [0; FRAME_LENGTH];
+    all[..header.len()].copy_from_slice(header);
+    // Who leaves nothing out has no keep-alives.
+    (*since_content > 0 && all[5] >> 4 > 0).then_some((all, *since_content))
 }
 
 /// So many of the frame's units before a time \[ns\].
@@ -249,34 +319,45 @@ mod tests {
         (
             (any::<u32>(), -2_000_000_000..2_000_000_000i64),
             (echo, any::<bool>(), 0..4u8, 0..16u8, 0..16u8),
+            (0..16u8, any::<u8>()),
             packet,
         )
             .prop_map(
-                |((sequence, ago), (echo, hold, state, arming, law), packet)| LinkFrame {
-                    sequence,
-                    stamp_ns: NOW - ago * TIME_UNIT,
-                    sent_ns: NOW - ago * TIME_UNIT,
-                    echo: echo.map(|(units, held_ns)| Echo {
-                        sent_ns: NOW - units * TIME_UNIT,
-                        held_ns,
-                    }),
-                    hold,
-                    state: OperatingState::from_code(state).unwrap(),
-                    arming,
-                    law,
-                    packet: Packet {
-                        valid: packet.0,
-                        position: packet.1,
-                        vector: packet.2,
-                        energy: packet.3,
-                    },
+                |((sequence, ago), (echo, hold, state, arming, law), (pace, since), packet)| {
+                    LinkFrame {
+                        sequence,
+                        stamp_ns: NOW - ago * TIME_UNIT,
+                        sent_ns: NOW - ago * TIME_UNIT,
+                        echo: echo.map(|(units, held_ns)| Echo {
+                            sent_ns: NOW - units * TIME_UNIT,
+                            held_ns,
+                        }),
+                        hold,
+                        state: OperatingState::from_code(state).unwrap(),
+                        arming,
+                        law,
+                        pace,
+                        since_content: if pace > 0 { since } else { 0 },
+                        packet: match pace > 0 && since > 0 {
+                            true => Packet::default(),
+                            false => Packet {
+                                valid: packet.0,
+                                position: packet.1,
+                                vector: packet.2,
+                                energy: packet.3,
+                            },
+                        },
+                    }
                 },
             )
     }
 
     fn example() -> [u8; FRAME_LENGTH] {
-        let mut bytes = [0; FRAME_LENGTH];
-        let frame = LinkFrame {
+        encode(&keep_alive(0, 0))[..].try_into().unwrap()
+    }
+
+    fn keep_alive(pace: u8, since_content: u8) -> LinkFrame {
+        LinkFrame {
             sequence: 1,
             stamp_ns: NOW,
             sent_ns: NOW,
@@ -285,10 +366,25 @@ mod tests {
             state: OperatingState::Enabled,
             arming: 3,
             law: 5,
+            pace,
+            since_content,
             packet: Packet::default(),
-        };
-        encode(&frame, &mut bytes);
-        bytes
+        }
+    }
+
+    #[test]
+    fn a_frame_without_content_is_less_than_half_as_long_on_the_wire() {
+        let bytes = encode(&keep_alive(4, 3));
+        assert_eq!(bytes.len() + SEAL_LENGTH, 29);
+        let frame = decode(&bytes, NOW, 0).unwrap();
+        assert_eq!((frame.pace, frame.since_content), (4, 3));
+        // Of an end that leaves nothing out, or that has content, it is none.
+        for (place, value) in [(5, bytes[5] & 0x0f), (18, 0)] {
+            let mut other = bytes.to_vec();
+            other[place] = value;
+            let found = decode(&other, NOW, 0);
+            assert!(matches!(found, Err(FrameError::Length { found: 19 })));
+        }
     }
 
     #[test]
@@ -334,9 +430,7 @@ mod tests {
     proptest! {
         #[test]
         fn what_is_encoded_is_decoded(frame in any_frame()) {
-            let mut bytes = [0; FRAME_LENGTH];
-            encode(&frame, &mut bytes);
-            prop_assert_eq!(decode(&bytes, NOW, 0), Ok(frame));
+            prop_assert_eq!(decode(&encode(&frame), NOW, 0), Ok(frame));
         }
 
         #[test]

@@ -6,6 +6,7 @@
 //! UNIX epoch (zero is invalid), durations `f64` seconds.
 
 pub mod arming;
+pub mod codec;
 pub mod delay;
 pub mod estimator;
 pub mod frame;

@@ -56,6 +56,8 @@ pub struct PlayOut {
     arrived_ns: Option<i64>,
     /// Sequence number of the frame acted on last.
     last: Option<u32>,
+    /// The newest with content of those that went with it.
+    content: Option<LinkFrame>,
 }
 
 impl PlayOut {
@@ -70,7 +72,14 @@ impl PlayOut {
             late_since_ns: None,
             arrived_ns: None,
             last: None,
+            content: None,
         }
+    }
+
+    /// The newest frame with content among the one that was taken last and those that were
+    /// dropped then.
+    pub fn content(&self) -> Option<&LinkFrame> {
+        self.content.as_ref()
     }
 
     /// Frames that wait.
@@ -147,14 +156,20 @@ impl PlayOut {
             }
         }
         let newest = *newest?;
+        self.content = None;
         for slot in self.slots.iter_mut() {
             if self.waiting == 0 {
                 break;
             }
-            if slot.is_some_and(|own| !behind(newest.sequence, own.sequence)) {
-                *slot = None;
-                self.waiting -= 1;
+            let Some(own) = slot.filter(|own| !behind(newest.sequence, own.sequence)) else {
+                continue;
+            };
+            let newer = |before: LinkFrame| behind(before.sequence, own.sequence);
+            if own.since_content == 0 && self.content.is_none_or(newer) {
+                self.content = Some(own);
             }
+            *slot = None;
+            self.waiting -= 1;
         }
         self.last = Some(newest.sequence);
         Some(newest)
@@ -195,6 +210,8 @@ mod tests {
             state: OperatingState::Enabled,
             arming: 0,
             law: 0,
+            pace: 0,
+            since_content: 0,
             packet: Packet::default(),
         }
     }

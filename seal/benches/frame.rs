@@ -3,7 +3,7 @@
 
 use std::{hint::black_box, time::Instant};
 
-use ferntast_seal::{PLAIN_LENGTH, PlainFrame, PrivateKey, Received, Role, SecureEnd};
+use ferntast_seal::{PLAIN_LENGTH, PrivateKey, Received, Role, SecureEnd};
 
 const FRAMES: usize = 200_000;
 
@@ -15,7 +15,7 @@ fn ends() -> (SecureEnd, SecureEnd) {
     (operator, arm)
 }
 
-fn plain(number: u32) -> PlainFrame {
+fn plain(number: u32) -> [u8; PLAIN_LENGTH] {
     let mut plain = [7; PLAIN_LENGTH];
     plain[..4].copy_from_slice(&number.to_le_bytes());
     plain

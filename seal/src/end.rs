@@ -22,7 +22,7 @@ use rand_chacha::{
 };
 
 use crate::{
-    frame::{Keys, PlainFrame, SEALED_LENGTH, SealedFrame},
+    frame::{self, Keys, PlainFrame, SealedFrame},
     handshake::Handshake,
     keys::{PrivateKey, PublicKey},
     refusal::{Refusal, RefusalCounts},
@@ -197,8 +197,8 @@ impl SecureEnd {
         silent || self.keys.as_ref().is_none_or(Keys::is_worn)
     }
 
-    /// Seals a frame; `None` before the first handshake.
-    pub fn seal(&mut self, plain: &PlainFrame) -> Option<SealedFrame> {
+    /// Seals a frame of one of the two lengths; `None` before the first handshake.
+    pub fn seal(&mut self, plain: &[u8]) -> Option<SealedFrame> {
         self.keys.as_mut()?.seal(plain)
     }
 
@@ -223,8 +223,10 @@ impl SecureEnd {
         let arm = matches!(self.role, Role::Arm { .. });
         match (first & 0x0f, arm) {
             (FRAME, _) => {
-                let sealed = bytes.try_into().map_err(|_| Refusal::Length { found })?;
-                return self.open(sealed, now_ns).map(Received::Frame);
+                if !frame::is_length(found) {
+                    return Err(Refusal::Length { found });
+                }
+                return self.open(bytes, now_ns).map(Received::Frame);
             }
             (HELLO, true) if found == 1 => self.challenge(),
             (HELLO, true) => return Err(Refusal::Length { found }),
@@ -236,8 +238,8 @@ impl SecureEnd {
         Ok(Received::Handshake)
     }
 
-    fn open(&mut self, sealed: &[u8; SEALED_LENGTH], now_ns: i64) -> Result<PlainFrame, Refusal> {
-        let number = sealed[1];
+    fn open(&mut self, sealed: &[u8], now_ns: i64) -> Result<PlainFrame, Refusal> {
+        let number = sealed.get(1).copied().unwrap_or_default();
         let mut opened = match &mut self.keys {
             Some(keys) if keys.number == number => keys.open(sealed),
             _ => Err(Refusal::UnknownKey),

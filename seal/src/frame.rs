@@ -6,8 +6,8 @@
 //! | 0 | kind of message |
 //! | 1 | number of the key, so that a frame from before a restart is told from a forged one |
 //! | 2 | number of the frame, u32 little-endian: never twice under one key; with zeros behind it the nonce |
-//! | 6 | what the frame says, 46 bytes, encrypted |
-//! | 52 | tag over all of it |
+//! | 6 | what the frame says, 46 bytes, or 15 of a keep-alive, encrypted |
+//! | 52, or 21 | tag over all of it |
 //!
 //! Two keys, one a direction: a frame that is sent back to its sender is forged
 //! there. Who has no key forges one of 2⁶⁴; at 100 000 attempts a second that
@@ -19,6 +19,8 @@ use ccm::{
     aead::AeadInPlace,
     consts::{U8, U13},
 };
+
+use std::ops::{Deref, DerefMut};
 
 use crate::{
     refusal::Refusal,
@@ -33,15 +35,54 @@ const TAG: usize = 8;
 /// Number and content of a frame, as the link's ends make and take it \[bytes\].
 pub const PLAIN_LENGTH: usize = 50;
 /// The same, sealed \[bytes\].
-pub const SEALED_LENGTH: usize = HEADER + (PLAIN_LENGTH - 4) + TAG;
+pub const SEALED_LENGTH: usize = PLAIN_LENGTH + ADDED;
+/// Number and content of a keep-alive \[bytes\].
+pub const SHORT_LENGTH: usize = 19;
+/// What a seal adds: kind, number of the key, tag \[bytes\].
+const ADDED: usize = HEADER - 4 + TAG;
 /// So many frames are sealed under one key at most: half of the numbers, fifty
 /// days at 500 Hz.
 const MOST_FRAMES: u32 = 1 << 31;
 
 /// A frame as the link's ends make it: four bytes of number, then its content.
-pub type PlainFrame = [u8; PLAIN_LENGTH];
+pub type PlainFrame = FrameBytes<PLAIN_LENGTH>;
 /// A frame as it goes over the wire.
-pub type SealedFrame = [u8; SEALED_LENGTH];
+pub type SealedFrame = FrameBytes<SEALED_LENGTH>;
+
+/// Bytes of a frame, in place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameBytes<const MOST: usize> {
+    bytes: [u8; MOST],
+    length: usize,
+}
+
+impl<const MOST: usize> FrameBytes<MOST> {
+    fn zeros(length: usize) -> Self {
+        FrameBytes {
+            bytes: [0; MOST],
+            length: length.min(MOST),
+        }
+    }
+}
+
+impl<const MOST: usize> Deref for FrameBytes<MOST> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.bytes[..self.length]
+    }
+}
+
+impl<const MOST: usize> DerefMut for FrameBytes<MOST> {
+    fn deref_mut(&mut self) -> &mut [u8] {
+        &mut self.bytes[..self.length]
+    }
+}
+
+/// Whether a sealed frame has that many bytes.
+pub(crate) fn is_length(sealed: usize) -> bool {
+    [PLAIN_LENGTH, SHORT_LENGTH].contains(&sealed.saturating_sub(ADDED))
+}
 
 /// The keys of one handshake.
 pub(crate) struct Keys {
@@ -69,19 +110,19 @@ impl Keys {
         self.sealed >= MOST_FRAMES / 2
     }
 
-    /// Seals `plain`, whose number must not have been used before; `None` when the
-    /// key is used up.
-    pub fn seal(&mut self, plain: &PlainFrame) -> Option<SealedFrame> {
-        if self.sealed >= MOST_FRAMES {
+    /// Seals `plain`, of one of the two lengths, whose number must not have been used before;
+    /// `None` when the key is used up.
+    pub fn seal(&mut self, plain: &[u8]) -> Option<SealedFrame> {
+        if self.sealed >= MOST_FRAMES || !is_length(plain.len() + ADDED) {
             return None;
         }
         self.sealed += 1;
-        let mut sealed = [0; SEALED_LENGTH];
+        let mut sealed = SealedFrame::zeros(plain.len() + ADDED);
         sealed[0] = first_byte(FRAME);
         sealed[1] = self.number;
-        sealed[2..2 + PLAIN_LENGTH].copy_from_slice(plain);
+        sealed[2..2 + plain.len()].copy_from_slice(plain);
         let (header, rest) = sealed.split_first_chunk_mut::<HEADER>()?;
-        let (content, tag) = rest.split_at_mut(PLAIN_LENGTH - 4);
+        let (content, tag) = rest.split_at_mut_checked(plain.len() - 4)?;
         let made = self
             .sends
             .encrypt_in_place_detached(&nonce(header).into(), header, content)
@@ -91,14 +132,17 @@ impl Keys {
     }
 
     /// Opens a frame, once.
-    pub fn open(&mut self, sealed: &SealedFrame) -> Result<PlainFrame, Refusal> {
+    pub fn open(&mut self, sealed: &[u8]) -> Result<PlainFrame, Refusal> {
         let (header, rest) = sealed
             .split_first_chunk::<HEADER>()
             .ok_or(Refusal::Forged)?;
         let [.., a, b, c, d] = *header;
         let number = u32::from_le_bytes([a, b, c, d]);
-        let (content, tag) = rest.split_at(PLAIN_LENGTH - 4);
-        let mut plain = [0; PLAIN_LENGTH];
+        let (content, tag) = rest.split_last_chunk::<TAG>().ok_or(Refusal::Forged)?;
+        if !is_length(sealed.len()) {
+            return Err(Refusal::Forged);
+        }
+        let mut plain = PlainFrame::zeros(4 + content.len());
         plain[..4].copy_from_slice(&header[2..]);
         plain[4..].copy_from_slice(content);
         self.receives
@@ -131,10 +175,33 @@ mod tests {
         )
     }
 
-    fn plain(number: u32, content: u8) -> PlainFrame {
-        let mut plain = [content; PLAIN_LENGTH];
+    fn of_length(length: usize, number: u32, content: u8) -> Vec<u8> {
+        let mut plain = vec![content; length];
         plain[..4].copy_from_slice(&number.to_le_bytes());
         plain
+    }
+
+    fn plain(number: u32, content: u8) -> Vec<u8> {
+        of_length(PLAIN_LENGTH, number, content)
+    }
+
+    #[test]
+    fn a_keep_alive_is_sealed_as_the_others_and_other_lengths_are_not() {
+        let (mut here, mut there) = pair();
+        let sealed = here.seal(&of_length(SHORT_LENGTH, 9, 0xab)).unwrap();
+        assert_eq!(sealed.len(), 29);
+        let mut bad = sealed;
+        bad[20] ^= 1;
+        assert_eq!(there.open(&bad), Err(Refusal::Forged));
+        let opened = there.open(&sealed).unwrap();
+        assert_eq!(opened[..], of_length(SHORT_LENGTH, 9, 0xab));
+        // A whole frame that was cut to that length is none.
+        let whole = here.seal(&plain(10, 0xab)).unwrap();
+        assert_eq!(there.open(&whole[..29]), Err(Refusal::Forged));
+        assert_eq!(there.open(&whole[..28]), Err(Refusal::Forged));
+        for length in [4, SHORT_LENGTH + 1, PLAIN_LENGTH - 1] {
+            assert!(here.seal(&of_length(length, 11, 0)).is_none());
+        }
     }
 
     #[test]
@@ -160,7 +227,8 @@ mod tests {
             let sealed: Vec<_> = numbers.iter().map(|own| here.seal(&plain(*own, content)).unwrap()).collect();
             // The last first: all are within the window.
             for (sealed, number) in sealed.iter().zip(&numbers).rev() {
-                prop_assert_eq!(there.open(sealed), Ok(plain(*number, content)));
+                let opened = there.open(sealed).map(|own| own.to_vec());
+                prop_assert_eq!(opened, Ok(plain(*number, content)));
             }
             for sealed in &sealed {
                 prop_assert_eq!(there.open(sealed), Err(Refusal::Replayed));

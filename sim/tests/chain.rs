@@ -68,10 +68,11 @@ impl End {
             state,
             arming: 0,
             law: 0,
+            pace: 0,
+            since_content: 0,
             packet,
         };
-        let mut bytes = [0; FRAME_LENGTH];
-        frame::encode(&frame, &mut bytes);
+        let bytes = frame::encode(&frame);
         self.sequence += 1;
         self.meter.sent();
         // With room for the seal, which a channel of limited rate counts.

@@ -8,8 +8,8 @@
 mod random_cases;
 
 use ferntast_control::delay::{Guarantee, Law};
-use ferntast_sim::teleoperation::{Environment, Trial};
-use random_cases::{Draw, cases, failures, report};
+use ferntast_sim::teleoperation::{Draw, Environment, Trial};
+use random_cases::{cases, failures, report};
 
 /// Seeds tried for each law.
 const CASES: u64 = 120;

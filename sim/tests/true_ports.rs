@@ -9,8 +9,8 @@ use ferntast_control::delay::{InnerLaw, Law, TwoLayer};
 use ferntast_control::haptics::MasterConfig;
 use ferntast_control::servo::{self, ServoConfig};
 use ferntast_sim::arm::ArmConfig;
-use ferntast_sim::teleoperation::{ArmUnderTrial, Environment, FollowerModel, Task, Trial};
-use random_cases::{Draw, failures, report};
+use ferntast_sim::teleoperation::{ArmUnderTrial, Draw, FollowerModel, Trial};
+use random_cases::{failures, report};
 
 /// Seeds tried.
 const CASES: u64 = 1000;
@@ -25,20 +25,8 @@ fn arm() -> ArmUnderTrial {
 
 /// A trial on `arm` with a law that `law` makes of a draw.
 fn trial(arm: &ArmUnderTrial, seed: u64, law: impl Fn(&mut Draw) -> Law) -> Trial {
-    let mut draw = Draw::of(seed);
-    let law = law(&mut draw);
-    let link = draw.link(true);
-    let pick = draw.between(0.0, 15.0) as usize;
-    let environment = Environment::ALL[pick % 5];
-    let mut trial = Trial::new(law, link, environment, seed);
-    trial.task = Task::ALL[pick / 5];
-    if draw.chance(0.3) {
-        trial.buffer = draw.between(0.0, 0.15);
-    }
-    trial.hand = draw.hand();
-    trial.follower = FollowerModel::Arm(Box::new(arm.clone()));
-    trial.master = Some(MasterConfig::default());
-    trial
+    let follower = FollowerModel::Arm(Box::new(arm.clone()));
+    Trial::drawn(seed, follower, Some(MasterConfig::default()), law)
 }
 
 /// The layers around `inside`, at scales of their own.

@@ -36,7 +36,7 @@ use super::contact::{CommandForce, LastCommand, TouchingTip};
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
-    vector,
+    Samples, vector,
 };
 use nalgebra::Vector3;
 
@@ -61,6 +61,15 @@ law_ends!(
     FourChannelLeader,
     FourChannelFollower
 );
+
+impl FourChannel {
+    fn samples(&self) -> [Samples; 2] {
+        [
+            Samples::position_and_force(1.0),
+            Samples::position_and_force(self.force_scale),
+        ]
+    }
+}
 
 /// Time constant of the velocity of what was received [s].
 const VELOCITY_FILTER: f64 = 0.01;

@@ -64,6 +64,14 @@ macro_rules! laws {
                 }
             }
 
+            /// What its packets say: the leader's, the follower's.
+            pub fn samples(&self) -> [$crate::delay::Samples; 2] {
+                use $crate::delay::Parameters;
+                match self {
+                    $($laws::$law(law) => Parameters::samples(law),)*
+                }
+            }
+
             /// The same law between the scales of `mapping`.
             #[must_use]
             pub fn between(&self, mapping: &$crate::delay::Mapping) -> $laws {

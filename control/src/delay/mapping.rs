@@ -151,6 +151,10 @@ macro_rules! law_ends {
                 self.mapping()
             }
 
+            fn samples(&self) -> [$crate::delay::Samples; 2] {
+                self.samples()
+            }
+
             fn between(&self, mapping: &$crate::delay::Mapping) -> Self {
                 self.between(mapping)
             }

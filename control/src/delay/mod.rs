@@ -26,6 +26,7 @@ mod mapping;
 mod model_mediated;
 mod position_force;
 mod position_position;
+mod samples;
 mod step_velocity;
 mod tdpa;
 mod two_layer;
@@ -39,6 +40,7 @@ pub use mapping::Mapping;
 pub use model_mediated::{ModelMediated, ModelMediatedFollower, ModelMediatedLeader, SurfaceModel};
 pub use position_force::{PositionForce, PositionForceFollower, PositionForceLeader};
 pub use position_position::{PositionPosition, PositionPositionFollower, PositionPositionLeader};
+pub use samples::{Sample, Samples};
 pub use tdpa::{Tdpa, TdpaFollower, TdpaLeader};
 pub use two_layer::{InnerLaw, TwoLayer, TwoLayerFollower, TwoLayerLeader};
 pub use wave::{Wave, WaveFollower, WaveLeader};
@@ -210,6 +212,8 @@ pub trait Parameters {
     fn guarantee(&self) -> Guarantee;
     /// Scales between hand and tip.
     fn mapping(&self) -> Mapping;
+    /// What its packets say: the leader's, the follower's.
+    fn samples(&self) -> [Samples; 2];
     /// The same law between the scales of `mapping`.
     #[must_use]
     fn between(&self, mapping: &Mapping) -> Self;

@@ -46,7 +46,7 @@ use super::contact::{LastCommand, Late, TouchingTip};
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
-    vector,
+    Samples, vector,
 };
 use compliance::SOFTEST;
 use estimate::{SAME, Scale, SurfaceEstimator};
@@ -85,6 +85,12 @@ law_ends!(
     ModelMediatedLeader,
     ModelMediatedFollower
 );
+
+impl ModelMediated {
+    fn samples(&self) -> [Samples; 2] {
+        [Samples::position_and_force(1.0), Samples::SURFACE]
+    }
+}
 
 /// A surface comes towards the hand no faster [m/s].
 const PLACE_SPEED: f64 = 0.05;

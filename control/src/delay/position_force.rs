@@ -23,7 +23,7 @@
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
-    vector,
+    Samples, vector,
 };
 use nalgebra::Vector3;
 
@@ -38,6 +38,12 @@ law_ends!(
     PositionForceLeader,
     PositionForceFollower
 );
+
+impl PositionForce {
+    fn samples(&self) -> [Samples; 2] {
+        [Samples::MOTION, Samples::force(self.force_scale)]
+    }
+}
 
 /// The leader's end: sends position and velocity \[m/s\] of the hand.
 #[derive(Clone, Debug)]

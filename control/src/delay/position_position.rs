@@ -20,7 +20,7 @@ use super::contact::LastCommand;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters};
 use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
-    Received, vector,
+    Received, Samples, vector,
 };
 use nalgebra::Vector3;
 
@@ -48,6 +48,10 @@ impl PositionPosition {
     /// B: damping at each end \[N·s/m\].
     pub fn whole_damping(&self) -> f64 {
         0.5 * self.stiffness * self.round_trip + self.damping
+    }
+
+    fn samples(&self) -> [Samples; 2] {
+        [Samples::MOTION; 2]
     }
 
     fn live(&self, connected: bool, received: Option<Received>) -> Option<Received> {

@@ -41,7 +41,7 @@ use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::step_velocity::StepVelocity;
 use super::{
     Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
-    LeaderOutput, Packet, vector,
+    LeaderOutput, Packet, Samples, vector,
 };
 use nalgebra::Vector3;
 
@@ -72,6 +72,14 @@ law_parameters! {
     }
 }
 law_ends!(Tdpa, "tdpa", ByItsBooks, TdpaLeader, TdpaFollower);
+
+impl Tdpa {
+    fn samples(&self) -> [Samples; 2] {
+        // The force is at the hand's scale already.
+        let force = Samples::force(1.0).with_energy();
+        [Samples::MOTION.with_energy(), force]
+    }
+}
 
 /// Slower than this counts as standing [m/s].
 const STANDING: f64 = 1e-6;

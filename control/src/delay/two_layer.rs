@@ -45,7 +45,7 @@ pub use inside::InnerLaw;
 pub use leader::TwoLayerLeader;
 pub use parameters::TwoLayer;
 
-use super::{Guarantee, Mapping, Parameters};
+use super::{Guarantee, Mapping, Parameters, Samples};
 
 impl Parameters for TwoLayer {
     const NAME: &'static str = "two_layer";
@@ -58,6 +58,11 @@ impl Parameters for TwoLayer {
 
     fn mapping(&self) -> Mapping {
         self.mapping()
+    }
+
+    fn samples(&self) -> [Samples; 2] {
+        let inside = self.inside.between(&self.mapping());
+        inside.samples().map(Samples::with_energy)
     }
 
     fn between(&self, mapping: &Mapping) -> TwoLayer {

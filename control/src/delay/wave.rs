@@ -44,7 +44,7 @@ use super::energy_tank::EnergyTank;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
 use super::{
     Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
-    LeaderOutput, Packet, Received, vector,
+    LeaderOutput, Packet, Received, Samples, vector,
 };
 use nalgebra::Vector3;
 
@@ -172,6 +172,12 @@ fn paid(tank: &mut EnergyTank, dt: f64, wave: Vector3<f64>) -> Vector3<f64> {
 }
 
 law_ends!(Wave, "wave", ByItsBooks, WaveLeader, WaveFollower);
+
+impl Wave {
+    fn samples(&self) -> [Samples; 2] {
+        [Samples::INTEGRAL; 2]
+    }
+}
 
 /// The leader's end: sends position of the hand and the integral of u \[√J·√s\].
 #[derive(Clone, Debug)]

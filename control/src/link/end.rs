@@ -1,16 +1,19 @@
 //! What both ends do with frames.
 
 use super::{CONNECTED, RETURN_SILENCE, SEND_PERIOD_NS};
-use crate::delay::Received;
-use crate::frame::{self, FRAME_LENGTH, LinkFrame};
+use crate::codec::{Deadband, Decoder, Encoder, Traffic};
+use crate::delay::{Received, Samples};
+use crate::frame::{self, FrameBytes, LAST_LAW_CODE, LinkFrame};
 use crate::meter::{Arrival, LinkMeasurement, LinkMeter, passed};
 use crate::operating::OperatingState;
 use crate::playout::{Offered, PlayOut};
 use crate::seconds;
-use crate::switching::{MarkedPacket, Outgoing};
+use crate::switching::{Laws, MarkedPacket, Outgoing};
 
 /// A step that comes later than this after the one before counts as this long \[s\].
 const LONGEST_STEP: f64 = 0.02;
+/// Codes of laws.
+const LAWS: usize = LAST_LAW_CODE as usize + 1;
 /// What a handshake tells of a clock may be wrong by the longest way \[ns\].
 const HANDSHAKE_ERROR_NS: i64 = 2_000_000_000;
 
@@ -36,12 +39,27 @@ pub(super) struct End {
     fresh: bool,
     /// Time of the last step [ns].
     last_ns: Option<i64>,
+    encoder: Encoder,
+    decoder: Decoder,
+    /// What packets of each law say, by its code: those of this end, those of the other.
+    samples: [[Samples; 2]; LAWS],
 }
 
 impl End {
-    /// An end whose frames wait for up to `buffer` \[s\] to be played out evenly.
-    pub fn new(buffer: f64) -> End {
+    /// An end whose frames wait for up to `buffer` \[s\] to be played out evenly; with `laws`,
+    /// of whose packets those of the leader's end are sent here where `leads`.
+    pub fn new(laws: &Laws, leads: bool, buffer: f64) -> End {
+        let samples = |law: usize| {
+            let [forth, back] = laws.samples(law as u8);
+            match leads {
+                true => [forth, back],
+                false => [back, forth],
+            }
+        };
         End {
+            encoder: Encoder::default(),
+            decoder: Decoder::default(),
+            samples: std::array::from_fn(samples),
             meter: LinkMeter::new(),
             sequence: 0,
             send_due_ns: 0,
@@ -56,6 +74,19 @@ impl End {
         }
     }
 
+    /// The same, which leaves out what is within `deadband`.
+    pub fn coded(self, deadband: Option<Deadband>) -> End {
+        End {
+            encoder: Encoder::new(deadband),
+            ..self
+        }
+    }
+
+    /// What this end sent.
+    pub fn traffic(&self) -> Traffic {
+        self.encoder.traffic()
+    }
+
     /// From `now_ns` on another process is at the other end, whose clock is
     /// `clock_ahead_ns` ahead as far as a handshake can tell: what came from the one
     /// before is over.
@@ -63,6 +94,8 @@ impl End {
         self.meter
             .restart(now_ns, clock_ahead_ns, HANDSHAKE_ERROR_NS);
         self.play_out.restart();
+        self.encoder.restart();
+        self.decoder.restart();
         self.heard_arming = None;
         self.newest = None;
         self.fresh = false;
@@ -93,6 +126,10 @@ impl End {
             Arrival::Late if self.buffered => {
                 self.play_out.offer(frame, arrived_ns);
             }
+            Arrival::Late if frame.pace > 0 => {
+                let theirs = |law| said(&self.samples, law)[1];
+                self.decoder.overtaken(frame, theirs);
+            }
             Arrival::Late | Arrival::Replayed => {}
         }
     }
@@ -101,7 +138,7 @@ impl End {
     pub fn take(&mut self, now_ns: i64) -> Option<LinkFrame> {
         let taken = self.play_out.take(now_ns);
         self.fresh = taken.is_some();
-        if self.fresh {
+        if let Some(frame) = &taken {
             self.newest = taken;
             // One that waited for this end, which was held up, is as old as it is.
             self.taken_ns = match self.buffered {
@@ -111,7 +148,11 @@ impl End {
                     .arrived_ns()
                     .map_or(now_ns, |own| own.min(now_ns)),
             };
+            let theirs = |law| said(&self.samples, law)[1];
+            let content = self.play_out.content();
+            self.decoder.heard(frame, content, self.taken_ns, theirs);
         }
+        self.decoder.step(now_ns);
         taken
     }
 
@@ -148,6 +189,17 @@ impl End {
 
     /// The packet to act on as the laws want it, and which law made it.
     pub fn newest(&self, now_ns: i64) -> Option<MarkedPacket> {
+        if self.decoder.is_on() {
+            return self.decoder.decoded().map(|own| MarkedPacket {
+                law: own.law,
+                received: Received {
+                    packet: own.packet,
+                    fresh: own.fresh,
+                    silence: self.decoder.silence(now_ns, self.heard(now_ns)),
+                    age: seconds(now_ns.saturating_sub(own.sent_ns)),
+                },
+            });
+        }
         self.newest.map(|frame| MarkedPacket {
             law: frame.law,
             received: Received {
@@ -172,14 +224,14 @@ impl End {
         elapsed
     }
 
-    /// The frame with `outgoing`, when it is time to send one.
+    /// The frame with `outgoing`, when it is time to send one and it says something.
     pub fn send(
         &mut self,
         now_ns: i64,
         state: OperatingState,
         arming: u8,
         outgoing: Outgoing,
-    ) -> Option<[u8; FRAME_LENGTH]> {
+    ) -> Option<FrameBytes> {
         // Further ahead than a period: a clock jumped back.
         let due_ns = self.send_due_ns;
         if now_ns < due_ns && due_ns.saturating_sub(now_ns) <= SEND_PERIOD_NS {
@@ -202,10 +254,14 @@ impl End {
             state,
             arming,
             law: outgoing.law,
+            pace: 0,
+            since_content: 0,
             packet: outgoing.packet,
         };
-        let mut bytes = [0; FRAME_LENGTH];
-        frame::encode(&frame, &mut bytes);
+        let ours = said(&self.samples, frame.law)[0];
+        let frame = self.encoder.pass(frame, &ours)?;
+        let bytes = frame::encode(&frame);
+        self.encoder.sent(&frame, &bytes);
         self.sequence = self.sequence.wrapping_add(1);
         self.meter.sent();
         Some(bytes)
@@ -218,6 +274,11 @@ impl End {
         measured.refused.late += self.late;
         measured
     }
+}
+
+/// What packets of the law of that code say.
+fn said(samples: &[[Samples; 2]; LAWS], law: u8) -> [Samples; 2] {
+    samples.get(usize::from(law)).copied().unwrap_or_default()
 }
 
 /// \[s\] As stamps of messages are subtracted: a product, which differs from

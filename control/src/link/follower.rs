@@ -5,8 +5,9 @@ use super::gap::{Flow, GapWatch};
 use super::velocity::VelocityFilter;
 use super::word::{Word, WordWatch};
 use super::{FRESH, LinkState, StampedPosition, WORD_LIFE};
+use crate::codec::Deadband;
 use crate::delay::Motion;
-use crate::frame::FRAME_LENGTH;
+use crate::frame::FrameBytes;
 use crate::nanoseconds;
 use crate::operating::OperatingState;
 use crate::planted::{Planted, Rule};
@@ -51,7 +52,7 @@ pub struct FollowerStep {
     /// A gap in the link was short enough to go on after it.
     pub resume_after_gap: bool,
     /// To send, when a frame is due.
-    pub frame: Option<[u8; FRAME_LENGTH]>,
+    pub frame: Option<FrameBytes>,
 }
 
 /// The arm's end of the link.
@@ -70,7 +71,7 @@ impl FollowerLink {
     /// Frames wait for up to `buffer` \[s\] to be played out evenly.
     pub fn new(laws: Laws, buffer: f64) -> FollowerLink {
         FollowerLink {
-            end: End::new(buffer),
+            end: End::new(&laws, false, buffer),
             law: FollowerSwitch::new(laws),
             velocity: VelocityFilter::default(),
             words: WordWatch::default(),
@@ -92,6 +93,14 @@ impl FollowerLink {
     pub fn bridging(self, gap: f64) -> FollowerLink {
         FollowerLink {
             gap: GapWatch::new(gap),
+            ..self
+        }
+    }
+
+    /// The same, which leaves out frames that say nothing beyond `deadband`; without one, none.
+    pub fn coded(self, deadband: Option<Deadband>) -> FollowerLink {
+        FollowerLink {
+            end: self.end.coded(deadband),
             ..self
         }
     }
@@ -161,6 +170,7 @@ impl FollowerLink {
             law: self.law.name(),
             energy: self.law.energy(),
             dissipated: self.law.dissipated(),
+            traffic: self.end.traffic(),
         }
     }
 }

@@ -4,7 +4,8 @@ use super::end::End;
 use super::velocity::VelocityFilter;
 use super::{LinkState, StampedPosition};
 use crate::arming::ArmingCount;
-use crate::frame::FRAME_LENGTH;
+use crate::codec::Deadband;
+use crate::frame::FrameBytes;
 use crate::operating::OperatingState;
 use crate::switching::{Laws, LeaderSwitch};
 
@@ -23,7 +24,7 @@ pub struct LeaderStep {
     /// Force on the hand \[N\].
     pub force: [f64; 3],
     /// To send, when a frame is due.
-    pub frame: Option<[u8; FRAME_LENGTH]>,
+    pub frame: Option<FrameBytes>,
 }
 
 /// The operator's end of the link.
@@ -42,11 +43,19 @@ impl LeaderLink {
     /// Frames wait for up to `buffer` \[s\] to be played out evenly.
     pub fn new(laws: Laws, buffer: f64) -> LeaderLink {
         LeaderLink {
-            end: End::new(buffer),
+            end: End::new(&laws, true, buffer),
             law: LeaderSwitch::new(laws),
             velocity: VelocityFilter::default(),
             arming: ArmingCount::default(),
             stops: None,
+        }
+    }
+
+    /// The same, which leaves out frames that say nothing beyond `deadband`; without one, none.
+    pub fn coded(self, deadband: Option<Deadband>) -> LeaderLink {
+        LeaderLink {
+            end: self.end.coded(deadband),
+            ..self
         }
     }
 
@@ -109,6 +118,7 @@ impl LeaderLink {
             law: self.law.name(),
             energy: self.law.energy(),
             dissipated: self.law.dissipated(),
+            traffic: self.end.traffic(),
         }
     }
 }

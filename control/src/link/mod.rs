@@ -10,6 +10,9 @@
 //! holds the keys tells the end when another process is at the other one
 //! ([`LeaderLink::peer_changed`], [`FollowerLink::peer_changed`]).
 //!
+//! An end may leave out frames that say nothing new ([`crate::codec`]), and each understands one
+//! that does.
+//!
 //! **When the arm is commanded.** A command is stamped with when what it rests on came
 //! in, [`FRESH`] later at most: a law may go on for some milliseconds without frames,
 //! but the servo's watchdog counts from the link's silence and refuses what is too
@@ -37,12 +40,13 @@ pub use leader::{LeaderLink, LeaderReadings, LeaderStep};
 pub use velocity::{LONGEST_LIFE as LONGEST_HAND_LIFE, SHORTEST_LIFE as SHORTEST_HAND_LIFE};
 pub use word::Word;
 
+pub use crate::frame::SEND_PERIOD_NS;
+
+use crate::codec::Traffic;
 use crate::delay::Energy;
 use crate::meter::LinkMeasurement;
 use crate::operating::OperatingState;
 
-/// Time between two frames \[ns\]: 500 Hz.
-pub const SEND_PERIOD_NS: i64 = 2_000_000;
 /// The other end counts as connected while it was heard, or a frame of it played out, no
 /// longer ago than this \[s\].
 pub const CONNECTED: f64 = 0.100;
@@ -84,4 +88,6 @@ pub struct LinkState {
     pub energy: Energy,
     /// By the laws at this end \[J\].
     pub dissipated: f64,
+    /// What this end sent.
+    pub traffic: Traffic,
 }

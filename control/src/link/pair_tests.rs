@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::delay::Law;
-use crate::frame::FRAME_LENGTH;
+use crate::frame::FrameBytes;
 use crate::operating::OperatingState;
 use crate::switching::Laws;
 
@@ -25,8 +25,8 @@ struct Pair {
     /// The hand is measured every so many milliseconds.
     hand_ms: i64,
     hand_stamp_ms: i64,
-    forward: Vec<(i64, [u8; FRAME_LENGTH])>,
-    back: Vec<(i64, [u8; FRAME_LENGTH])>,
+    forward: Vec<(i64, FrameBytes)>,
+    back: Vec<(i64, FrameBytes)>,
     tip: [f64; 3],
     /// Contact with a spring of 2 kN/m behind this x [m].
     wall: f64,

@@ -136,6 +136,8 @@ mod tests {
             state: Enabled,
             arming,
             law: 0,
+            pace: 0,
+            since_content: 0,
             packet: Packet::default(),
         }
     }

@@ -16,6 +16,8 @@ fn frame(sequence: u32, sent_ns: i64) -> LinkFrame {
         state: OperatingState::Enabled,
         arming: 0,
         law: 0,
+        pace: 0,
+        since_content: 0,
         packet: Packet::default(),
     }
 }

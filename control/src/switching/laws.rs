@@ -1,6 +1,6 @@
 //! The laws among which a session may switch.
 
-use crate::delay::Law;
+use crate::delay::{Law, Samples};
 use crate::frame::LAST_LAW_CODE;
 
 /// The laws by their codes in frames: the place in this list. Names keep their
@@ -57,6 +57,14 @@ impl Laws {
     /// The law of that code, if the session knows it.
     pub fn get(&self, code: u8) -> Option<&Law> {
         self.laws.get(usize::from(code))?.as_ref()
+    }
+
+    /// What packets of the law of that code say: the leader's, the follower's; nothing where the
+    /// session does not know it.
+    pub fn samples(&self, code: u8) -> [Samples; 2] {
+        let first = (code == self.first_code).then_some(&self.first);
+        let law = self.get(code).or(first);
+        law.map(Law::samples).unwrap_or_default()
     }
 
     /// The law to start with, and its code.

@@ -3,7 +3,11 @@
 use std::path::PathBuf;
 
 use ferntast_control::{
-    delay::Law, haptics::MasterConfig, playout::LONGEST_BUFFER, servo::ServoConfig,
+    codec::{Codec, Deadband},
+    delay::Law,
+    haptics::MasterConfig,
+    playout::LONGEST_BUFFER,
+    servo::ServoConfig,
 };
 use ferntast_emulation::hand::{RecordedHandConfig, ScriptedHandConfig};
 use ferntast_model::parameters;
@@ -97,6 +101,13 @@ parameters! {
         /// long; 0: after every gap an operator has to say so \[s\].
         #[serde(default, skip_serializing_if = "is_zero")]
         pub rearm_after_gap: f64 [0.0..=LONGEST_BRIDGED_GAP, "s"],
+        /// Which frames are sent: `none`, all of them, or `deadband`, those that a hand could
+        /// tell from what was sent before.
+        #[serde(default, skip_serializing_if = "Codec::is_none")]
+        pub codec: Codec,
+        /// What a hand cannot tell, with `codec = "deadband"`.
+        #[serde(default, skip_serializing_if = "Deadband::is_default")]
+        pub deadband: Deadband [section],
     }
 }
 
@@ -208,6 +219,8 @@ impl Scenario {
                 endpoint: link_endpoint(),
                 rearm_after_gap: 0.0,
                 buffer: 0.0,
+                codec: Codec::None,
+                deadband: Deadband::default(),
             },
             law: Law::default(),
             laws: Vec::new(),

@@ -1,6 +1,6 @@
 //! The two ends of the link as nodes.
 //!
-//! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz, sealed
+//! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz or fewer, sealed
 //! ([`ferntast_seal`]). What an end does is in [`ferntast_control::link`]; here are its
 //! topics. Frames come in through the channel emulator ([`transport`]), whose way
 //! out is the moment of arrival.
@@ -31,7 +31,8 @@ pub use transport::{FrameInput, FrameOutput, LinkPorts, LinkTransport, LinkWire,
 pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let loaded = &build.session.loaded;
     let session = session_number(&build.session.session);
-    let end = LeaderLink::new(loaded.laws(), loaded.scenario.link.buffer);
+    let link = &loaded.scenario.link;
+    let end = LeaderLink::new(loaded.laws(), link.buffer).coded(link.codec.of(link.deadband));
     let node = LeaderLinkNode::new(end, session);
     let wire = (build.open_link)(LinkDirection::Forward)?;
     let seed = loaded.scenario.seed.wrapping_add(2);
@@ -53,6 +54,7 @@ pub fn make_follower(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let session = session_number(&build.session.session);
     let link = &loaded.scenario.link;
     let end = FollowerLink::new(loaded.laws(), link.buffer)
+        .coded(link.codec.of(link.deadband))
         .bridging(link.rearm_after_gap)
         .planted(build.session.planted);
     let node = FollowerLinkNode::new(end, session);

@@ -7,7 +7,9 @@ use ferntast_bus::{
     SubscriberCounts,
     frames::{Door, FrameReceiver, FrameSender, MAX_FRAME, Reason},
 };
-use ferntast_control::frame::{FRAME_LENGTH, WIRE_LENGTH};
+use ferntast_control::frame::{
+    FRAME_LENGTH, FrameBytes, KEEP_ALIVE_LENGTH, SEAL_LENGTH, WIRE_LENGTH,
+};
 use ferntast_emulation::channel::{Channel, ChannelConfig};
 use ferntast_model::ParameterError;
 use ferntast_msgs::{
@@ -16,7 +18,8 @@ use ferntast_msgs::{
     topics::{JointNameError, TopicName},
 };
 use ferntast_seal::{
-    Established, PLAIN_LENGTH, Received, Refusal, RefusalCounts, SEALED_LENGTH, SecureEnd,
+    Established, PLAIN_LENGTH, PlainFrame, Received, Refusal, RefusalCounts, SEALED_LENGTH,
+    SHORT_LENGTH, SecureEnd,
 };
 
 use crate::node::{Node, Output, Ports};
@@ -26,6 +29,7 @@ use crate::node::{Node, Output, Ports};
 const BATCH: usize = 256;
 
 const _: () = assert!(FRAME_LENGTH == PLAIN_LENGTH && WIRE_LENGTH == SEALED_LENGTH);
+const _: () = assert!(KEEP_ALIVE_LENGTH == SHORT_LENGTH);
 
 /// One end of the link, open.
 pub struct LinkWire {
@@ -65,10 +69,18 @@ pub struct Emulated {
     pub loss: f64,
 }
 
+/// A frame, opened, and when it arrived.
+#[derive(Clone, Copy, Debug)]
+struct Arrived {
+    bytes: [u8; FRAME_LENGTH],
+    length: usize,
+    at: Time,
+}
+
 /// Frames that arrived since the last step, oldest first.
 #[derive(Debug)]
 pub struct FrameInput {
-    frames: [([u8; FRAME_LENGTH], Time); BATCH],
+    frames: [Arrived; BATCH],
     count: usize,
     /// Whom they come from.
     pub peer: Peer,
@@ -79,7 +91,11 @@ pub struct FrameInput {
 impl Default for FrameInput {
     fn default() -> Self {
         FrameInput {
-            frames: [([0; FRAME_LENGTH], Time::INVALID); BATCH],
+            frames: [Arrived {
+                bytes: [0; FRAME_LENGTH],
+                length: 0,
+                at: Time::INVALID,
+            }; BATCH],
             count: 0,
             peer: Peer::default(),
             channel: Emulated::default(),
@@ -90,20 +106,33 @@ impl Default for FrameInput {
 impl FrameInput {
     /// These, arrived at that time; what does not fit is left out.
     #[cfg(test)]
-    pub(super) fn of(frames: &[[u8; FRAME_LENGTH]], arrived: Time) -> FrameInput {
+    pub(super) fn of(frames: &[FrameBytes], arrived: Time) -> FrameInput {
         let mut input = FrameInput::default();
-        for (place, frame) in input.frames.iter_mut().zip(frames) {
-            *place = (*frame, arrived);
-            input.count += 1;
+        for frame in frames {
+            input.add(frame, arrived);
         }
         input
+    }
+
+    /// One more; there is no room for more than a batch.
+    fn add(&mut self, frame: &[u8], at: Time) {
+        if let Some(place) = self.frames.get_mut(self.count) {
+            place.length = frame.len().min(FRAME_LENGTH);
+            place.bytes[..place.length].copy_from_slice(&frame[..place.length]);
+            place.at = at;
+            self.count += 1;
+        }
+    }
+
+    fn is_full(&self) -> bool {
+        self.count >= self.frames.len()
     }
 
     /// Content and time of arrival of each.
     pub fn iter(&self) -> impl Iterator<Item = (&[u8], Time)> {
         self.frames[..self.count]
             .iter()
-            .map(|(bytes, arrived)| (&bytes[..], *arrived))
+            .map(|own| (&own.bytes[..own.length], own.at))
     }
 }
 
@@ -111,7 +140,7 @@ impl FrameInput {
 #[derive(Debug, Default)]
 pub struct FrameOutput {
     /// The frame, when one is due.
-    pub frame: Option<[u8; FRAME_LENGTH]>,
+    pub frame: Option<FrameBytes>,
 }
 
 /// A link node's input, output: topics and frames.
@@ -174,29 +203,35 @@ impl LinkTransport {
         established.map_or(0, |own| own.incarnation as u8)
     }
 
+    /// Puts a frame that came into the channel, as long as it was when it was sealed, with the
+    /// mark where the seal was.
+    fn push(&mut self, arrived: Time, plain: &PlainFrame) {
+        let mut on_the_way = [0; WIRE_LENGTH];
+        on_the_way[..plain.len()].copy_from_slice(plain);
+        on_the_way[plain.len()] = self.mark();
+        let sealed = plain.len() + SEAL_LENGTH;
+        self.channel.push(arrived.nanos(), &on_the_way[..sealed]);
+    }
+
     fn read(&mut self, now: Time, input: &mut FrameInput) {
         let mut buffer = [0; MAX_FRAME];
         while let Some((length, arrived)) = self.wire.receiver.receive(now, &mut buffer) {
             let bytes = &buffer[..length.min(MAX_FRAME)];
             if let Received::Frame(plain) = self.wire.secure.received(bytes, arrived.nanos()) {
-                let mut on_the_way = [0; WIRE_LENGTH];
-                on_the_way[..FRAME_LENGTH].copy_from_slice(&plain);
-                on_the_way[FRAME_LENGTH] = self.mark();
-                self.channel.push(arrived.nanos(), &on_the_way);
+                self.push(arrived, &plain);
             }
         }
         let mark = self.mark();
         let mut on_the_way = [0; WIRE_LENGTH];
         input.count = 0;
-        while let Some(place) = input.frames.get_mut(input.count) {
-            let Some((_, released)) = self.channel.pop(now.nanos(), &mut on_the_way) else {
+        while !input.is_full() {
+            let Some((length, released)) = self.channel.pop(now.nanos(), &mut on_the_way) else {
                 break;
             };
+            let length = length.saturating_sub(SEAL_LENGTH);
             // What a process sent that is no longer there is over.
-            if on_the_way[FRAME_LENGTH] == mark {
-                place.0.copy_from_slice(&on_the_way[..FRAME_LENGTH]);
-                place.1 = Time::from_nanos(released);
-                input.count += 1;
+            if on_the_way[length] == mark {
+                input.add(&on_the_way[..length], Time::from_nanos(released));
             }
         }
         input.channel = self.emulated();

@@ -6,6 +6,7 @@ use std::{
 };
 
 use ferntast_bus::{Bus, CreateError, Depth, SharedMemoryBus, Subscriber};
+use ferntast_control::link::SEND_PERIOD_NS;
 use ferntast_identification::numerics::statistics::quantile;
 use ferntast_msgs::{
     Message, Time,
@@ -110,6 +111,8 @@ pub struct Monitor {
     /// Operating states by device.
     pub operating: BTreeMap<&'static str, StateView>,
     round_trips: Thinned,
+    /// The link's first word since it counts.
+    first_link: Option<LinkStatusSample>,
     peak_normal_force: f64,
     contact_time: f64,
     contact_stamp: Option<Time>,
@@ -183,6 +186,7 @@ impl Monitor {
             hand_force: 0.0,
             operating: BTreeMap::new(),
             round_trips: Thinned::default(),
+            first_link: None,
             peak_normal_force: 0.0,
             contact_time: 0.0,
             contact_stamp: None,
@@ -223,6 +227,7 @@ impl Monitor {
                 self.round_trips.push(status.round_trip);
             }
             self.events.link(&status);
+            self.first_link.get_or_insert(status);
             self.link_status = Some(status);
         }
         while let Some(received) = self.contact.next(now) {
@@ -303,6 +308,7 @@ impl Monitor {
             .for_each(|view| view.times.begin(now));
         self.stops.clear();
         self.round_trips.clear();
+        self.first_link = None;
         self.peak_normal_force = 0.0;
         self.contact_time = 0.0;
         self.edges.clear();
@@ -337,6 +343,11 @@ impl Monitor {
                 let expected = status.received + status.lost;
                 (expected > 0).then(|| status.lost as f64 / expected as f64)
             }),
+            sent: self
+                .first_link
+                .as_ref()
+                .zip(status)
+                .and_then(|(first, last)| share_sent(first, last)),
             law: status.map_or_else(String::new, |status| status.law.to_string()),
         }
     }
@@ -417,4 +428,13 @@ impl Monitor {
             })
             .collect()
     }
+}
+
+/// Share of the link's frames that were sent between two words of one end, both ways, by the
+/// 500 a second that there are; `None` where no time passed.
+fn share_sent(first: &LinkStatusSample, last: &LinkStatusSample) -> Option<f64> {
+    let frames = |own: &LinkStatusSample| own.sent + own.received + own.lost;
+    let passed = last.stamp.nanos() - first.stamp.nanos();
+    let due = 2.0 * passed as f64 / SEND_PERIOD_NS as f64;
+    (due > 0.0).then(|| frames(last).saturating_sub(frames(first)) as f64 / due)
 }

@@ -62,6 +62,8 @@ pub struct LinkSummary {
     pub jitter_ms: Option<f64>,
     /// Share of all frames lost on the way to the operator, 0 … 1.
     pub loss: Option<f64>,
+    /// Share of the frames, 500 a second each way, that were sent, 0 … 1.
+    pub sent: Option<f64>,
     /// The delay law.
     pub law: String,
 }
@@ -155,10 +157,11 @@ impl fmt::Display for Summary {
         )?;
         writeln!(
             f,
-            "link      {} ms round trip (p99 {}), {} % lost, law {}",
+            "link      {} ms round trip (p99 {}), {} % lost, {} % of the frames sent, law {}",
             number(self.link.rtt_ms, 2),
             number(self.link.rtt_p99_ms, 2),
             number(self.link.loss.map(|loss| loss * 100.0), 2),
+            number(self.link.sent.map(|sent| sent * 100.0), 1),
             self.link.law
         )?;
         writeln!(

@@ -50,7 +50,7 @@ impl Rig {
         }
     }
 
-    fn plain(&mut self) -> PlainFrame {
+    fn plain(&mut self) -> [u8; PLAIN_LENGTH] {
         let mut plain = [0x5a; PLAIN_LENGTH];
         plain[..4].copy_from_slice(&self.number.to_le_bytes());
         self.number += 1;
@@ -86,7 +86,7 @@ impl Rig {
     }
 }
 
-fn sends(end: &mut SecureEnd, plain: &PlainFrame, now_ns: i64) -> Vec<Vec<u8>> {
+fn sends(end: &mut SecureEnd, plain: &[u8], now_ns: i64) -> Vec<Vec<u8>> {
     let message = end.message(now_ns).map(|own| own.bytes().to_vec());
     let frame = end.seal(plain).map(|own| own.to_vec());
     message.into_iter().chain(frame).collect()

@@ -11,6 +11,7 @@
 //! Axes: x into the surface, y along it. Positions and forces of the outcome
 //! are at the hand's scale.
 
+mod draw;
 mod environment;
 mod follower;
 mod task;
@@ -18,14 +19,16 @@ mod tip;
 mod watch;
 mod whole_arm;
 
+pub use draw::Draw;
 pub use environment::Environment;
 pub use follower::FollowerModel;
 pub use task::Task;
 pub use tip::TipParameters;
 pub use whole_arm::ArmUnderTrial;
 
+use ferntast_control::codec::{Deadband, Traffic};
 use ferntast_control::delay::Law;
-use ferntast_control::frame::{FRAME_LENGTH, WIRE_LENGTH};
+use ferntast_control::frame::{FrameBytes, SEAL_LENGTH, WIRE_LENGTH};
 use ferntast_control::haptics::{ForceLimiter, MasterConfig};
 use ferntast_control::link::{
     FollowerLink, FollowerReadings, FollowerStep, LeaderLink, LeaderReadings, LeaderStep,
@@ -65,6 +68,8 @@ pub struct Trial {
     pub master: Option<MasterConfig>,
     /// Jitter buffer at both ends \[s\]; none by default.
     pub buffer: f64,
+    /// What is too small a change to be sent; without it every frame is.
+    pub deadband: Option<Deadband>,
     /// Of all chance.
     pub seed: u64,
 }
@@ -85,6 +90,7 @@ impl Trial {
             follower: FollowerModel::default(),
             master: None,
             buffer: 0.0,
+            deadband: None,
             seed,
         }
     }
@@ -102,6 +108,9 @@ impl Trial {
         if let Some(master) = &self.master {
             master.validate()?;
         }
+        if let Some(deadband) = &self.deadband {
+            deadband.validate()?;
+        }
         let (forth, back) = (
             self.link.up.nominal_delay(WIRE_LENGTH) + self.buffer,
             self.link.down.nominal_delay(WIRE_LENGTH) + self.buffer,
@@ -113,7 +122,10 @@ impl Trial {
         for k in 0..ticks(schedule.end) {
             watch.add(&run.step(k as i64));
         }
-        Ok(watch.outcome())
+        Ok(Outcome {
+            traffic: run.traffic(schedule.end),
+            ..watch.outcome()
+        })
     }
 }
 
@@ -156,6 +168,8 @@ pub struct Outcome {
     /// When the tip is back where it began, or the hand let go \[s\]; `None` when it is not in
     /// time, or nothing was touched that there is.
     pub task_time: Option<f64>,
+    /// What both ends sent.
+    pub traffic: Traffic,
 }
 
 struct Run<'a> {
@@ -190,8 +204,8 @@ impl<'a> Run<'a> {
             law: &trial.law,
             environment: trial.environment,
             schedule,
-            leader: LeaderLink::new(laws(), trial.buffer),
-            follower: FollowerLink::new(laws(), trial.buffer),
+            leader: LeaderLink::new(laws(), trial.buffer).coded(trial.deadband),
+            follower: FollowerLink::new(laws(), trial.buffer).coded(trial.deadband),
             up: Channel::new(trial.link.up.clone(), trial.seed)?,
             down: Channel::new(trial.link.down.clone(), !trial.seed)?,
             hand: HandImpedance::new(trial.hand, start),
@@ -227,10 +241,10 @@ impl<'a> Run<'a> {
         let output = self.leader_step(now_ns, hand);
         let answer = self.follower_step(now_ns, &readings);
         if let Some(frame) = output.frame {
-            self.up.push(now_ns, &on_the_wire(&frame));
+            send(&mut self.up, now_ns, &frame);
         }
         if let Some(frame) = answer.frame {
-            self.down.push(now_ns, &on_the_wire(&frame));
+            send(&mut self.down, now_ns, &frame);
         }
         let force = match &mut self.limiter {
             Some(limiter) => limiter.step(TICK, output.force).force,
@@ -256,6 +270,13 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// What both ends sent until `end` \[s\].
+    fn traffic(&mut self, end: f64) -> Traffic {
+        let now_ns = START_NS + (end / TICK) as i64 * TICK_NS;
+        let [leader, follower] = [self.leader.state(now_ns), self.follower.state(now_ns)];
+        leader.traffic.with(follower.traffic)
+    }
+
     fn leader_step(&mut self, now_ns: i64, hand: [f64; 2]) -> LeaderStep {
         deliver(&mut self.down, now_ns, |bytes, at_ns| {
             self.leader.arrived(bytes, at_ns);
@@ -279,18 +300,18 @@ impl<'a> Run<'a> {
     }
 }
 
-/// A frame with what a seal adds to it: a channel of limited rate counts that too.
-fn on_the_wire(frame: &[u8; FRAME_LENGTH]) -> [u8; WIRE_LENGTH] {
+/// Sends a frame with what a seal adds to it: a channel of limited rate counts that too.
+fn send(channel: &mut Channel, now_ns: i64, frame: &FrameBytes) {
     let mut bytes = [0; WIRE_LENGTH];
-    bytes[..FRAME_LENGTH].copy_from_slice(frame);
-    bytes
+    bytes[..frame.len()].copy_from_slice(frame);
+    channel.push(now_ns, &bytes[..frame.len() + SEAL_LENGTH]);
 }
 
 /// What is on its way through `channel` arrives.
 fn deliver(channel: &mut Channel, now_ns: i64, mut arrived: impl FnMut(&[u8], i64)) {
     let mut bytes = [0; WIRE_LENGTH];
     while let Some((length, at_ns)) = channel.pop(now_ns, &mut bytes) {
-        arrived(&bytes[..length.min(FRAME_LENGTH)], at_ns);
+        arrived(&bytes[..length.saturating_sub(SEAL_LENGTH)], at_ns);
     }
 }
 

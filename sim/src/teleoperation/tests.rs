@@ -123,3 +123,69 @@ fn the_meter_counts_the_force_that_the_limiter_left() {
     }
     assert!(limited >= 4, "the limit bit with {limited} laws only");
 }
+
+/// On the whole arm at s_F = 0.05 over 20 ms, with and without a deadband: force on the hand tick
+/// by tick, and what was sent.
+fn felt(law: &Law, environment: Environment, deadband: Option<Deadband>) -> (Vec<f64>, Traffic) {
+    let text = include_str!("../../../config/arms/rokviss.toml");
+    let arm = ArmUnderTrial {
+        arm: toml::from_str(text).expect("the shipped arm"),
+        servo: ferntast_control::servo::ServoConfig::default(),
+    };
+    let trial = Trial {
+        follower: FollowerModel::Arm(Box::new(arm)),
+        master: Some(MasterConfig::default()),
+        deadband,
+        ..Trial::new(law.clone(), link(0.02), environment, 1)
+    };
+    let schedule = Schedule::new(trial.task, 0.02);
+    let mut run = Run::new(&trial, schedule).unwrap();
+    let ticks = (schedule.end / TICK) as i64;
+    let felt = (0..ticks).map(|k| {
+        let [x, y] = run.step(k).felt;
+        x.hypot(y)
+    });
+    (felt.collect(), run.traffic(schedule.end))
+}
+
+/// The goal: a tenth of the frames have content, and for 95 % of the time the force is within a
+/// just noticeable difference, 10 %, of what it is without; what is below 0.05 N is not felt at all.
+/// Where energies are told some more has to be sent.
+#[test]
+fn the_deadband_is_not_felt() {
+    let mut all_told = Vec::new();
+    let mut fine = true;
+    // On a hard wall the others bounce, with every frame: nothing to compare with.
+    for (name, environment, most) in [
+        ("position_force", Environment::SoftSpring, 0.1),
+        ("position_position", Environment::SoftSpring, 0.1),
+        ("tdpa", Environment::SoftSpring, 0.1),
+        ("model_mediated", Environment::SoftSpring, 0.1),
+        ("model_mediated", Environment::HardWall, 0.1),
+        ("two_layer", Environment::SoftSpring, 0.15),
+        ("two_layer", Environment::HardWall, 0.1),
+    ] {
+        let law = Law::by_name(name).unwrap();
+        let (before, all) = felt(&law, environment, None);
+        let (after, few) = felt(&law, environment, Some(Deadband::default()));
+        let alike = |(a, b): &(&f64, &f64)| (*a - *b).abs() <= (0.1 * *a).max(0.05);
+        let count = before.iter().zip(&after).filter(alike).count();
+        let share = count as f64 / before.len() as f64;
+        assert_eq!((all.frame_share(), all.byte_share()), (1.0, 1.0));
+        assert!(
+            before.iter().any(|own| *own > 0.1),
+            "{name}: nothing to feel"
+        );
+        fine &= share >= 0.95 && few.content_share() <= most;
+        all_told.push(format!(
+            "{name} {}: {:.1} % alike, content {:.1} %, frames {:.1} %, bytes {:.1} %",
+            environment.name(),
+            1e2 * share,
+            1e2 * few.content_share(),
+            1e2 * few.frame_share(),
+            1e2 * few.byte_share()
+        ));
+    }
+    println!("{all_told:#?}");
+    assert!(fine, "{all_told:#?}");
+}

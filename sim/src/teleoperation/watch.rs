@@ -3,6 +3,7 @@
 use super::environment::Environment;
 use super::task::{Schedule, Task};
 use super::{Outcome, TICK};
+use ferntast_control::codec::Traffic;
 use std::collections::VecDeque;
 
 /// A hand or tip that moves to and fro by more than this while it is watched is
@@ -261,6 +262,7 @@ impl Watch {
                 0.0
             },
             task_time: done,
+            traffic: Traffic::default(),
         }
     }
 }

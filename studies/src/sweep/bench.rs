@@ -1,10 +1,10 @@
 //! Hand, arm and master of a sweep, the same in all of its trials.
 
-use ferntast_control::{haptics::MasterConfig, servo};
+use ferntast_control::{codec::Deadband, delay::Law, haptics::MasterConfig, servo};
 use ferntast_emulation::hand::ImpedanceParameters;
 use ferntast_model::ParameterError;
 use ferntast_nodes::config::{ConfigError, stiff_enough};
-use ferntast_sim::teleoperation::{FollowerModel, Outcome, Trial};
+use ferntast_sim::teleoperation::{Draw, FollowerModel, Outcome, Trial};
 
 use super::{Condition, SweepConfig};
 
@@ -16,6 +16,7 @@ pub struct Bench {
     master: Option<MasterConfig>,
     /// Of the arm's servo at the tip [N/m].
     stiffness: Option<f64>,
+    deadband: Option<Deadband>,
 }
 
 impl Bench {
@@ -35,6 +36,7 @@ impl Bench {
             follower,
             master,
             stiffness,
+            deadband: config.codec.of(config.deadband),
         })
     }
 
@@ -44,18 +46,34 @@ impl Bench {
     ///
     /// The first value that is out of bounds.
     pub fn run(&self, condition: &Condition) -> Result<Outcome, ParameterError> {
-        let law = match self.stiffness {
-            Some(least) => stiff_enough(&condition.law, least),
-            None => condition.law.clone(),
-        };
+        let law = self.stiff_enough(&condition.law);
         let trial = Trial {
             hand: self.hand,
             follower: self.follower.clone(),
             master: self.master.clone(),
             task: condition.task,
             buffer: 1e-3 * condition.buffer_ms,
+            deadband: self.deadband,
             ..Trial::new(law, condition.link(), condition.environment, condition.seed)
         };
         trial.run()
+    }
+
+    /// The trial of `seed` with `law` between scales, channel, hand, surface and task drawn at
+    /// random.
+    pub fn drawn(&self, law: &Law, seed: u64) -> Trial {
+        let own = |draw: &mut Draw| self.stiff_enough(&draw.scaled(law));
+        Trial {
+            deadband: self.deadband,
+            ..Trial::drawn(seed, self.follower.clone(), self.master.clone(), own)
+        }
+    }
+
+    /// `law`, with a servo that is as stiff as that of the arm.
+    fn stiff_enough(&self, law: &Law) -> Law {
+        match self.stiffness {
+            Some(least) => stiff_enough(law, least),
+            None => law.clone(),
+        }
     }
 }

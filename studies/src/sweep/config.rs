@@ -1,5 +1,6 @@
 //! What a sweep is made of: a file such as `config/scenarios/delay_sweep.toml`.
 
+use ferntast_control::codec::{Codec, Deadband};
 use ferntast_control::delay::Law;
 use ferntast_control::haptics::MasterConfig;
 use ferntast_control::servo::ServoConfig;
@@ -37,6 +38,12 @@ parameters! {
         /// Seeds; where neither jitter nor loss leaves anything to chance, the
         /// first one stands for all.
         pub seeds: Vec<u64>,
+        /// Which frames are sent, as in a scenario.
+        #[serde(default)]
+        pub codec: Codec,
+        /// What a hand cannot tell, with `codec = "deadband"`.
+        #[serde(default)]
+        pub deadband: Deadband [section],
         /// The operator's hand.
         pub hand: ImpedanceParameters [section],
         /// The arm, as in a scenario: with its servo, its estimator and the master's limits as

@@ -3,12 +3,13 @@
 //!
 //! A row is one trial of [`ferntast_sim::teleoperation`]: laws and frames as in a session, a
 //! hand with impedance, an arm behind its servo, something to touch. The same file gives the
-//! same rows, whatever the number of processors.
+//! same rows, whatever the number of processors. [`random`] draws the conditions instead.
 
 mod bench;
 mod config;
 mod grid;
 mod page;
+mod random;
 mod row;
 mod run;
 mod stable;
@@ -20,6 +21,7 @@ pub use bench::Bench;
 pub use config::SweepConfig;
 pub use grid::Condition;
 pub use page::{RenderError, render};
+pub use random::{BOUND, Case, RandomCases, random, random_table};
 pub use row::Row;
 pub use run::{RunError, run};
 pub use stable::{LargestStable, largest_stable};

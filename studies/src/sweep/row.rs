@@ -69,6 +69,12 @@ pub struct Row {
     /// When the tip is back where it began, or the hand let go \[s\]; `null` when it is not in
     /// time, or nothing was touched.
     pub task_time_s: Option<f64>,
+    /// Share of the link's frames that were sent, both ways \[-\].
+    pub frame_share: f64,
+    /// Share of them that were sent with content \[-\].
+    pub content_share: f64,
+    /// Share of the bytes \[-\].
+    pub byte_share: f64,
 }
 
 impl Row {
@@ -100,6 +106,9 @@ impl Row {
             transparency: outcome.transparency,
             drag: outcome.felt_damping,
             task_time_s: outcome.task_time,
+            frame_share: outcome.traffic.frame_share(),
+            content_share: outcome.traffic.content_share(),
+            byte_share: outcome.traffic.byte_share(),
         }
     }
 

@@ -146,3 +146,53 @@ fn values_out_of_bounds_are_refused() {
     config.loss = Vec::new();
     assert!(config.validate().is_err());
 }
+
+#[test]
+fn random_cases_are_the_same_again_and_a_law_without_books_makes_energy() {
+    let mut config = SweepConfig::load("delay_sweep").unwrap();
+    config
+        .laws
+        .retain(|law| ["position_force", "tdpa"].contains(&law.name()));
+    config.arm = None;
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let found = random(&config, 7, 40, &stop, || {}).unwrap();
+    assert_eq!(found, random(&config, 7, 40, &stop, || {}).unwrap());
+    let of = |name| found.iter().find(|own| own.law == name).unwrap();
+    let (without, with) = (of("position_force"), of("tdpa"));
+    assert_eq!((without.cases, with.cases), (40, 40));
+    assert!(
+        without.beyond > 5 && without.worst_energy < -0.1,
+        "{without:?}"
+    );
+    assert_eq!(without.worst[0].energy, without.worst_energy);
+    assert_eq!((with.beyond, with.worst.len()), (0, 0), "{with:?}");
+    assert!(with.share_done > 0.2, "{with:?}");
+    // Stopped, there is what was done: here nothing.
+    stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    let stopped = random(&config, 7, 40, &stop, || {}).unwrap();
+    assert!(stopped.iter().all(|own| own.cases == 0));
+}
+
+#[test]
+fn the_deadband_is_told_in_shares_of_what_is_sent() {
+    let mut config = small();
+    config.rtt_ms = vec![0.0];
+    config.jitter_ms = vec![0.0];
+    config.loss = vec![0.0];
+    config.environments = vec![Environment::SoftSpring];
+    let all = run(&config, || {}).unwrap();
+    assert!(
+        all.iter()
+            .all(|row| row.frame_share == 1.0 && row.byte_share == 1.0)
+    );
+    config.codec = ferntast_control::codec::Codec::Deadband;
+    let few = run(&config, || {}).unwrap();
+    for row in &few {
+        assert!(row.stable && row.true_energy > -0.02, "{row:?}");
+        assert!(row.content_share < 0.3 && row.frame_share < 0.45, "{row:?}");
+        assert!(
+            row.content_share < row.byte_share && row.byte_share < row.frame_share,
+            "{row:?}"
+        );
+    }
+}

@@ -46,6 +46,44 @@ fn loss_is_measured_too() {
     assert!(number(&summary, "link.jitter_ms") > 0.3);
 }
 
+/// The scripted operator of `rokviss`, with every frame and with those that say something new:
+/// it arms, touches and lets go as before, and no keep-alive is taken for a dead link.
+#[test]
+fn frames_that_say_nothing_new_may_be_left_out() {
+    let session = Session::new();
+    let summary = |codec: &str| {
+        let arguments = ["lockstep", "--codec", codec, "--duration", "12", "--json"];
+        run(&session, &arguments).success().json()
+    };
+    let (all, few) = (summary("none"), summary("deadband"));
+    assert!((number(&all, "link.sent") - 1.0).abs() < 0.01, "{all:#}");
+    let sent = number(&few, "link.sent");
+    // A keep-alive every 8 ms is a quarter of the frames.
+    assert!((0.2..0.4).contains(&sent), "{sent}");
+    for key in [
+        "states.follower.visited",
+        "states.leader.visited",
+        "contact.edges",
+    ] {
+        let at = |own: &serde_json::Value| {
+            key.split('.')
+                .fold(own.clone(), |own, part| own[part].clone())
+        };
+        assert_eq!(at(&all), at(&few), "{key}");
+        assert!(
+            at(&all).as_array().is_some_and(|own| !own.is_empty()),
+            "{key}"
+        );
+    }
+    for key in ["leader.peak_force_N", "contact.peak_normal_force_N"] {
+        let (before, after) = (number(&all, key), number(&few, key));
+        assert!(
+            (after - before).abs() < 0.1 * before,
+            "{key}: {before}, {after}"
+        );
+    }
+}
+
 /// Kontur-2's bursts pause the arm some three hundred times an hour; the scenario lets
 /// it go on by itself after gaps up to half a second, and another does not.
 #[test]

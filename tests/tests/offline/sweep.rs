@@ -66,4 +66,51 @@ fn refuses_what_it_cannot_sweep() {
     refused(&session, &["sweep", "bad.toml"], &["glass", "hard_wall"]);
     refused(&session, &["sweep", "none.toml"], &["none.toml"]);
     refused(&session, &["sweep", "--law", "none"], &["none", "wave"]);
+    refused(&session, &["sweep", "--random", "0"], &["--random"]);
+    refused(&session, &["sweep", "--seed", "3"], &["--random"]);
+    refused(&session, &["sweep", "--codec", "zip"], &["zip", "deadband"]);
+}
+
+#[test]
+fn draws_cases_at_random_and_tells_what_each_law_made_of_them() {
+    let session = Session::new();
+    fs::write(session.folder().join("small.toml"), SMALL).expect("scratch folder");
+    let command = |seed: &str, count: &str| {
+        let arguments = [
+            "sweep",
+            "small.toml",
+            "--random",
+            count,
+            "--seed",
+            seed,
+            "--json",
+        ];
+        run(&session, &arguments).success().json()
+    };
+    let whole = command("5", "20");
+    let laws = whole.as_array().expect("a list");
+    assert_eq!(laws.len(), 2);
+    for own in laws {
+        assert_eq!(number(own, "cases"), 20.0, "{own:#}");
+        let beyond = number(own, "beyond");
+        assert_eq!(
+            own["worst"].as_array().map(Vec::len),
+            Some(beyond.min(10.0) as usize)
+        );
+        assert!((number(own, "share_beyond") - beyond / 20.0).abs() < 1e-12);
+    }
+    // In slices they are the same.
+    let (first, second) = (command("5", "12"), command("17", "8"));
+    for (law, own) in laws.iter().enumerate() {
+        let parts = [&first[law], &second[law]];
+        let sum: f64 = parts.iter().map(|part| number(part, "beyond")).sum();
+        assert_eq!(sum, number(own, "beyond"), "{own:#}");
+        let worst = parts.iter().map(|part| number(part, "worst_energy_J"));
+        assert_eq!(worst.fold(0.0, f64::min), number(own, "worst_energy_J"));
+    }
+    let told = run(&session, &["sweep", "small.toml", "--random", "3"]).success();
+    assert!(
+        told.stdout.contains("beyond 0.02 J") && told.stdout.contains("wave"),
+        "{told:#?}"
+    );
 }
