@@ -63,6 +63,12 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     if let Some(cases) = arguments.random {
         return run_random(&config, arguments.seed, cases, json);
     }
+    if let Some(codec) = arguments.codec.as_deref().and_then(Codec::by_name) {
+        config.codec = codec;
+    }
+    if let Some(cases) = arguments.random {
+        return run_random(&config, arguments.seed, cases, json);
+    }
     if let Some(folder) = &arguments.output {
         // Before the work, so that it is not done in vain.
         fs::create_dir_all(folder)
