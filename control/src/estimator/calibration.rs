@@ -39,7 +39,9 @@ const EDGE_STIFFNESS: f64 = 0.2;
 const LEAST_FORCE: f64 = 0.02;
 const LEAST_PLACE: f64 = 2e-6;
 /// Least standard deviation of a turn [rad]: an arm bends, and its links are not as long as believed.
-const LEAST_TURN: f64 = 3e-4;
+const LEAST_TURN: f64 = 1e-3;
+/// Least standard error of ε [-]: hysteresis of the sensors goes with the direction of sliding, too.
+const LEAST_RATIO: f64 = 5e-3;
 /// A slope is told by a way of at least so long [m].
 const LEAST_WAY: f64 = 1e-3;
 /// Sliding from one solution to the next \[s\].
@@ -364,7 +366,7 @@ impl SelfCalibration {
         }
         self.found.ratio = Calibrated {
             value: ratio,
-            error: variance.sqrt(),
+            error: variance.sqrt().hypot(LEAST_RATIO).min(prior_ratio.sqrt()),
         };
         self.solve_common();
     }

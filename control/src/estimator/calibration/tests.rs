@@ -97,7 +97,7 @@ fn the_ratio_of_gains_and_the_turns_are_found_and_a_common_gain_is_not() {
             (found.ratio.value - ratio).abs() < 3e-3,
             "{found:?} for {ratio}"
         );
-        assert!(found.ratio.error < 5e-3, "{found:?}");
+        assert!(found.ratio.error < 8e-3, "{found:?}");
         assert_eq!(found.common.value, 0.0);
         assert!((found.common.error - 0.03 / 2.0_f64.sqrt()).abs() < 1e-12);
     }
