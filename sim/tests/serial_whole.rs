@@ -94,6 +94,7 @@ fn parameters(form: Form) -> EstimatorParameters {
         friction_memory: 10.0,
         longest_gap: 0.05,
         zeroing_time: 0.0,
+        calibration_time: 0.0,
         uncertainty: Uncertainty::default(),
         motor_current: MotorCurrentParameters::default(),
     }

@@ -7,8 +7,7 @@ use indicatif::ProgressBar;
 
 use super::{
     super::{Failure, output::print_json},
-    arm,
-    open, table,
+    arm, open, table,
 };
 
 /// Diagnose and add until nothing more is named.

@@ -169,6 +169,7 @@ impl OpenedArm {
             dataset: joint.dataset,
             notes: self.notes.clone(),
             tallies: self.tallies.clone(),
+            date: None,
         });
         Ok(each.collect())
     }

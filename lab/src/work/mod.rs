@@ -18,8 +18,8 @@ mod units;
 use std::path::Path;
 
 use ferntast_identification::{
-    Comparison, Dataset, Diagnosis, Discovery, Usage, compare, comparison::compare_drawing, diagnose,
-    diagnose_at_cutoffs, discover,
+    Comparison, Dataset, Diagnosis, Discovery, Usage, compare, comparison::compare_drawing,
+    diagnose, diagnose_at_cutoffs, discover,
 };
 use serde::Serialize;
 
