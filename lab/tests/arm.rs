@@ -1,4 +1,5 @@
 //! Experiments about a whole arm: what the file says, and how all joints are read.
+#![allow(clippy::unwrap_used)]
 
 use std::{f64::consts::TAU, fmt::Write as _, fs, path::Path};
 

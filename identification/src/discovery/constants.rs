@@ -46,7 +46,7 @@ pub(super) fn polish(rows: &Rows, state: &State) -> Option<State> {
 }
 
 /// Refines one constant; the error that is left then.
-fn refine(rows: &Rows, terms: &mut Vec<Term>, at: At, error: f64, narrower: f64) -> Option<f64> {
+fn refine(rows: &Rows, terms: &mut [Term], at: At, error: f64, narrower: f64) -> Option<f64> {
     let mut others = Vec::new();
     for (_, other) in (terms.iter().enumerate()).filter(|(own, _)| *own != at.term) {
         extend_basis(&mut others, rows.column_of(other)?);
@@ -71,10 +71,9 @@ fn refine(rows: &Rows, terms: &mut Vec<Term>, at: At, error: f64, narrower: f64)
     } else {
         1.0
     };
-    let (to, from): (fn(f64) -> f64, fn(f64) -> f64) = match at.which {
-        1 => (|x| x.abs().ln(), |x| x.exp()),
-        _ => (|x| x, |x| x),
-    };
+    let is_scale = at.which == 1;
+    let to = |x: f64| if is_scale { x.abs().ln() } else { x };
+    let from = |x: f64| if is_scale { x.exp() } else { x };
     let span = match at.which {
         1 => SCALE_SPAN.ln() * narrower,
         _ => PLACE_SPAN * (high - low) * narrower,

@@ -66,11 +66,14 @@ pub(super) struct Rows {
     pub(super) session_of: Vec<usize>,
 }
 
+/// The value of a signal at a working sample.
+type Read = dyn Fn(&Signals, usize) -> f64;
+
 /// A signal to be read: what it is, and its value at a working sample.
 struct Source {
     signal: Signal,
     kind: Kind,
-    read: Box<dyn Fn(&Signals, usize) -> f64>,
+    read: Box<Read>,
 }
 
 impl Rows {

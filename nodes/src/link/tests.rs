@@ -30,7 +30,7 @@ fn the_status_says_every_10_ms_what_was_refused() {
     // The first is of long ago, the second says a position that is not a number.
     let mut spoilt = [0; FRAME_LENGTH];
     spoilt[18..22].copy_from_slice(&f32::NAN.to_le_bytes());
-    let frames = FrameInput::of(&[[0; FRAME_LENGTH], spoilt], Time::from_nanos(1));
+    let frames = FrameInput::of([&[0; FRAME_LENGTH][..], &spoilt], Time::from_nanos(1));
     let mut input = FollowerLinkInput {
         frames,
         ..FollowerLinkInput::default()
@@ -151,7 +151,7 @@ impl Operator {
             setpoint_cp: newest(now, felt.setpoint_cp),
             servo_cf: newest(now, felt.servo_cf),
             operating_state: newest(now, felt.operating_state),
-            frames: FrameInput::of(sent.as_slice(), now),
+            frames: FrameInput::of(sent.as_slice().iter().map(|frame| &**frame), now),
             ..LeaderLinkInput::default()
         };
         told.status.map(|own| own.energy_in - own.energy_out)

@@ -144,6 +144,7 @@ impl Defaults {
             friction_memory: 10.0,
             longest_gap: 0.05,
             zeroing_time: 2.0,
+            calibration_time: 0.0,
             uncertainty: Uncertainty::default(),
             motor_current: MotorCurrentParameters::default(),
         }
