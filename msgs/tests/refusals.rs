@@ -71,7 +71,7 @@ fn other_joints_and_lengths_are_refused() {
     for names in [
         vec![],
         vec!["joint_1", "joint_1"],
-        vec!["joint_1", "a joint of 17 byte"],
+        vec!["joint_1", "a joint whose name has 33 bytes!!"],
         vec!["", "joint_2"],
         vec!["1", "2", "3", "4", "5", "6", "7", "8", "9"],
     ] {

@@ -61,7 +61,7 @@ pub fn scenario(seed: u64, free: bool) -> Loaded {
         for phase in &mut hand.script.phase {
             phase.duration *= 0.6;
             if let Motion::Reach { to } = &mut phase.motion {
-                *to = to.map(|x| 0.8 * x);
+                to.0 = to.0.map(|x| 0.8 * x);
             }
         }
     }

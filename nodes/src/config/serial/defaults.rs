@@ -19,7 +19,7 @@ use ferntast_model::{
 };
 use ferntast_urdf::Arm;
 
-use super::SerialError;
+use super::{SerialError, written};
 
 /// Where a joint without ends, or with ends further out, may be: ± \[rad\] or \[m\].
 const FARTHEST: f64 = 6.283;
@@ -63,7 +63,7 @@ impl Defaults {
                 count.check("arm.home", home.len())?;
                 home
             }
-            None => posture(&arm.chain, &ends).to_vec(),
+            None => posture(&arm.chain, &ends).map(written).to_vec(),
         };
         let rest = Joints::filled(count, 0.0);
         let at_home = Joints::from_slice(&home)?;
@@ -75,15 +75,16 @@ impl Defaults {
             let torque = given(arm.efforts[joint])
                 .unwrap_or(STRENGTH * weight[joint].abs() + 10.0)
                 .clamp(0.5, 5e3);
+            let torque = written(torque);
             let speed = given(arm.velocities[joint]).unwrap_or(SPEED).min(10.0);
             JointParameters {
-                motor_inertia: (INERTIA_BY_TORQUE * torque).clamp(1e-3, 100.0),
+                motor_inertia: written((INERTIA_BY_TORQUE * torque).clamp(1e-3, 100.0)),
                 gear_ratio: 100.0,
                 stiffness: RIGID,
                 damping: 0.0,
                 motor_constant: 10.0,
                 motor_torque_limit: torque,
-                torque_sensor_range: 1.5 * torque,
+                torque_sensor_range: written(1.5 * torque),
                 position_lower: ends[joint][0],
                 position_upper: ends[joint][1],
                 velocity_limit: speed,
@@ -106,13 +107,13 @@ impl Defaults {
         let mass = arm.chain.mass_matrix(&home);
         let each = |value: &dyn Fn(usize, &JointParameters) -> f64| {
             let joints = self.joint.iter().enumerate();
-            let values = joints.map(|(joint, own)| value(joint, own));
+            let values = joints.map(|(joint, own)| written(value(joint, own)));
             values.collect::<Vec<f64>>()
         };
         let moved = |joint: usize, own: &JointParameters| mass[(joint, joint)] + own.motor_inertia;
         let slowest = self.joint.iter().map(|own| own.velocity_limit);
         let slowest = slowest.fold(f64::INFINITY, f64::min);
-        let reach = reach(&arm.chain);
+        let reach = written(reach(&arm.chain));
         let own = ServoConfig::default();
         Ok(ServoConfig {
             workspace_lower: [-reach; 2],
@@ -161,8 +162,8 @@ impl Defaults {
         };
         Plane {
             name: name.to_owned(),
-            point: (tip - normal * TABLE_APART).into(),
-            normal: normal.into(),
+            point: (tip - normal * TABLE_APART).map(written).into(),
+            normal: normal.map(written).into(),
             stiffness: 2e4,
             damping: 100.0,
             friction: 0.3,

@@ -102,6 +102,12 @@ impl SerialFile {
     }
 }
 
+/// As few digits as are read back from JSON without a change: a session's file, or a
+/// recording, has the same number then.
+fn written(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
 /// The longest name of a frame in `/tf` \[byte\].
 const LONGEST_LINK_NAME: usize = 48;
 

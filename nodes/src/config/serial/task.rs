@@ -4,7 +4,7 @@ use ferntast_control::{delay::Mapping, servo::ServoConfig};
 use ferntast_emulation::hand::{Motion, Phase, Point, Script};
 use ferntast_model::rigid_body::Vector3;
 
-use super::Serial;
+use super::{Serial, written};
 use crate::config::Scenario;
 
 /// Tip positions are in the middle of the hand's where this stands: nobody gave another one.
@@ -23,12 +23,12 @@ pub(in crate::config) fn fit(scenario: &mut Scenario, serial: &Serial, hand: boo
     }
     let mapping = scenario.law.mapping();
     if hand || mapping.workspace_offset == NOT_GIVEN {
-        let tip = serial.arm.home_tip().translation;
+        let tip = serial.arm.home_tip().translation.map(written);
         let reach = tip.norm();
         scenario.law = scenario.law.between(&Mapping {
             workspace_offset: tip.into(),
             position_scale: match reach < SMALL {
-                true => (reach / SMALL).max(0.05),
+                true => written((reach / SMALL).max(0.05)),
                 false => mapping.position_scale,
             },
             ..mapping
@@ -58,7 +58,7 @@ fn script(serial: &Serial, scale: f64) -> Script {
     });
     let at = |depth: f64, way: f64| {
         let tip = along * way - normal * (apart + depth);
-        Point((tip / scale).into())
+        Point((tip / scale).map(written).into())
     };
     let reach = |label: &str, to: Point, duration: f64| Phase {
         label: label.to_owned(),
@@ -94,7 +94,7 @@ fn wander(scale: f64) -> Script {
         label: label.to_owned(),
         duration: 4.0,
         motion: Motion::Sine {
-            amplitude: Point(amplitude.map(|own| own / scale)),
+            amplitude: Point(amplitude.map(|own| written(own / scale))),
             frequency: 0.5,
         },
     };
