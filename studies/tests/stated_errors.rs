@@ -174,7 +174,8 @@ fn stated_errors_cover_the_truth() {
     let all = all.expect("experiments");
     // Of a joint's friction they are up to three times too large: blocks of time are left out in
     // turn, each has one speed, and what a gain leaves in it counts as if it were noise.
-    let each: [(&str, fn(&Off) -> f64, f64); 5] = [
+    type Of = fn(&Off) -> f64;
+    let each: [(&str, Of, f64); 5] = [
         ("b_0T lubricated", |off| off.lubricated, 0.5),
         ("b_0T unlubricated", |off| off.unlubricated, 0.5),
         ("K", |off| off.stiffness, 0.5),

@@ -41,10 +41,8 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
             let path = opened.experiment.path.as_deref();
             table::discovery(&result, path, opened.torque_unit());
         }
-        results.push(open::InUnit {
-            unit: opened.torque_unit(),
-            result,
-        });
+        let result = opened.in_unit(result);
+        results.push((opened.experiment.title, result));
     }
     if json {
         open::print_results(&results)?;

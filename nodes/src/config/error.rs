@@ -55,7 +55,7 @@ pub enum ConfigError {
         /// The file.
         path: String,
         /// What is wrong, and how to correct it.
-        source: SerialError,
+        source: Box<SerialError>,
     },
     /// A recorded hand motion cannot be used.
     #[error("{path}: {source}")]
@@ -82,7 +82,7 @@ impl From<(&str, SerialError)> for ConfigError {
     fn from((path, source): (&str, SerialError)) -> ConfigError {
         ConfigError::Serial {
             path: path.to_owned(),
-            source,
+            source: Box::new(source),
         }
     }
 }

@@ -106,10 +106,7 @@ impl Default for FrameInput {
 impl FrameInput {
     /// These, arrived at that time; what does not fit is left out.
     #[cfg(test)]
-    pub(super) fn of<'a>(
-        frames: impl IntoIterator<Item = &'a [u8]>,
-        arrived: Time,
-    ) -> FrameInput {
+    pub(super) fn of<'a>(frames: impl IntoIterator<Item = &'a [u8]>, arrived: Time) -> FrameInput {
         let mut input = FrameInput::default();
         for frame in frames {
             input.add(frame, arrived);

@@ -8,7 +8,7 @@ use ferntast_msgs::{
 };
 use ferntast_tests::{
     PATIENCE, Process, Session, arm_state, await_enabled, hand_of_strokes, human_hand, messages,
-    node, number, operated, recording, run, signal, start,
+    node, number, operated, recording, run, signal, start, state_of_follower,
 };
 
 #[test]
@@ -187,7 +187,7 @@ fn a_service_arms_nothing_where_peers_may_stop_only() {
         !answers[1].0 && answers[1].1.contains("--ros-commands"),
         "{answers:#?}"
     );
-    assert_eq!(ferntast_tests::state(&session, "follower"), "PAUSED");
+    assert_eq!(state_of_follower(&session), "PAUSED");
     process.interrupt();
     process.wait(PATIENCE).success();
 }

@@ -22,7 +22,7 @@ use ferntast_urdf::Arm;
 use super::{SerialError, written};
 
 /// Where a joint without ends, or with ends further out, may be: ± \[rad\] or \[m\].
-const FARTHEST: f64 = 6.283;
+const FARTHEST: f64 = 6.2;
 /// Motor and gear of a joint that gives 1 Nm \[kg m²\]: 0.2 kg m² with 90 Nm.
 const INERTIA_BY_TORQUE: f64 = 0.0022;
 /// So stiff a gear counts as rigid \[Nm/rad\].

@@ -286,7 +286,7 @@ impl Measured<'_> {
             zero_after_zeroing(estimator, &free)
         });
         let trails = [0, 1].map(|joint: usize| {
-            let trail = Source::Hysteresis(joint).change(&self.torque[joint], &uncertainty);
+            let trail = Source::Hysteresis(joint).change(self.torque[joint], &uncertainty);
             trail.unwrap_or_default()
         });
         let mut all = vec![SystematicError::default(); ERRORS + JOINTS];
