@@ -82,9 +82,9 @@ fn arms_without_friction_move_as_an_independent_library_has_them() {
             ours.advance(&Joints::from_slice(torque).expect("torques"), HOLD);
             let truth = ours.truth();
             let number = |key: &str, index: usize| theirs[key][index].as_f64().expect("a number");
-            for joint in 0..start.len() {
+            for (joint, from) in start.iter().enumerate() {
                 worst = worst.max((truth.position[joint] - number("q", joint)).abs());
-                farthest = farthest.max((truth.position[joint] - start[joint]).abs());
+                farthest = farthest.max((truth.position[joint] - from).abs());
             }
             for axis in 0..3 {
                 away = away.max((truth.tip.translation[axis] - number("tip", axis)).abs());
