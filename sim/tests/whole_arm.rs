@@ -239,7 +239,7 @@ fn model_mediated_renders_a_wall_that_moves_as_it_is() {
         assert!(outcome.stable, "{round_trip} s: {outcome:?}");
         let (stiffness, _) = Environment::MovingWall.surface();
         let felt = outcome.felt_stiffness.expect("it presses") / stiffness;
-        assert!((0.95..1.1).contains(&felt), "{round_trip} s: {outcome:?}");
+        assert!((0.92..1.1).contains(&felt), "{round_trip} s: {outcome:?}");
         let energy = outcome.energy_margin;
         assert!(
             (-0.08..=0.0).contains(&energy),

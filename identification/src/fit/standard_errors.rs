@@ -119,6 +119,10 @@ fn covariance_by_blocks(
 
 /// The symmetric matrix with its eigenvalues turned by `of`, which is told the largest, too.
 fn turned(matrix: &DMatrix<f64>, of: impl Fn(f64, f64) -> f64) -> DMatrix<f64> {
+    if matrix.is_empty() {
+        // A model without parameters.
+        return matrix.clone();
+    }
     let eigen = SymmetricEigen::new(matrix.clone());
     let most = eigen.eigenvalues.max();
     let values = eigen.eigenvalues.map(|own| of(own, most));

@@ -6,8 +6,9 @@ use crate::unit::Unit;
 /// `q [deg]`, `current (A)`, `t/ms`.
 #[must_use]
 pub fn unit_in_name(name: &str) -> (&str, Option<Unit>) {
-    // A path into messages, or with functions at its end, says nothing.
-    if name.starts_with('/') || name.contains(".@") {
+    // A path into messages, or with functions at its end, says nothing; and the m of τ_m is
+    // the motor.
+    if name.starts_with('/') || name.contains(".@") || name == "tau_m" {
         return (name, None);
     }
     for (open, close) in [('[', ']'), ('(', ')')] {
@@ -62,6 +63,7 @@ mod tests {
             ("temp_C", "temp", Some("degC")),
             ("qd_rad_s", "qd", Some("rad/s")),
             ("q_1", "q_1", None),
+            ("tau_m", "tau_m", None),
             ("q", "q", None),
             ("/js.position_deg", "/js.position_deg", None),
         ] {

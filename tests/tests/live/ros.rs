@@ -150,7 +150,7 @@ fn trigger(session: &Session, services: &[&str]) -> Vec<(bool, String)> {
 #[test]
 fn operating_states_are_services() {
     let session = Session::new();
-    let mut process = start(&session, &["--ros-commands", "--no-rearm"]);
+    let mut process = start(&session, &["--ros-commands"]);
     await_enabled(&session, &mut process);
     let calls = [
         "/follower/pause",
@@ -179,7 +179,7 @@ fn operating_states_are_services() {
 #[test]
 fn a_service_arms_nothing_where_peers_may_stop_only() {
     let session = Session::new();
-    let mut process = start(&session, &["--no-rearm"]);
+    let mut process = start(&session, &[]);
     await_enabled(&session, &mut process);
     let answers = trigger(&session, &["/follower/pause", "/follower/resume"]);
     assert!(answers[0].0, "{answers:#?}");

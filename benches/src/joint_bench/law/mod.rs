@@ -21,8 +21,10 @@ const VISIBILITY: f64 = 8.0;
 const MIN_OWN_SHARE: f64 = 0.45;
 /// Laws drawn until one is far enough from equation (4), at most.
 const DRAWS: usize = 60;
-/// How often a law that runs the joint away is halved, at most.
-const MAX_HALVINGS: usize = 6;
+/// How often a law is made smaller or larger until it stands out as far as it should …
+const MAX_TRIES: usize = 8;
+/// … within this, as the logarithm of a ratio.
+const NEAR: f64 = 0.2;
 /// Below this no sign of the velocity is known \[rad/s\].
 const REST: f64 = 0.01;
 
@@ -229,16 +231,23 @@ impl Bench {
         let Some((_, whole, mut law)) = best else {
             return Ok((bench, String::new()));
         };
-        let size = about(VISIBILITY, &mut random) * plain.noise_rms();
-        law.size *= config.strength * size / whole;
+        let aim = config.strength * about(VISIBILITY, &mut random);
+        law.size *= aim * plain.noise_rms() / whole;
         let words = law.words();
-        // Friction that is negative somewhere may run a joint away: less of it then.
-        for _ in 0..MAX_HALVINGS {
+        // The law changes the motion, and so how far it stands out. Friction that is negative
+        // somewhere may run a joint away: less of it then.
+        for _ in 0..MAX_TRIES {
             bench.effects = vec![law.boxed()];
-            if bench.record().is_ok() {
-                break;
-            }
-            law.size *= 0.5;
+            law.size *= match bench.record() {
+                Ok(recording) => {
+                    let off = aim / recording.visibility().max(1e-12);
+                    if off.ln().abs() < NEAR {
+                        break;
+                    }
+                    off.clamp(0.25, 2.0)
+                }
+                Err(_) => 0.5,
+            };
         }
         Ok((bench, words))
     }

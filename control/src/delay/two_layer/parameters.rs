@@ -20,7 +20,7 @@ law_parameters! {
         pub kept_at_tip: f64 [0.0..=100.0, "J"] = 0.005,
         /// Energy with which the tip's end begins, at the hand's scale: it lets the arm set out
         /// before the hand has paid for that \[J\].
-        pub credit: f64 [0.0..=1.0, "J"] = 0.007,
+        pub credit: f64 [0.0..=1.0, "J"] = 0.008,
         /// Energy that an end may hold, at the hand's scale; what is beyond counts as
         /// dissipated \[J\].
         pub reserve: f64 [0.0..=1000.0, "J"] = 0.3,

@@ -81,8 +81,8 @@ fn an_hour_at_rest_teaches_nothing_and_breaks_nothing() {
     for i in 0..after.len() {
         // What was moving a moment before still comes through.
         let moved = (after.values[i] - before.values[i]).abs();
-        assert!(moved < 3.0 * before.std_errors[i], "{after:?}");
-        assert!(after.std_errors[i] < 1.5 * before.std_errors[i]);
+        assert!(moved <= 3.0 * before.std_errors[i], "{after:?}");
+        assert!(after.std_errors[i] <= 1.5 * before.std_errors[i]);
     }
     recovers(&mut node, 3641.0);
 }
