@@ -10,7 +10,7 @@ use ferntast_emulation::random::Random;
 
 use super::effect::{Effect, Friction, State};
 use super::{Bench, BenchConfig, BenchError, BenchRecording};
-use crate::bench::{Stream, about, differentiate, random};
+use crate::bench::{Stream, about, random};
 use function::Function;
 
 /// Own part of a law at full strength over the filtered sensor noise, as most
@@ -21,6 +21,8 @@ const VISIBILITY: f64 = 8.0;
 const MIN_OWN_SHARE: f64 = 0.45;
 /// Laws drawn until one is far enough from equation (4), at most.
 const DRAWS: usize = 60;
+/// Laws that are tried until one stands out as far as it should, at most.
+const LAWS: usize = 6;
 /// How often a law is made smaller or larger until it stands out as far as it should …
 const MAX_TRIES: usize = 8;
 /// … within this, as the logarithm of a ratio.
@@ -28,17 +30,17 @@ const NEAR: f64 = 0.2;
 /// Below this no sign of the velocity is known \[rad/s\].
 const REST: f64 = 0.01;
 
-/// What a law is about, with its usual size.
+/// What a law is about, with its usual size. No acceleration: what friction makes of that comes back
+/// into it within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
     Velocity,
     Load,
     Position,
-    Acceleration,
     Temperature,
 }
 
-use Quantity::{Acceleration, Load, Position, Temperature, Velocity};
+use Quantity::{Load, Position, Temperature, Velocity};
 
 impl Quantity {
     /// Its value over its usual size.
@@ -47,7 +49,6 @@ impl Quantity {
             Velocity => state.velocity / 0.7,
             Load => state.load / 15.0,
             Position => (state.position + 0.12) / 0.7,
-            Acceleration => state.acceleration / 3.0,
             Temperature => (state.temperature + 10.0) / 36.0,
         }
     }
@@ -57,7 +58,6 @@ impl Quantity {
             Velocity => "velocity",
             Load => "load",
             Position => "position",
-            Acceleration => "acceleration",
             Temperature => "temperature",
         }
     }
@@ -77,8 +77,7 @@ impl Product {
         let first = match (random.uniform() * 10.0) as usize {
             0..3 => Velocity,
             3..6 => Load,
-            6..9 => Position,
-            _ => Acceleration,
+            _ => Position,
         };
         let mut about = vec![first];
         if random.chance(0.75) {
@@ -86,7 +85,6 @@ impl Product {
                 0..2 => Velocity,
                 2..4 => Load,
                 4..6 => Position,
-                6 => Acceleration,
                 _ => Temperature,
             };
             if second != first {
@@ -126,6 +124,29 @@ pub(super) struct Law {
 }
 
 impl Law {
+    /// One that no catalogue has, with its RMS in these states \[Nm\]; the farthest of many from
+    /// equation (4), or the first that is far enough.
+    fn far_from_equation_4(states: &[State], random: &mut Random) -> Option<(f64, Law)> {
+        let mut best: Option<(f64, f64, Law)> = None;
+        for _ in 0..DRAWS {
+            let law = Law::draw(random);
+            if law.is_in_catalogue() {
+                continue;
+            }
+            let torques: Vec<f64> = states.iter().map(|state| law.sliding(state)).collect();
+            let whole = rms(&torques);
+            let own = rms(&beyond_equation_4(states, torques)) / whole.max(1e-12);
+            let is_far = own > MIN_OWN_SHARE;
+            if whole > 1e-6 && best.as_ref().is_none_or(|(most, ..)| own > *most) {
+                best = Some((own, whole, law));
+            }
+            if is_far {
+                break;
+            }
+        }
+        best.map(|(_, whole, law)| (whole, law))
+    }
+
     fn draw(random: &mut Random) -> Self {
         let count = if random.chance(0.25) { 2 } else { 1 };
         Self {
@@ -211,35 +232,38 @@ impl Bench {
         let plain = bench.record()?;
         let states = states(&plain);
         let mut random = random(config.seed, Stream::Effect, usize::from(u16::MAX));
-        let mut best: Option<(f64, f64, Law)> = None;
-        for _ in 0..DRAWS {
-            let law = Law::draw(&mut random);
-            if law.is_in_catalogue() {
+        let mut nearest: Option<(f64, Law)> = None;
+        for _ in 0..LAWS {
+            let Some((whole, mut law)) = Law::far_from_equation_4(&states, &mut random) else {
                 continue;
+            };
+            let aim = config.strength * about(VISIBILITY, &mut random);
+            law.size *= aim * plain.noise_rms() / whole;
+            let (off, law) = bench.standing_out(law, aim);
+            if nearest.as_ref().is_none_or(|(least, _)| off < *least) {
+                nearest = Some((off, law));
             }
-            let torques: Vec<f64> = states.iter().map(|state| law.sliding(state)).collect();
-            let whole = rms(&torques);
-            let own = rms(&beyond_equation_4(&states, torques)) / whole.max(1e-12);
-            let is_far = own > MIN_OWN_SHARE;
-            if whole > 1e-6 && best.as_ref().is_none_or(|(most, ..)| own > *most) {
-                best = Some((own, whole, law));
-            }
-            if is_far {
+            // With some the joint sticks or slips, and jumps past what is asked for.
+            if off < NEAR {
                 break;
             }
         }
-        let Some((_, whole, mut law)) = best else {
+        let Some((_, law)) = nearest else {
             return Ok((bench, String::new()));
         };
-        let aim = config.strength * about(VISIBILITY, &mut random);
-        law.size *= aim * plain.noise_rms() / whole;
         let words = law.words();
-        // The law changes the motion, and so how far it stands out. Friction that is negative
-        // somewhere may run a joint away: less of it then.
+        bench.effects = vec![law.boxed()];
+        Ok((bench, words))
+    }
+
+    /// The law of the size with which it stands out by `aim`, and how far off that it is, as the
+    /// logarithm of a ratio. It changes the motion, and so how far it stands out; friction that is
+    /// negative somewhere may run a joint away: less of it then.
+    fn standing_out(&mut self, mut law: Law, aim: f64) -> (f64, Law) {
         let mut nearest = (f64::INFINITY, law.clone());
         for _ in 0..MAX_TRIES {
-            bench.effects = vec![law.boxed()];
-            let off = bench.record().map(|own| aim / own.visibility().max(1e-12));
+            self.effects = vec![law.boxed()];
+            let off = self.record().map(|own| aim / own.visibility().max(1e-12));
             if let Ok(off) = off
                 && off.ln().abs() < nearest.0
             {
@@ -250,8 +274,7 @@ impl Bench {
             }
             law.size *= off.map_or(0.5, |off| off.clamp(0.25, 2.0));
         }
-        bench.effects = vec![nearest.1.boxed()];
-        Ok((bench, words))
+        nearest
     }
 }
 
@@ -260,13 +283,11 @@ fn states(recording: &BenchRecording) -> Vec<State> {
     let sessions = recording.sessions.iter();
     let each = sessions.flat_map(|session| {
         let truth = &session.truth;
-        let accelerations = differentiate(&truth.velocity);
         (0..session.time.len()).step_by(7).map(move |at| State {
             time: session.time[at],
             temperature: truth.temperature[at],
             position: truth.position[at],
             velocity: truth.velocity[at],
-            acceleration: accelerations[at],
             load: truth.joint_torque[at],
             ..State::default()
         })
@@ -327,11 +348,10 @@ mod tests {
         for seed in 1..5 {
             let (recording, words) = recorded(seed);
             let visibility = recording.visibility();
-            // Some laws let the joint stick or slip, and jump past what is asked for.
-            assert!((3.5..14.0).contains(&visibility), "{words}: {visibility}");
-            // Taken out, nothing of it is left.
+            assert!((5.0..12.5).contains(&visibility), "{words}: {visibility}");
+            // Taken out by what was logged of it, little is left.
             let without = recording.without_hidden().visibility();
-            assert!(without < 0.5, "{words}: {without}");
+            assert!(without < 0.2 * visibility, "{words}: {without}");
         }
     }
 
