@@ -48,8 +48,8 @@ function showRanking(page, rows, laws) {
   };
   const ranked = laws.map(of).sort((a, b) => b.stable - a.stable || a.off - b.off);
   const number = (value) => (value === null ? "–" : brief(value));
-  table(part, [["law"], ["stable [%]", 1], ["energy made, worst [J]", 1], ["stiffness felt by touched", 1], ["drag [N·s/m]", 1],
-    ["step of force [N/ms]", 1], ["peak contact force [N]", 1], ["drift [mm]", 1], ["held [s]", 1]],
+  table(part, [["law"], ["stable [%]", 1], ["energy made [J]", 1], ["felt by touched", 1], ["drag [N·s/m]", 1],
+    ["force step [N/ms]", 1], ["contact peak [N]", 1], ["drift [mm]", 1], ["held [s]", 1]],
   ranked.map((own) => [own.law, brief(100 * own.stable), brief(-own.energy), number(own.transparency), number(own.drag),
     number(own.step), number(own.peak), number(own.drift), number(own.held)]));
 }
