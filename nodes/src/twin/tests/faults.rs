@@ -81,8 +81,13 @@ fn an_hour_at_rest_teaches_nothing_and_breaks_nothing() {
     for i in 0..after.len() {
         // What was moving a moment before still comes through.
         let moved = (after.values[i] - before.values[i]).abs();
-        assert!(moved <= 3.0 * before.std_errors[i], "{after:?}");
-        assert!(after.std_errors[i] <= 1.5 * before.std_errors[i]);
+        if after.names[i].as_str() == "v_seen" {
+            // The fastest speed is seen, not estimated.
+            assert_eq!(moved, 0.0, "{after:?}");
+            continue;
+        }
+        assert!(moved < 3.0 * before.std_errors[i], "{after:?}");
+        assert!(after.std_errors[i] < 1.5 * before.std_errors[i]);
     }
     recovers(&mut node, 3641.0);
 }
