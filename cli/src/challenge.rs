@@ -3,17 +3,19 @@
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
+    sync::atomic::{AtomicBool, Ordering},
 };
 
 use clap::Subcommand;
-use ferntast_benches::{bench::BenchError, contact_bench, joint_bench};
-use ferntast_studies::challenge::{
-    self, Answered, Asked, BlindTest, Count, LawPlan, Plan, TestBench,
+use ferntast_nodes::process::stop_on_signals;
+use ferntast_studies::{
+    challenge::{self, Answered, Asked, BlindAnswer, BlindTest, Count, LawPlan, Plan},
+    shard::Placed,
 };
 use indicatif::ProgressBar;
 use serde_json::json;
 
-use super::{Failure, output::print_json};
+use super::{Failure, output::print_json, shard_options::ShardOptions};
 
 /// Recordings with a hidden effect: to learn on, and to test the lab with.
 #[derive(Debug, clap::Args)]
@@ -91,6 +93,9 @@ enum Action {
         /// Seed of the first recording.
         #[arg(long, default_value_t = 1)]
         seed: u64,
+
+        #[command(flatten)]
+        parts: ShardOptions,
     },
     /// Put laws that no catalogue has to `ferntast lab discover`, and print how it did.
     Discover {
@@ -109,6 +114,9 @@ enum Action {
         /// Seed of the first recording.
         #[arg(long, default_value_t = 1)]
         seed: u64,
+
+        #[command(flatten)]
+        parts: ShardOptions,
     },
 }
 
@@ -146,18 +154,23 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             nothing,
             two,
             seed,
+            parts,
         } => {
             let of_all = |count: usize| if hide.is_empty() { count } else { 0 };
             let plan = Plan {
+                contact,
                 seed,
                 repeats,
                 strengths,
                 nothing: nothing.unwrap_or(of_all(400)),
                 two: two.unwrap_or(of_all(40)),
+                only: hide,
             };
-            match contact {
-                true => blind::<contact_bench::HiddenEffect>(&plan, &hide, json),
-                false => blind::<joint_bench::HiddenEffect>(&plan, &hide, json),
+            let (answers, stopped) =
+                with_bar(|stop, progress| plan.run(parts.shard(), stop, progress))?;
+            match parts.keep(plan, answers, stopped)? {
+                Some((plan, answers)) => tell_blind(&plan, answers, json),
+                None => Ok(ExitCode::SUCCESS),
             }
         }
         Action::Discover {
@@ -165,6 +178,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             strengths,
             nothing,
             seed,
+            parts,
         } => {
             let plan = LawPlan {
                 seed,
@@ -172,9 +186,33 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 strengths,
                 nothing,
             };
-            discover(&plan, json)
+            let (answers, stopped) =
+                with_bar(|stop, progress| plan.run(parts.shard(), stop, progress))?;
+            match parts.keep(plan, answers, stopped)? {
+                Some((plan, answers)) => tell_discovered(&plan, answers, json),
+                None => Ok(ExitCode::SUCCESS),
+            }
         }
     }
+}
+
+/// Does long work beside a bar, until Ctrl-C; gives what was found, and whether it was
+/// stopped.
+fn with_bar<T>(
+    work: impl FnOnce(&AtomicBool, &(dyn Fn(usize, usize) + Sync)) -> Result<T, String>,
+) -> Result<(T, bool), Failure> {
+    let stop = stop_on_signals().map_err(Failure::failed)?;
+    let bar = ProgressBar::new(0);
+    let found = work(&stop, &|done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let stopped = stop.load(Ordering::Relaxed);
+    if stopped {
+        eprintln!("stopped: what follows is of the recordings that were done");
+    }
+    Ok((found.map_err(Failure::refused)?, stopped))
 }
 
 /// Refuses what is no answer, before the seal is opened.
@@ -190,14 +228,13 @@ fn check_answer(guess: &str) -> Result<(), Failure> {
     }
 }
 
-fn discover(plan: &LawPlan, json: bool) -> Result<ExitCode, Failure> {
-    let bar = ProgressBar::new(0);
-    let test = challenge::discovery_test(plan, &|done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    });
-    bar.finish_and_clear();
-    let test = test.map_err(Failure::refused)?;
+/// Tells how the search for formulas did.
+pub fn tell_discovered(
+    plan: &LawPlan,
+    answers: Vec<Placed<Answered>>,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let test = plan.total(answers);
     if json {
         print_json(&test)?;
         return Ok(ExitCode::SUCCESS);
@@ -271,17 +308,13 @@ fn reveal(folder: &Path, guess: &str, json: bool) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn blind<H: TestBench>(plan: &Plan, hide: &[String], json: bool) -> Result<ExitCode, Failure> {
-    let only: Result<Vec<H>, BenchError> = hide.iter().map(|id| id.parse()).collect();
-    let only = only.map_err(Failure::refused)?;
-    let bar = ProgressBar::new(0);
-    let progress = |done: usize, all: usize| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    };
-    let test = challenge::blind_test(plan, &only, &progress);
-    bar.finish_and_clear();
-    let test = test.map_err(Failure::refused)?;
+/// Tells how the diagnosis did.
+pub fn tell_blind(
+    plan: &Plan,
+    answers: Vec<Placed<BlindAnswer>>,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let test = plan.total(answers).map_err(Failure::refused)?;
     if json {
         print_json(&test)?;
     } else {

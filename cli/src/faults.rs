@@ -10,12 +10,16 @@ use std::{
 };
 
 use ferntast_nodes::{graph::Graph, process::stop_on_signals};
-use ferntast_studies::faults::{
-    self, Fault, Found, Kits, Outcome, Plan, Results, RunError, Schedule, Summary, run_many, shrink,
+use ferntast_studies::{
+    faults::{
+        self, Fault, FaultStudy, Found, Kits, Outcome, Plan, Results, RunError, Schedule, Summary,
+        Violation, run_many, shrink,
+    },
+    shard::{Placed, Shard},
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{Failure, output::print_json};
+use super::{Failure, output::print_json, shard_options::ShardOptions};
 
 /// Schedules where nothing else is asked for.
 const SCHEDULES: u64 = 2000;
@@ -42,11 +46,11 @@ pub struct Arguments {
     seeds: Option<Range<u64>>,
 
     /// Run for so long instead, from the first seed on [minutes].
-    #[arg(long, value_name = "M", value_parser = parse_minutes, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = parse_minutes, allow_negative_numbers = true, conflicts_with = "shard")]
     minutes: Option<f64>,
 
     /// Run the schedule of this file once, tell what it violates, and record it beside the file.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "minutes"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "minutes", "shard"])]
     replay: Option<PathBuf>,
 
     /// Leave faults of this name out of every schedule (may be given again).
@@ -59,8 +63,11 @@ pub struct Arguments {
 
     /// Take a safety rule out, to see that it is missed (control/src/planted.rs lists them).
     #[cfg(feature = "planted_bugs")]
-    #[arg(long, value_name = "RULE")]
+    #[arg(long, value_name = "RULE", conflicts_with = "shard")]
     planted: Option<String>,
+
+    #[command(flatten)]
+    parts: ShardOptions,
 
     /// Schedules at the same time (else one a processor).
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -99,8 +106,14 @@ fn run_seeds(graph: &Graph, arguments: &Arguments, json: bool) -> Result<ExitCod
             Some(threads) => usize::from(threads),
             None => thread::available_parallelism().map_or(1, usize::from),
         },
-        seeds,
+        seeds: seeds.clone(),
+        shard: arguments.parts.shard(),
         longest,
+    };
+    let study = FaultStudy {
+        scenario: arguments.scenario.clone(),
+        seeds,
+        without: arguments.without.clone(),
     };
     let stop = stop_on_signals().map_err(Failure::failed)?;
     let bar = progress(&plan);
@@ -115,21 +128,52 @@ fn run_seeds(graph: &Graph, arguments: &Arguments, json: bool) -> Result<ExitCod
     let change = |schedule: &mut Schedule| {
         #[cfg(feature = "planted_bugs")]
         schedule.planted.clone_from(&arguments.planted);
-        let left_out = |name: &str| arguments.without.iter().any(|own| own == name);
-        schedule.event.retain(|own| !left_out(own.fault.name()));
+        study.change(schedule);
     };
     let results = run_many(&kits, &plan, change, done, &stop).map_err(Failure::failed)?;
     bar.finish_and_clear();
-    let found = make_small(&kits, &results, folder)?;
-    let summary = Summary::new(&results, found);
+    if plan.shard == Shard::WHOLE {
+        return tell_results(&kits, &results, folder, json);
+    }
+    let answers = study.answers(results);
+    let stopped = stop.load(Ordering::Relaxed);
+    arguments.parts.keep(study, answers, stopped)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Tells what the schedules of all parts come to.
+pub fn tell_merged(
+    graph: &Graph,
+    study: &FaultStudy,
+    answers: Vec<Placed<Vec<Violation>>>,
+    output: Option<&Path>,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let kits = kits(graph, &study.scenario)?;
+    let results = study.total(&kits, answers);
+    tell_results(&kits, &results, output.unwrap_or(Path::new(".")), json)
+}
+
+fn tell_results(
+    kits: &Kits,
+    results: &Results,
+    folder: &Path,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let found = make_small(kits, results, folder)?;
+    let summary = Summary::new(results, found);
     if json {
         print_json(&summary)?;
     } else {
+        let took = match (results.took, summary.schedules_per_minute) {
+            (Some(took), Some(rate)) => {
+                format!(" in {:.1} s, {rate:.0} a minute", took.as_secs_f64())
+            }
+            _ => String::new(),
+        };
         println!(
-            "{} schedules in {:.1} s, {:.0} a minute; {} invariants, {} violated",
+            "{} schedules{took}; {} invariants, {} violated",
             summary.schedules,
-            results.took.as_secs_f64(),
-            summary.schedules_per_minute,
             summary.invariants.len(),
             summary.violations.len()
         );
@@ -146,7 +190,9 @@ fn run_seeds(graph: &Graph, arguments: &Arguments, json: bool) -> Result<ExitCod
 fn progress(plan: &Plan) -> ProgressBar {
     let (bar, template) = match plan.longest {
         None => (
-            ProgressBar::new(plan.seeds.end.saturating_sub(plan.seeds.start)),
+            ProgressBar::new(
+                plan.seeds.end.saturating_sub(plan.seeds.start) / u64::from(plan.shard.of()),
+            ),
             "{bar:30} {pos}/{len} schedules, {eta} left{msg}",
         ),
         Some(_) => (

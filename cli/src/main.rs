@@ -13,6 +13,7 @@ mod lab;
 mod link;
 mod lockstep;
 mod man;
+mod merge;
 mod node;
 mod output;
 mod page_options;
@@ -21,6 +22,7 @@ mod play;
 mod replay;
 mod scenario_options;
 mod session;
+mod shard_options;
 mod state;
 mod sweep;
 mod twin;
@@ -74,6 +76,8 @@ enum Command {
     Faults(faults::Arguments),
     /// Hold a model against a recording, find the missing effect, add it.
     Lab(lab::Arguments),
+    /// Put together what parts of a study found that was run with --shard.
+    Merge(merge::Arguments),
     /// Make a recording with a hidden effect, to learn on; test the lab with many.
     Challenge(challenge::Arguments),
     /// Run an identification experiment on the arm, or a whole campaign; record it, say what it shows.
@@ -158,6 +162,7 @@ fn main() -> ExitCode {
         Command::Sweep(arguments) => sweep::run(arguments, json),
         Command::Faults(arguments) => faults::run(&graph, &arguments, json),
         Command::Lab(arguments) => lab::run(arguments, json),
+        Command::Merge(arguments) => merge::run(&graph, &arguments, json),
         Command::Experiment(arguments) => experiment::run(arguments, json),
         Command::Paper(arguments) => paper::run(&arguments, json),
         Command::Bag(arguments) => bag::run(arguments, json),

@@ -4,15 +4,19 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::ExitCode,
+    sync::atomic::{AtomicBool, Ordering},
     time::Instant,
 };
 
 use ferntast_control::codec::Codec;
 use ferntast_nodes::process::stop_on_signals;
-use ferntast_studies::sweep::{self, RandomCases, Row, SweepConfig};
+use ferntast_studies::{
+    shard::{Placed, values},
+    sweep::{self, Case, RandomCases, RandomSweep, Row, SweepConfig},
+};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{Failure, output::print_json};
+use super::{Failure, output::print_json, shard_options::ShardOptions};
 
 /// Hold the delay laws against each other over delay, jitter, loss and environment.
 #[derive(Debug, clap::Args)]
@@ -51,6 +55,9 @@ pub struct Arguments {
     /// Which frames the link carries: all of them, or with deadband those that say something new.
     #[arg(long, value_name = "none|deadband", value_parser = Codec::NAMES)]
     codec: Option<String>,
+
+    #[command(flatten)]
+    parts: ShardOptions,
 }
 
 /// Runs it.
@@ -60,31 +67,48 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     if let Some(codec) = arguments.codec.as_deref().and_then(Codec::by_name) {
         config.codec = codec;
     }
+    let stop = stop_on_signals().map_err(Failure::failed)?;
     if let Some(cases) = arguments.random {
-        return run_random(&config, arguments.seed, cases, json);
-    }
-    if let Some(codec) = arguments.codec.as_deref().and_then(Codec::by_name) {
-        config.codec = codec;
-    }
-    if let Some(cases) = arguments.random {
-        return run_random(&config, arguments.seed, cases, json);
+        let study = RandomSweep {
+            seed: arguments.seed,
+            cases,
+            sweep: config,
+        };
+        return run_random(study, &arguments.parts, &stop, json);
     }
     if let Some(folder) = &arguments.output {
         // Before the work, so that it is not done in vain.
-        fs::create_dir_all(folder)
-            .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
+        make(folder)?;
     }
-    let bar = progress(config.conditions().len() as u64);
+    let shard = arguments.parts.shard();
+    let trials = shard.part_of(config.conditions()).len();
+    let bar = progress(trials as u64);
     let begun = Instant::now();
-    let rows = sweep::run(&config, || bar.inc(1)).map_err(Failure::refused)?;
+    let rows = sweep::run(&config, shard, &stop, || bar.inc(1)).map_err(Failure::refused)?;
     bar.finish_and_clear();
-    eprintln!(
-        "{} trials in {:.1} s",
-        rows.len(),
-        begun.elapsed().as_secs_f64()
-    );
-    if let Some(folder) = &arguments.output {
-        let page = sweep::render(&config, &rows).map_err(Failure::failed)?;
+    let (done, took) = (rows.len(), begun.elapsed().as_secs_f64());
+    eprintln!("{done} trials in {took:.1} s");
+    let stopped = done < trials;
+    if stopped {
+        eprintln!("stopped: {} of {trials} trials were not run", trials - done);
+    }
+    match arguments.parts.keep(config, rows, stopped)? {
+        Some((config, rows)) => tell(&config, rows, arguments.output.as_deref(), json),
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// Tells what a sweep found.
+pub fn tell(
+    config: &SweepConfig,
+    rows: Vec<Placed<Row>>,
+    output: Option<&Path>,
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let rows = values(rows);
+    if let Some(folder) = output {
+        make(folder)?;
+        let page = sweep::render(config, &rows).map_err(Failure::failed)?;
         write(&folder.join("sweep.html"), page.as_bytes())?;
         write_rows(&folder.join("sweep.json"), &rows)?;
         eprintln!("{}", folder.join("sweep.html").display());
@@ -97,21 +121,33 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Runs `cases` of each law from `seed` on.
 fn run_random(
-    config: &SweepConfig,
-    seed: u64,
-    cases: u64,
+    study: RandomSweep,
+    parts: &ShardOptions,
+    stop: &AtomicBool,
     json: bool,
 ) -> Result<ExitCode, Failure> {
-    let stop = stop_on_signals().map_err(Failure::failed)?;
-    let bar = progress(cases.saturating_mul(config.laws.len() as u64));
+    let bar = progress(study.count() / u64::from(parts.shard().of()));
     let begun = Instant::now();
-    let found =
-        sweep::random(config, seed, cases, &stop, || bar.inc(1)).map_err(Failure::refused)?;
+    let cases = study
+        .run(parts.shard(), stop, || bar.inc(1))
+        .map_err(Failure::refused)?;
     bar.finish_and_clear();
-    let run: u64 = found.iter().map(|own| own.cases).sum();
-    eprintln!("{run} cases in {:.1} s", begun.elapsed().as_secs_f64());
+    let took = begun.elapsed().as_secs_f64();
+    eprintln!("{} cases in {took:.1} s", cases.len());
+    match parts.keep(study, cases, stop.load(Ordering::Relaxed))? {
+        Some((study, cases)) => tell_random(&study, &cases, json),
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// Tells what cases drawn at random come to.
+pub fn tell_random(
+    study: &RandomSweep,
+    cases: &[Placed<Case>],
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    let found = study.total(cases);
     if json {
         print_json(&found)?;
     } else {
@@ -121,6 +157,11 @@ fn run_random(
         true => ExitCode::FAILURE,
         false => ExitCode::SUCCESS,
     })
+}
+
+fn make(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))
 }
 
 fn progress(trials: u64) -> ProgressBar {

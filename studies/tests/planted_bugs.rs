@@ -45,15 +45,16 @@ fn missed_at(kits: &Kits, schedule: &Schedule, invariant: &str) -> Result<Option
 /// The first schedules that show that `rule` is missed, made small; how many were run.
 fn search(kits: &Kits, rule: Rule) -> (Option<(String, Schedule)>, u64) {
     let over = AtomicBool::new(false);
-    let found = Mutex::new(None);
+    let found: Mutex<Option<(String, Schedule)>> = Mutex::new(None);
     let plan = Plan {
         seeds: FIRST..FIRST + SCHEDULES,
+        shard: Shard::WHOLE,
         longest: None,
         threads: 2,
     };
     let done = |schedule: &Schedule, outcome: &Outcome| {
         for violation in &outcome.violations {
-            let name = violation.invariant;
+            let name = &*violation.invariant;
             let at = missed_at(kits, schedule, name).expect("a schedule that runs");
             if at.is_some() {
                 over.store(true, Ordering::Relaxed);

@@ -1,16 +1,13 @@
 //! The commands of the lab on an experiment about a whole arm.
 
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{path::Path, process::ExitCode};
 
 use ferntast_identification::{
-    Term, Verdict,
-    arm::{ArmCandidate, ArmComparison, ArmDiagnosis},
+    Term,
+    arm::{ArmComparison, ArmDiagnosis},
 };
-use ferntast_lab::work::{self, AddedToArm, AutoOptions, InUnit, OpenedArm, refuse_existing};
-use serde::Serialize;
+use ferntast_lab::work::{self, AddedToArm, ArmAutoEvent, AutoOptions, InUnit, OpenedArm, name_of};
+use indicatif::ProgressBar;
 
 use super::{
     super::{Failure, output::print_json},
@@ -18,19 +15,17 @@ use super::{
     table::{self, significant},
 };
 
-/// No arm has so many effects that these data can tell apart.
-const MAX_STEPS: usize = 12;
-
 /// Opens an experiment file that is about an arm; `None` where it is about something else.
 pub fn open(path: &Path) -> Result<Option<OpenedArm>, Failure> {
     let opened = work::open_arm(path).map_err(Failure::refused)?;
-    if let Some(opened) = &opened {
-        opened
-            .notes
-            .iter()
-            .for_each(|note| eprintln!("note: {note}"));
-    }
+    opened.iter().for_each(tell_notes);
     Ok(opened)
+}
+
+fn tell_notes(opened: &OpenedArm) {
+    for note in &opened.notes {
+        eprintln!("note: {note}");
+    }
 }
 
 /// `ferntast lab compare`.
@@ -82,71 +77,30 @@ pub fn add(
     Ok(ExitCode::SUCCESS)
 }
 
-#[derive(Debug, Serialize)]
-struct Outcome {
-    steps: Vec<AddedToArm>,
-    verdict: Verdict,
-    /// The last experiment file.
-    experiment: PathBuf,
-    /// What is left after the last step.
-    last: ArmDiagnosis,
-}
-
-/// `ferntast lab auto`: diagnoses and adds until every joint is complete, or what is left
-/// has no name.
-pub fn auto(
-    mut opened: OpenedArm,
-    path: &Path,
-    options: &AutoOptions,
-    json: bool,
-) -> Result<ExitCode, Failure> {
-    if let Some(folder) = &options.folder {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
-    }
-    let mut path = path.to_owned();
-    let mut steps: Vec<AddedToArm> = Vec::new();
-    let last = loop {
-        let diagnosis = with_bar(&opened)?;
-        let best = diagnosis.candidates.first();
-        let Some(best) = best.filter(|_| steps.len() < MAX_STEPS) else {
-            if !json {
-                print_diagnosis(&diagnosis, opened.torque_unit());
-            }
-            break diagnosis;
-        };
-        let name = name_of(best);
-        let output = open::output_of(&path, &name, options.folder.as_deref());
-        if !options.force {
-            refuse_existing(&output).map_err(Failure::refused)?;
+/// `ferntast lab auto`; `None` where the file is about something else.
+pub fn auto(path: &Path, options: &AutoOptions, json: bool) -> Result<Option<ExitCode>, Failure> {
+    let mut bar = ProgressBar::hidden();
+    let mut unit = "";
+    let mut tell = |event: ArmAutoEvent<'_>| match event {
+        ArmAutoEvent::Opened(opened) => {
+            tell_notes(opened);
+            unit = opened.torque_unit();
+            bar = open::bar("diagnose");
         }
-        let added = opened.add(&Term::Catalogue(name), &output);
-        let added = added.map_err(Failure::refused)?;
-        if !json {
-            print_added(&added, opened.torque_unit());
-        }
-        path.clone_from(&added.experiment);
-        steps.push(added);
-        let next = open(&path)?;
-        opened = next.ok_or_else(|| Failure::failed(format!("{}: no arm", path.display())))?;
+        ArmAutoEvent::Share(share) => bar.set_position((share * 1000.0) as u64),
+        ArmAutoEvent::Diagnosed => bar.finish_and_clear(),
+        ArmAutoEvent::Added(opened, added) if !json => print_added(added, opened.torque_unit()),
+        ArmAutoEvent::Added(..) => {}
     };
-    if json {
-        print_json(&Outcome {
-            steps,
-            verdict: last.verdict,
-            experiment: path,
-            last,
-        })?;
+    let found = work::auto_arm(path, options, &mut tell).map_err(Failure::refused)?;
+    let Some(found) = found else {
+        return Ok(None);
+    };
+    match json {
+        true => print_json(&found)?,
+        false => print_diagnosis(&found.last, unit),
     }
-    Ok(ExitCode::SUCCESS)
-}
-
-/// The candidate as it is written in a file.
-fn name_of(candidate: &ArmCandidate) -> String {
-    match &candidate.joint {
-        Some(joint) => format!("{}@{joint}", candidate.named.effect),
-        None => candidate.named.effect.clone(),
-    }
+    Ok(Some(ExitCode::SUCCESS))
 }
 
 fn print_added(added: &AddedToArm, unit: &str) {

@@ -3,10 +3,15 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_lab::work::{self, AutoEvent, AutoOptions};
+use ferntast_nodes::process::stop_on_signals;
+use ferntast_studies::{
+    lab_folder::{self, Completed, LabFolder},
+    shard::{Placed, Shard},
+};
 use indicatif::ProgressBar;
 
 use super::{
-    super::{Failure, output::print_json},
+    super::{Failure, output::print_json, shard_options::ShardOptions},
     arm, open, table,
 };
 
@@ -14,13 +19,16 @@ use super::{
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "It ends where the verdict is complete, or unexplained: what is left has no name in the catalogue. \
-    --partial goes on there with effects that lower the error though they are not the explanation."
+    --partial goes on there with effects that lower the error though they are not the explanation.\n\n\
+    Of a folder every experiment file in it is completed, on all processors or in parts:\n  \
+    ferntast lab auto joints/ -o completed\n  \
+    ferntast lab auto joints/ -o completed --shard 2/8     # then: ferntast merge"
 )]
 pub struct Arguments {
-    /// Experiment file.
+    /// Experiment file, or a folder of them.
     experiment: PathBuf,
 
-    /// Folder for the new experiment files (else beside the old one).
+    /// Folder for the new experiment files (else beside the old one; of a folder: `auto` in it).
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 
@@ -35,18 +43,30 @@ pub struct Arguments {
     /// Write over files that are there.
     #[arg(long)]
     force: bool,
+
+    #[command(flatten)]
+    parts: ShardOptions,
 }
 
 /// Runs it.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if arguments.experiment.is_dir() {
+        return run_folder(arguments, json);
+    }
+    if arguments.parts.shard() != Shard::WHOLE {
+        return Err(Failure::refused(format!(
+            "--shard: {} is one experiment; give a folder of them",
+            arguments.experiment.display()
+        )));
+    }
     let options = AutoOptions {
         folder: arguments.output,
         partial: arguments.partial,
         quick: arguments.quick,
         force: arguments.force,
     };
-    if let Some(opened) = arm::open(&arguments.experiment)? {
-        return arm::auto(opened, &arguments.experiment, &options, json);
+    if let Some(code) = arm::auto(&arguments.experiment, &options, json)? {
+        return Ok(code);
     }
     let mut bar = ProgressBar::hidden();
     let mut tell = |event: AutoEvent<'_>| match event {
@@ -76,4 +96,63 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         false => table::diagnosis(&found.last.result, found.last.unit),
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn run_folder(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
+    let folder = arguments.experiment;
+    let experiments = lab_folder::experiments(&folder)
+        .map_err(|error| Failure::refused(format!("{}: {error}", folder.display())))?;
+    if experiments.is_empty() {
+        return Err(Failure::refused(format!(
+            "{}: no experiment file (*.toml) in it; `ferntast lab new` makes one",
+            folder.display()
+        )));
+    }
+    let study = LabFolder {
+        output: arguments.output.unwrap_or_else(|| folder.join("auto")),
+        experiments,
+        partial: arguments.partial,
+        quick: arguments.quick,
+        force: arguments.force,
+    };
+    let stop = stop_on_signals().map_err(Failure::failed)?;
+    let shard = arguments.parts.shard();
+    let all = shard.part_of(study.experiments.clone()).len();
+    let bar = ProgressBar::new(all as u64);
+    let answers = study.run(shard, &stop, || bar.inc(1));
+    bar.finish_and_clear();
+    let stopped = answers.len() < all;
+    if stopped {
+        eprintln!("stopped: {} of {all} were not done", all - answers.len());
+    }
+    match arguments.parts.keep(study, answers, stopped)? {
+        Some((study, answers)) => tell_folder(&study, &answers, json),
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// Tells what came of every experiment; the exit code is 1 where one could not be used.
+pub fn tell_folder(
+    study: &LabFolder,
+    answers: &[Placed<Completed>],
+    json: bool,
+) -> Result<ExitCode, Failure> {
+    if json {
+        print_json(&study.total(answers).map_err(Failure::refused)?)?;
+    }
+    for Placed { place, value } in answers {
+        let path = study.path(*place);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        match (&value.verdict, &value.error) {
+            (_, Some(error)) => eprintln!("{name}: {error}"),
+            (Some(verdict), None) if !json => {
+                println!("{name:<40} {verdict:<12} {}", value.added.join(", "));
+            }
+            _ => {}
+        }
+    }
+    Ok(match answers.iter().any(|own| own.value.error.is_some()) {
+        true => ExitCode::FAILURE,
+        false => ExitCode::SUCCESS,
+    })
 }

@@ -21,6 +21,8 @@ use ferntast_identification::{Subject, arm::ArmEffect};
 
 use super::Failure;
 
+pub use auto::tell_folder;
+
 /// Hold a model against a recording, find which effect is missing, add it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Five minutes, from \"my model is off\" to proof:\n  \

@@ -1,9 +1,6 @@
 //! From what the user names to data and model.
 
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, path::Path};
 
 use ferntast_lab::work::{self, InUnit};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -63,13 +60,4 @@ pub fn print_results<T: Serialize>(results: &[(String, InUnit<T>)]) -> Result<()
             _ => None,
         },
     })
-}
-
-/// The file of the next step: beside the one before, or in a folder of its own.
-pub fn output_of(path: &Path, effect: &str, folder: Option<&Path>) -> PathBuf {
-    let output = work::beside(path, effect);
-    match (folder, output.file_name()) {
-        (Some(folder), Some(name)) => folder.join(name),
-        _ => output,
-    }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use ferntast_model::friction::Proposal;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::dependence::Dependence;
 use crate::comparison::noise_floor::NoiseFloor;
@@ -11,7 +11,7 @@ use crate::comparison::usage::Usage;
 use crate::fit::{Parameter, Rms, Soundness};
 
 /// What a residual says of the model, on the samples that are used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// An effect of the catalogue is missing.

@@ -44,6 +44,16 @@ pub fn beside(parent: &Path, effect: &str) -> PathBuf {
     parent.with_file_name(name)
 }
 
+/// The file of the next step: beside the one before, or in a folder of its own.
+#[must_use]
+pub fn output_of(path: &Path, effect: &str, folder: Option<&Path>) -> PathBuf {
+    let output = beside(path, effect);
+    match (folder, output.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => output,
+    }
+}
+
 /// Refuses to write over a file that is there.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use std::{
 use ferntast_identification::{Diagnosis, Term, Verdict, diagnosis::NamedCandidate};
 use serde::Serialize;
 
-use super::{Added, InUnit, Opened, WorkError, beside, open_file, refuse_existing};
+use super::{Added, InUnit, Opened, WorkError, open_file, output_of, refuse_existing};
 
 /// No joint and no contact has so many effects that these data can tell apart.
 const MAX_STEPS: usize = 8;
@@ -24,6 +24,18 @@ pub struct AutoOptions {
     pub quick: bool,
     /// Write over files that are there.
     pub force: bool,
+}
+
+impl AutoOptions {
+    pub(super) fn make_folder(&self) -> Result<(), WorkError> {
+        let Some(folder) = &self.folder else {
+            return Ok(());
+        };
+        fs::create_dir_all(folder).map_err(|source| WorkError::File {
+            path: folder.clone(),
+            source,
+        })
+    }
 }
 
 /// What came of adding what is missing, again and again.
@@ -82,12 +94,7 @@ pub fn auto(
     options: &AutoOptions,
     tell: &mut dyn FnMut(AutoEvent<'_>),
 ) -> Result<Automatic, WorkError> {
-    if let Some(folder) = &options.folder {
-        fs::create_dir_all(folder).map_err(|source| WorkError::File {
-            path: folder.clone(),
-            source,
-        })?;
-    }
+    options.make_folder()?;
     let mut path = path.to_owned();
     let mut steps: Vec<Step> = Vec::new();
     loop {
@@ -109,10 +116,7 @@ pub fn auto(
             });
         };
         let effect = Term::Catalogue(name);
-        let mut output = beside(&path, effect.name());
-        if let (Some(folder), Some(name)) = (&options.folder, output.file_name()) {
-            output = folder.join(name);
-        }
+        let output = output_of(&path, effect.name(), options.folder.as_deref());
         if !options.force {
             refuse_existing(&output)?;
         }

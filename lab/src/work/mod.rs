@@ -3,6 +3,7 @@
 
 mod add;
 mod arm;
+mod arm_auto;
 mod auto;
 mod document;
 mod equation;
@@ -28,8 +29,9 @@ use crate::{
     recording::{self, Tally},
 };
 
-pub use add::{Added, beside, own_effect, refuse_existing};
+pub use add::{Added, beside, output_of, own_effect, refuse_existing};
 pub use arm::{AddedToArm, OpenedArm, open_arm};
+pub use arm_auto::{ArmAutoEvent, AutomaticArm, auto_arm, name_of};
 pub use auto::{AutoEvent, AutoOptions, Automatic, Step, auto};
 pub use equation::Formula;
 pub use error::{NewError, WorkError};

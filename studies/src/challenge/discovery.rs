@@ -2,19 +2,19 @@
 
 use std::{
     collections::BTreeMap,
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
+    sync::atomic::{AtomicBool, AtomicUsize, Ordering},
 };
 
 use ferntast_benches::joint_bench::{Bench, BenchConfig, HiddenEffect};
 use ferntast_identification::{Verdict, discover};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{TestBench, blind::true_model_reaches};
-use crate::challenge::blind::Count;
+use crate::{
+    challenge::blind::Count,
+    parallel,
+    shard::{Placed, Shard, Study, values},
+};
 
 /// Within this factor of what the true law reaches on the same recording, a formula
 /// is as good.
@@ -23,7 +23,7 @@ const AS_GOOD_AS_TRUE: f64 = 1.1;
 const SEARCH: u64 = 1;
 
 /// What is tried.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawPlan {
     /// Seed of the first recording.
     pub seed: u64,
@@ -36,7 +36,7 @@ pub struct LawPlan {
 }
 
 /// What came of one recording.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answered {
     /// The law in words; none where nothing is hidden.
     pub law: Option<String>,
@@ -96,64 +96,70 @@ pub struct DiscoveryTest {
     pub answers: Vec<Answered>,
 }
 
-/// Puts every recording of `plan` to the search, on all processors. `progress` is told
-/// how many of how many are done.
-///
-/// # Errors
-///
-/// A recording that cannot be made or searched, with its seed.
-pub fn run(
-    plan: &LawPlan,
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<DiscoveryTest, String> {
-    let mut cases: Vec<(u64, Option<f64>)> = Vec::new();
-    for number in 0..plan.laws as u64 {
-        for &strength in &plan.strengths {
-            cases.push((
-                plan.seed.wrapping_add(cases.len() as u64 + number),
-                Some(strength),
-            ));
-        }
-    }
-    let first = plan.seed.wrapping_add(1_000_000);
-    cases.extend((0..plan.nothing as u64).map(|number| (first.wrapping_add(number), None)));
-    let next = AtomicUsize::new(0);
-    let answers = Mutex::new(Vec::new());
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some(&(seed, strength)) = cases.get(next.fetch_add(1, Ordering::Relaxed))
-                {
-                    let answer = answer(seed, strength);
-                    let answer = answer.map_err(|error| format!("seed {seed}: {error}"));
-                    let mut answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
-                    answers.push(answer);
-                    progress(answers.len(), cases.len());
-                }
-            });
-        }
-    });
-    let answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let mut answers: Vec<Answered> = answers.into_iter().collect::<Result<_, _>>()?;
-    answers.sort_by_key(|own| own.seed);
-    let mut test = DiscoveryTest::default();
-    for own in answers {
-        let strength = own.strength.to_string();
-        match own.law {
-            Some(_) => {
-                let of = test.as_good_as_true.entry(strength.clone());
-                of.or_default().note(own.is_as_good());
-                let of = test.in_catalogue.entry(strength.clone());
-                of.or_default().note(own.is_in_catalogue());
-                let of = test.proposed.entry(strength);
-                of.or_default().note(own.formula.is_some());
+impl Study for LawPlan {
+    const KIND: &'static str = "discovery_test";
+    type Answer = Answered;
+}
+
+impl LawPlan {
+    /// Seeds of its recordings, each with the strength of its law, or nothing hidden.
+    fn cases(&self) -> Vec<(u64, Option<f64>)> {
+        let mut cases = Vec::new();
+        for number in 0..self.laws as u64 {
+            for &strength in &self.strengths {
+                cases.push((
+                    self.seed.wrapping_add(cases.len() as u64 + number),
+                    Some(strength),
+                ));
             }
-            None => test.false_alarms.note(own.formula.is_some()),
         }
-        test.answers.push(own);
+        let first = self.seed.wrapping_add(1_000_000);
+        cases.extend((0..self.nothing as u64).map(|number| (first.wrapping_add(number), None)));
+        cases
     }
-    Ok(test)
+
+    /// Puts its recordings that are in `shard` to the search, on all processors, until `stop`.
+    /// `progress` is told how many of how many are done.
+    ///
+    /// # Errors
+    ///
+    /// A recording that cannot be made or searched, with its seed.
+    pub fn run(
+        &self,
+        shard: Shard,
+        stop: &AtomicBool,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Vec<Placed<Answered>>, String> {
+        let cases = shard.part_of(self.cases());
+        let done = AtomicUsize::new(0);
+        let answers = parallel::map_until(&cases, stop, |_, &(place, (seed, strength))| {
+            let value = answer(seed, strength).map_err(|error| format!("seed {seed}: {error}"))?;
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, cases.len());
+            Ok::<_, String>(Placed { place, value })
+        })?;
+        Ok(answers.into_iter().map(|(_, answer)| answer).collect())
+    }
+
+    /// What the answers come to.
+    pub fn total(&self, answers: Vec<Placed<Answered>>) -> DiscoveryTest {
+        let mut test = DiscoveryTest::default();
+        for own in values(answers) {
+            let strength = own.strength.to_string();
+            match own.law {
+                Some(_) => {
+                    let of = test.as_good_as_true.entry(strength.clone());
+                    of.or_default().note(own.is_as_good());
+                    let of = test.in_catalogue.entry(strength.clone());
+                    of.or_default().note(own.is_in_catalogue());
+                    let of = test.proposed.entry(strength);
+                    of.or_default().note(own.formula.is_some());
+                }
+                None => test.false_alarms.note(own.formula.is_some()),
+            }
+            test.answers.push(own);
+        }
+        test
+    }
 }
 
 fn answer(seed: u64, strength: Option<f64>) -> Result<Answered, String> {

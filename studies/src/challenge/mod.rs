@@ -9,6 +9,6 @@ mod folder;
 
 pub use asked::{Asked, make};
 pub use bench::{TestBench, WriteError, hidden_by};
-pub use blind::{BlindTest, Count, Coverage, FollowedUp, Miss, Plan, run as blind_test};
-pub use discovery::{Answered, DiscoveryTest, LawPlan, run as discovery_test};
+pub use blind::{Answer as BlindAnswer, BlindTest, Count, Coverage, FollowedUp, Miss, Plan};
+pub use discovery::{Answered, DiscoveryTest, LawPlan};
 pub use folder::{Answer, ChallengeError, create, reveal};

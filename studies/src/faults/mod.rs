@@ -24,6 +24,7 @@ mod keys;
 mod kit;
 mod log;
 mod recorder;
+mod results;
 mod run;
 mod schedule;
 mod seen;
@@ -34,7 +35,8 @@ mod world;
 
 pub use fault::{Fault, Node, Way};
 pub use kit::{KitError, load};
-pub use run::{Kits, Look, Outcome, Plan, Results, RunError, Violation, replay, run_many};
+pub use results::{FaultStudy, Results};
+pub use run::{Kits, Look, Outcome, Plan, RunError, Violation, replay, run_many};
 pub use schedule::{Event, Schedule, ScheduleError};
 pub use shrink::{shrink, shrink_where, violates};
 pub use summary::{Found, Summary};

@@ -1,6 +1,7 @@
 //! Runs schedules, one or many.
 
 use std::{
+    borrow::Cow,
     collections::BTreeMap,
     ops::Range,
     panic::{AssertUnwindSafe, catch_unwind},
@@ -15,24 +16,27 @@ use std::{
 
 use ferntast_control::{delay::Law, planted::Planted};
 use ferntast_nodes::{config::Loaded, graph::Graph};
+use serde::{Deserialize, Serialize};
 
 use super::{
     draw::draw,
     fault::Fault,
     invariants,
     kit::{Kit, KitError},
+    results::Results,
     schedule::{Event, Schedule},
     world::{Looks, World, WorldError},
 };
+use crate::shard::Shard;
 
 /// One schedule in so many is run twice.
 const RUN_TWICE: u64 = 200;
 
 /// What does not hold.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Violation {
     /// The invariant.
-    pub invariant: &'static str,
+    pub invariant: Cow<'static, str>,
     /// When \[ms after the start\].
     pub at_ms: i64,
     /// How.
@@ -111,7 +115,7 @@ impl Kits {
             Ok(result) => Ok(result?),
             Err(_) => Ok(Outcome {
                 violations: vec![Violation {
-                    invariant: "no_panic",
+                    invariant: "no_panic".into(),
                     at_ms: schedule.length_ms,
                     told: "a node panicked; its message is on stderr".to_owned(),
                 }],
@@ -167,7 +171,7 @@ fn run(
             None => true,
             Some(told) => {
                 outcome.violations.push(Violation {
-                    invariant: own.name(),
+                    invariant: own.name().into(),
                     at_ms: seen.tick,
                     told,
                 });
@@ -182,7 +186,7 @@ fn run(
     outcome.digest = digest;
     if let Some(told) = lost {
         outcome.violations.push(Violation {
-            invariant: "nothing_recorded_lost",
+            invariant: "nothing_recorded_lost".into(),
             at_ms: schedule.length_ms,
             told,
         });
@@ -195,68 +199,12 @@ fn run(
 pub struct Plan {
     /// Seeds.
     pub seeds: Range<u64>,
+    /// Which of them.
+    pub shard: Shard,
     /// Ends after this time.
     pub longest: Option<Duration>,
     /// At the same time.
     pub threads: usize,
-}
-
-/// What became of many schedules.
-#[derive(Clone, Debug, Default)]
-pub struct Results {
-    /// Schedules run.
-    pub schedules: u64,
-    /// Real time that took.
-    pub took: Duration,
-    /// Schedules with a fault of that name.
-    pub faults: BTreeMap<&'static str, u64>,
-    /// For each invariant that was violated: the first schedule, how, and in how many.
-    pub violations: BTreeMap<&'static str, (Schedule, Violation, u64)>,
-}
-
-impl Results {
-    /// Schedules in a minute.
-    pub fn per_minute(&self) -> f64 {
-        self.schedules as f64 * 60.0 / self.took.as_secs_f64().max(1e-9)
-    }
-
-    fn add(&mut self, schedule: &Schedule, outcome: Outcome) {
-        self.schedules += 1;
-        let mut names: Vec<_> = schedule.event.iter().map(|own| own.fault.name()).collect();
-        names.sort_unstable();
-        for name in names {
-            *self.faults.entry(name).or_insert(0) += 1;
-        }
-        for violation in outcome.violations {
-            let first = self
-                .violations
-                .entry(violation.invariant)
-                .or_insert_with(|| (schedule.clone(), violation.clone(), 0));
-            first.2 += 1;
-            // The same whatever the number of threads.
-            if schedule.seed < first.0.seed {
-                first.0 = schedule.clone();
-                first.1 = violation;
-            }
-        }
-    }
-
-    fn join(&mut self, other: Results) {
-        self.schedules += other.schedules;
-        for (name, count) in other.faults {
-            *self.faults.entry(name).or_insert(0) += count;
-        }
-        for (name, (schedule, violation, count)) in other.violations {
-            let first = self
-                .violations
-                .entry(name)
-                .or_insert_with(|| (schedule.clone(), violation.clone(), 0));
-            first.2 += count;
-            if schedule.seed < first.0.seed {
-                (first.0, first.1) = (schedule, violation);
-            }
-        }
-    }
 }
 
 /// Runs the schedules of `plan`. `change` may change a schedule before it is run;
@@ -289,12 +237,15 @@ pub fn run_many(
             if seed >= plan.seeds.end {
                 break;
             }
+            if !plan.shard.takes(seed - plan.seeds.start) {
+                continue;
+            }
             let mut schedule = kits.draw(seed);
             change(&mut schedule);
             match run_and_compare(kits, &schedule, seed.is_multiple_of(RUN_TWICE)) {
                 Ok(outcome) => {
                     done(&schedule, &outcome);
-                    own.add(&schedule, outcome);
+                    own.add(&schedule, outcome.violations);
                 }
                 Err(error) => {
                     failed.store(true, Ordering::Relaxed);
@@ -317,7 +268,7 @@ pub fn run_many(
         Ok::<(), RunError>(())
     })?;
     let mut all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
-    all.took = begun.elapsed();
+    all.took = Some(begun.elapsed());
     Ok(all)
 }
 
@@ -335,7 +286,7 @@ fn run_and_compare(kits: &Kits, schedule: &Schedule, twice: bool) -> Result<Outc
         let again = kits.run(schedule, look)?;
         if again.digest != outcome.digest {
             outcome.violations.push(Violation {
-                invariant: "same_seed_same_bytes",
+                invariant: "same_seed_same_bytes".into(),
                 at_ms: schedule.length_ms,
                 told: "two runs of the same schedule published other bytes".to_owned(),
             });

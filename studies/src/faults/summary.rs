@@ -4,12 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use serde::Serialize;
 
-use super::{
-    fault::Fault,
-    invariants,
-    run::{Results, Violation},
-    schedule::Schedule,
-};
+use super::{fault::Fault, invariants, results::Results, run::Violation, schedule::Schedule};
 
 /// A violated invariant.
 #[derive(Clone, Debug, Serialize)]
@@ -37,8 +32,8 @@ pub struct Found {
 pub struct Summary {
     /// Schedules run.
     pub schedules: u64,
-    /// In a minute of real time.
-    pub schedules_per_minute: f64,
+    /// In a minute of real time; `null` where they were run in parts.
+    pub schedules_per_minute: Option<f64>,
     /// What does not hold.
     pub violations: Vec<Found>,
     /// How often each fault was tried.
@@ -53,7 +48,7 @@ impl Summary {
         let count = |name: &'static str| (name, results.faults.get(name).copied().unwrap_or(0));
         Summary {
             schedules: results.schedules,
-            schedules_per_minute: results.per_minute().round(),
+            schedules_per_minute: results.per_minute().map(f64::round),
             violations,
             faults: Fault::NAMES.into_iter().map(count).collect(),
             invariants: checked(),
@@ -72,7 +67,7 @@ impl Found {
     /// A violation, what is left of its schedule, in how many it was seen.
     pub fn new(schedule: Schedule, violation: &Violation, schedules: u64) -> Found {
         Found {
-            invariant: violation.invariant.to_owned(),
+            invariant: violation.invariant.to_string(),
             seed: schedule.seed,
             at_ms: violation.at_ms,
             told: violation.told.clone(),

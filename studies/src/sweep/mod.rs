@@ -3,7 +3,7 @@
 //!
 //! A row is one trial of [`ferntast_sim::teleoperation`]: laws and frames as in a session, a
 //! hand with impedance, an arm behind its servo, something to touch. The same file gives the
-//! same rows, whatever the number of processors. [`random`] draws the conditions instead.
+//! same rows, whatever the number of processors. [`RandomSweep`] draws the conditions instead.
 
 mod bench;
 mod config;
@@ -21,7 +21,7 @@ pub use bench::Bench;
 pub use config::{NotSwept, SweepConfig};
 pub use grid::Condition;
 pub use page::{RenderError, render};
-pub use random::{BOUND, Case, RandomCases, random, random_table};
+pub use random::{BOUND, Case, RandomCases, RandomSweep, random_table};
 pub use row::Row;
 pub use run::{RunError, run};
 pub use stable::{LargestStable, largest_stable};

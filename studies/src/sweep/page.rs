@@ -19,7 +19,7 @@ struct Content<'a> {
     title: &'static str,
     description: &'a str,
     rows: &'a [Row],
-    largest_stable: Vec<LargestStable>,
+    largest_stable: Vec<LargestStable<'a>>,
 }
 
 /// The page as HTML.

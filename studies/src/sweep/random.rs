@@ -1,15 +1,15 @@
 //! Cases drawn at random: scales, channels, hands, surfaces and tasks, from seeds.
 
-use std::{
-    fmt::Write,
-    sync::atomic::{AtomicBool, AtomicU64, Ordering},
-    thread,
-};
+use std::{fmt::Write, sync::atomic::AtomicBool};
 
 use ferntast_model::ParameterError;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Bench, RunError, SweepConfig};
+use crate::{
+    parallel,
+    shard::{Placed, Shard, Study},
+};
 
 /// A law that makes more at hand and tip is not passive \[J\].
 pub const BOUND: f64 = 0.02;
@@ -36,11 +36,11 @@ pub struct RandomCases {
     /// Share of the cases in which the task was done in time \[-\].
     pub share_done: f64,
     /// Seeds of the worst of those beyond, and how much each made \[J\].
-    pub worst: Vec<Case>,
+    pub worst: Vec<Worst>,
 }
 
-/// A case.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// What came of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// Whence it all comes.
     pub seed: u64,
@@ -48,8 +48,17 @@ pub struct Case {
     #[serde(rename = "true_energy_J")]
     pub energy: f64,
     /// The task was done in time.
-    #[serde(skip)]
     pub done: bool,
+}
+
+/// A case that is told.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Worst {
+    /// Whence it all comes.
+    pub seed: u64,
+    /// As in [`RandomCases::worst_energy`].
+    #[serde(rename = "true_energy_J")]
+    pub energy: f64,
 }
 
 impl Case {
@@ -79,7 +88,14 @@ impl RandomCases {
             beyond: beyond as u64,
             share_beyond: share(beyond),
             share_done: share(cases.iter().filter(|own| own.done).count()),
-            worst: cases.iter().take(beyond.min(TOLD)).copied().collect(),
+            worst: cases
+                .iter()
+                .take(beyond.min(TOLD))
+                .map(|own| Worst {
+                    seed: own.seed,
+                    energy: own.energy,
+                })
+                .collect(),
         }
     }
 
@@ -89,78 +105,78 @@ impl RandomCases {
     }
 }
 
-/// Runs `count` cases of each law of `config`, from `first_seed` on, seed by seed on every
-/// processor, until `stop`; `done` is called once a case, from any thread.
-///
-/// # Errors
-///
-/// The first value that is out of bounds, an arm that cannot be loaded.
-pub fn random(
-    config: &SweepConfig,
-    first_seed: u64,
-    count: u64,
-    stop: &AtomicBool,
-    done: impl Fn() + Sync,
-) -> Result<Vec<RandomCases>, RunError> {
-    config.validate()?;
-    let bench = Bench::new(config)?;
-    let laws = config.laws.len() as u64;
-    let next = AtomicU64::new(0);
-    let failed = AtomicBool::new(false);
-    let work = || {
-        let mut cases = Vec::new();
-        while !stop.load(Ordering::Relaxed) && !failed.load(Ordering::Relaxed) {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            let (law, seed) = (
-                (place % laws) as usize,
-                first_seed.saturating_add(place / laws),
-            );
-            let Some(parameters) = config.laws.get(law).filter(|_| place / laws < count) else {
-                break;
-            };
-            match bench.drawn(parameters, seed).run() {
-                Ok(outcome) => cases.push((
-                    law,
-                    Case {
-                        seed,
-                        energy: outcome.energy_margin,
-                        done: outcome.task_time.is_some(),
-                    },
-                )),
-                Err(error) => {
-                    failed.store(true, Ordering::Relaxed);
-                    return Err(error);
-                }
-            }
+/// Cases of each law of a sweep, drawn from seeds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RandomSweep {
+    /// Seed of the first case.
+    pub seed: u64,
+    /// Cases of each law.
+    pub cases: u64,
+    /// The laws, and all that is not drawn.
+    pub sweep: SweepConfig,
+}
+
+impl Study for RandomSweep {
+    const KIND: &'static str = "random_sweep";
+    type Answer = Case;
+}
+
+impl RandomSweep {
+    /// Cases in all.
+    pub fn count(&self) -> u64 {
+        self.cases.saturating_mul(self.sweep.laws.len() as u64)
+    }
+
+    /// The law, by its place, and the seed of the case at `place`: seed by seed.
+    fn case(&self, place: u64) -> (usize, u64) {
+        let laws = self.sweep.laws.len() as u64;
+        let seed = self.seed.saturating_add(place / laws);
+        ((place % laws) as usize, seed)
+    }
+
+    /// Runs the cases that are in `shard`, on every processor, until `stop`; `done` is called
+    /// once a case, from any thread.
+    ///
+    /// # Errors
+    ///
+    /// The first value that is out of bounds, an arm that cannot be loaded.
+    pub fn run(
+        &self,
+        shard: Shard,
+        stop: &AtomicBool,
+        done: impl Fn() + Sync,
+    ) -> Result<Vec<Placed<Case>>, RunError> {
+        self.sweep.validate()?;
+        let bench = Bench::new(&self.sweep)?;
+        let places: Vec<u64> = (0..self.count()).filter(|own| shard.takes(*own)).collect();
+        let cases = parallel::map_until(&places, stop, |_, &place| {
+            let (law, seed) = self.case(place);
+            let outcome = bench.drawn(&self.sweep.laws[law], seed).run()?;
             done();
-        }
-        Ok(cases)
-    };
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    let mut cases = Vec::new();
-    thread::scope(|scope| {
-        let threads: Vec<_> = (1..workers).map(|_| scope.spawn(work)).collect();
-        cases.extend(work()?);
-        for thread in threads {
-            match thread.join() {
-                Ok(some) => cases.extend(some?),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        Ok::<(), ParameterError>(())
-    })?;
-    let of = |law: usize| {
-        cases
-            .iter()
-            .filter(move |own| own.0 == law)
-            .map(|own| own.1)
-    };
-    let each = config.laws.iter().enumerate();
-    Ok(each
-        .map(|(place, law)| {
-            RandomCases::new(law.name(), law.claims_passivity(), of(place).collect())
-        })
-        .collect())
+            Ok::<_, ParameterError>(Placed {
+                place,
+                value: Case {
+                    seed,
+                    energy: outcome.energy_margin,
+                    done: outcome.task_time.is_some(),
+                },
+            })
+        })?;
+        Ok(cases.into_iter().map(|(_, case)| case).collect())
+    }
+
+    /// What the cases come to, law by law.
+    pub fn total(&self, cases: &[Placed<Case>]) -> Vec<RandomCases> {
+        let of = |law: usize| {
+            let own = cases
+                .iter()
+                .filter(move |own| self.case(own.place).0 == law);
+            own.map(|own| own.value).collect()
+        };
+        let laws = self.sweep.laws.iter().enumerate();
+        laws.map(|(place, law)| RandomCases::new(law.name(), law.claims_passivity(), of(place)))
+            .collect()
+    }
 }
 
 /// A line a law, for a terminal.

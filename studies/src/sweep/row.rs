@@ -1,16 +1,18 @@
 //! One trial's conditions and outcome, as in JSON.
 
+use std::borrow::Cow;
+
 use ferntast_sim::teleoperation::Outcome;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Condition;
 
 /// A trial. Positions and forces are at the hand's scale; what is not finite,
 /// as after an instability, is `null` in JSON.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The law.
-    pub law: &'static str,
+    pub law: Cow<'static, str>,
     /// Whether it claims passivity.
     pub claims_passivity: bool,
     /// Round trip \[ms\].
@@ -22,9 +24,9 @@ pub struct Row {
     /// Share of frames lost each way \[-\].
     pub loss: f64,
     /// What the tip meets.
-    pub environment: &'static str,
+    pub environment: Cow<'static, str>,
     /// What the operator does.
-    pub task: &'static str,
+    pub task: Cow<'static, str>,
     /// Of all chance.
     pub seed: u64,
     /// Hand and tip come to rest, and the task was done: a law that does nothing is not stable.
@@ -81,14 +83,14 @@ impl Row {
     /// Of a trial.
     pub fn new(condition: &Condition, outcome: &Outcome) -> Row {
         Row {
-            law: condition.law.name(),
+            law: condition.law.name().into(),
             claims_passivity: condition.law.claims_passivity(),
             rtt_ms: condition.rtt_ms,
             jitter_ms: condition.jitter_ms,
             buffer_ms: condition.buffer_ms,
             loss: condition.loss,
-            environment: condition.environment.name(),
-            task: condition.task.name(),
+            environment: condition.environment.name().into(),
+            task: condition.task.name().into(),
             seed: condition.seed,
             stable: outcome.stable && outcome.task_time.is_some(),
             swing_m: outcome.swing,

@@ -1,14 +1,15 @@
 //! Runs the trials on every processor.
 
-use std::{
-    sync::atomic::{AtomicBool, AtomicUsize, Ordering},
-    thread,
-};
+use std::sync::atomic::AtomicBool;
 
 use ferntast_model::ParameterError;
 use ferntast_nodes::config::ConfigError;
 
 use super::{Bench, Row, SweepConfig};
+use crate::{
+    parallel,
+    shard::{Placed, Shard, Study},
+};
 
 /// Why there are no rows.
 #[derive(Debug, thiserror::Error)]
@@ -21,49 +22,33 @@ pub enum RunError {
     Arm(#[from] ConfigError),
 }
 
-/// Every row of `config`, in the order of its conditions; `done` is called once
-/// a trial, from any thread.
+impl Study for SweepConfig {
+    const KIND: &'static str = "sweep";
+    type Answer = Row;
+}
+
+/// The rows of `config` that are in `shard`, in the order of its conditions, until `stop`;
+/// `done` is called once a trial, from any thread.
 ///
 /// # Errors
 ///
 /// The first value that is out of bounds, an arm that cannot be loaded.
-pub fn run(config: &SweepConfig, done: impl Fn() + Sync) -> Result<Vec<Row>, RunError> {
+pub fn run(
+    config: &SweepConfig,
+    shard: Shard,
+    stop: &AtomicBool,
+    done: impl Fn() + Sync,
+) -> Result<Vec<Placed<Row>>, RunError> {
     config.validate()?;
     let bench = Bench::new(config)?;
-    let conditions = config.conditions();
-    let next = AtomicUsize::new(0);
-    let failed = AtomicBool::new(false);
-    let work = || {
-        let mut rows = Vec::new();
-        while !failed.load(Ordering::Relaxed) {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            let Some(condition) = conditions.get(place) else {
-                break;
-            };
-            match bench.run(condition) {
-                Ok(outcome) => rows.push((place, Row::new(condition, &outcome))),
-                Err(error) => {
-                    failed.store(true, Ordering::Relaxed);
-                    return Err(error);
-                }
-            }
-            done();
-        }
-        Ok(rows)
-    };
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    let mut rows = Vec::with_capacity(conditions.len());
-    thread::scope(|scope| {
-        let threads: Vec<_> = (1..workers).map(|_| scope.spawn(work)).collect();
-        rows.extend(work()?);
-        for thread in threads {
-            match thread.join() {
-                Ok(some) => rows.extend(some?),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        Ok::<(), ParameterError>(())
+    let conditions = shard.part_of(config.conditions());
+    let rows = parallel::map_until(&conditions, stop, |_, (place, condition)| {
+        let outcome = bench.run(condition)?;
+        done();
+        Ok::<_, ParameterError>(Placed {
+            place: *place,
+            value: Row::new(condition, &outcome),
+        })
     })?;
-    rows.sort_by_key(|(place, _)| *place);
     Ok(rows.into_iter().map(|(_, row)| row).collect())
 }

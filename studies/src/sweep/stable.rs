@@ -6,11 +6,11 @@ use super::Row;
 
 /// The largest round trip up to which a law is stable against an environment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LargestStable {
+pub struct LargestStable<'a> {
     /// The law.
-    pub law: &'static str,
+    pub law: &'a str,
     /// The environment.
-    pub environment: &'static str,
+    pub environment: &'a str,
     /// Without jitter and loss \[ms\]; `None` when it is unstable at every one.
     pub ideal_ms: Option<f64>,
     /// With any jitter and loss of the sweep, and any seed \[ms\].
@@ -19,14 +19,15 @@ pub struct LargestStable {
 
 /// For each law and environment, in the order of the rows. Delays above one at
 /// which a trial was unstable do not count, though they may be stable.
-pub fn largest_stable(rows: &[Row]) -> Vec<LargestStable> {
-    let mut pairs: Vec<(&'static str, &'static str)> = Vec::new();
+pub fn largest_stable(rows: &[Row]) -> Vec<LargestStable<'_>> {
+    let mut pairs: Vec<(&str, &str)> = Vec::new();
     for row in rows {
-        if !pairs.contains(&(row.law, row.environment)) {
-            pairs.push((row.law, row.environment));
+        let pair = (&*row.law, &*row.environment);
+        if !pairs.contains(&pair) {
+            pairs.push(pair);
         }
     }
-    let of = |(law, environment): (&'static str, &'static str)| {
+    let of = |(law, environment)| {
         let own = || {
             rows.iter()
                 .filter(move |row| row.law == law && row.environment == environment)

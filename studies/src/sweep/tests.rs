@@ -46,13 +46,13 @@ fn conditions_without_chance_need_one_seed() {
 #[test]
 fn rows_are_the_same_again_and_tell_where_position_force_fails() {
     let config = small();
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
     let count = || {
-        done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        done.fetch_add(1, Ordering::Relaxed);
     };
-    let rows = run(&config, count).unwrap();
+    let rows = values(run(&config, Shard::WHOLE, &go_on(), count).unwrap());
     assert_eq!(rows.len(), done.into_inner());
-    assert_eq!(rows, run(&config, || {}).unwrap());
+    assert_eq!(rows, all_of(&config));
     let found = largest_stable(&rows);
     let of = |environment| found.iter().find(|own| own.environment == environment);
     let (spring, wall) = (of("soft_spring").unwrap(), of("hard_wall").unwrap());
@@ -65,6 +65,14 @@ fn rows_are_the_same_again_and_tell_where_position_force_fails() {
         told.contains("hard_wall") && told.contains("position_force"),
         "{told}"
     );
+}
+
+fn go_on() -> AtomicBool {
+    AtomicBool::new(false)
+}
+
+fn all_of(config: &SweepConfig) -> Vec<Row> {
+    values(run(config, Shard::WHOLE, &go_on(), || {}).unwrap())
 }
 
 fn row(rtt_ms: f64, loss: f64, stable: bool) -> Row {
@@ -142,7 +150,7 @@ fn json_has_the_keys_and_the_page_is_whole_in_itself() {
 fn values_out_of_bounds_are_refused() {
     let mut config = small();
     config.loss = vec![1.5];
-    assert!(run(&config, || {}).is_err());
+    assert!(run(&config, Shard::WHOLE, &go_on(), || {}).is_err());
     config.loss = Vec::new();
     assert!(config.validate().is_err());
 }
@@ -154,9 +162,17 @@ fn random_cases_are_the_same_again_and_a_law_without_books_makes_energy() {
         .laws
         .retain(|law| ["position_force", "tdpa"].contains(&law.name()));
     config.arm = None;
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let found = random(&config, 7, 40, &stop, || {}).unwrap();
-    assert_eq!(found, random(&config, 7, 40, &stop, || {}).unwrap());
+    let study = RandomSweep {
+        seed: 7,
+        cases: 40,
+        sweep: config,
+    };
+    let stop = go_on();
+    let cases = |shard: &str| study.run(shard.parse().unwrap(), &stop, || {}).unwrap();
+    let found = study.total(&cases("1/1"));
+    let mut parts: Vec<_> = ["1/3", "2/3", "3/3"].into_iter().flat_map(cases).collect();
+    parts.sort_by_key(|own| own.place);
+    assert_eq!(found, study.total(&parts));
     let of = |name| found.iter().find(|own| own.law == name).unwrap();
     let (without, with) = (of("position_force"), of("tdpa"));
     assert_eq!((without.cases, with.cases), (40, 40));
@@ -168,8 +184,8 @@ fn random_cases_are_the_same_again_and_a_law_without_books_makes_energy() {
     assert_eq!((with.beyond, with.worst.len()), (0, 0), "{with:?}");
     assert!(with.share_done > 0.2, "{with:?}");
     // Stopped, there is what was done: here nothing.
-    stop.store(true, std::sync::atomic::Ordering::Relaxed);
-    let stopped = random(&config, 7, 40, &stop, || {}).unwrap();
+    stop.store(true, Ordering::Relaxed);
+    let stopped = study.total(&cases("1/1"));
     assert!(stopped.iter().all(|own| own.cases == 0));
 }
 
@@ -180,13 +196,13 @@ fn the_deadband_is_told_in_shares_of_what_is_sent() {
     config.jitter_ms = vec![0.0];
     config.loss = vec![0.0];
     config.environments = vec![Environment::SoftSpring];
-    let all = run(&config, || {}).unwrap();
+    let all = all_of(&config);
     assert!(
         all.iter()
             .all(|row| row.frame_share == 1.0 && row.byte_share == 1.0)
     );
     config.codec = ferntast_control::codec::Codec::Deadband;
-    let few = run(&config, || {}).unwrap();
+    let few = all_of(&config);
     for row in &few {
         assert!(row.stable && row.true_energy > -0.02, "{row:?}");
         assert!(row.content_share < 0.3 && row.frame_share < 0.45, "{row:?}");

@@ -17,5 +17,6 @@ mod own_tools;
 mod playback;
 mod refusals;
 mod serial_arm;
+mod shards;
 mod sweep;
 mod twin;

@@ -17,6 +17,7 @@ const MORE_SESSIONS: usize = 6;
 const HIDDEN_PART: &str = "hidden";
 
 /// What the lab said of one recording.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Given {
     pub(super) verdict: Verdict,
     pub(super) named: Option<String>,

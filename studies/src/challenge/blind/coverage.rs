@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use ferntast_benches::bench::{BenchConfig, Hideable};
 use ferntast_identification::{ModelSpec, Term, compare};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{super::TestBench, Case, tally::Count};
 
@@ -44,7 +44,7 @@ impl Coverage {
 }
 
 /// Whether the interval of one parameter holds its true value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Held {
     parameter: String,
     is_searched: bool,

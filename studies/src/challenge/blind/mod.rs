@@ -6,23 +6,31 @@ mod coverage;
 mod tally;
 mod two;
 
-use std::{
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use ferntast_benches::{contact_bench, joint_bench};
+use serde::{Deserialize, Serialize};
 
 use super::TestBench;
+use crate::{
+    parallel,
+    shard::{Placed, Shard, Study},
+};
 
+use ask::Given;
 pub(super) use ask::true_model_reaches;
 pub use coverage::Coverage;
+use coverage::Held;
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 
 /// What is tried.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
+    /// Recordings of contacts; else of joints.
+    pub contact: bool,
+    /// Of the recordings with one effect hidden only those that hide one of these, by id;
+    /// empty: all.
+    pub only: Vec<String>,
     /// Seed of the first recording.
     pub seed: u64,
     /// Recordings of each effect at each strength.
@@ -73,52 +81,125 @@ impl Plan {
     }
 }
 
-/// Puts every recording of `plan` to the diagnosis, on all processors; of those
-/// with one effect hidden only such as hide one of `only`, unless that is empty.
-/// `progress` is told how many of how many are done.
-///
-/// # Errors
-///
-/// A recording that cannot be made or diagnosed, with what it hid.
-pub fn run<H: TestBench>(
-    plan: &Plan,
-    only: &[H],
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<BlindTest, String> {
-    let cases = plan.cases(only);
-    let next = AtomicUsize::new(0);
-    let answers = Mutex::new(Vec::new());
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let answer = ask::ask(case).and_then(|given| {
-                        let held = coverage::held(case)?;
-                        Ok((given, held))
-                    });
-                    let mut answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
-                    answers.push((*case, answer));
-                    progress(answers.len(), cases.len() + plan.two);
-                }
-            });
+/// What came of one recording.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Answer {
+    /// Of one with one effect hidden, or none.
+    given: Option<Given>,
+    /// Of its true model's intervals.
+    #[serde(default)]
+    held: Vec<Held>,
+    /// Of one with two hidden: how many were named.
+    of_two: Option<usize>,
+}
+
+impl Study for Plan {
+    const KIND: &'static str = "blind_test";
+    type Answer = Answer;
+}
+
+/// A recording to be made.
+enum Question<H> {
+    /// With one effect hidden, or none.
+    One(Case<H>),
+    /// With two, by its seed.
+    Two(u64),
+}
+
+impl Plan {
+    /// Everything that is asked.
+    ///
+    /// # Errors
+    ///
+    /// [`Plan::only`] names an effect that the bench has not.
+    fn questions<H: TestBench>(&self) -> Result<Vec<Question<H>>, String> {
+        let only: Result<Vec<H>, _> = self.only.iter().map(|id| id.parse()).collect();
+        let cases = self.cases(&only.map_err(|error| error.to_string())?);
+        let seed = |number| self.seed.wrapping_add(2_000_000 + number);
+        let two = (0..self.two as u64).map(|number| Question::Two(seed(number)));
+        Ok(cases.into_iter().map(Question::One).chain(two).collect())
+    }
+
+    /// Puts its recordings that are in `shard` to the diagnosis, on all processors, until
+    /// `stop`. `progress` is told how many of how many are done.
+    ///
+    /// # Errors
+    ///
+    /// An effect that there is not; a recording that cannot be made or diagnosed, with what
+    /// it hid.
+    pub fn run(
+        &self,
+        shard: Shard,
+        stop: &AtomicBool,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Vec<Placed<Answer>>, String> {
+        match self.contact {
+            true => self.run_on::<contact_bench::HiddenEffect>(shard, stop, progress),
+            false => self.run_on::<joint_bench::HiddenEffect>(shard, stop, progress),
         }
-    });
-    let mut answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
-    // The order in which workers ended does not matter.
-    answers.sort_by_key(|(case, _)| (case.seed, case.hidden));
-    let mut test = BlindTest::default();
-    for (case, answer) in answers {
-        let (given, held) = answer?;
-        test.coverage.add(&held);
-        test.note(&case, given);
     }
-    for index in 0..plan.two {
-        let seed = plan.seed.wrapping_add(2_000_000 + index as u64);
-        let found = two::two_at_once::<H>(seed)?;
-        test.both_of_two.note(found == 2);
-        test.one_of_two.note(found >= 1);
-        progress(cases.len() + index + 1, cases.len() + plan.two);
+
+    fn run_on<H: TestBench>(
+        &self,
+        shard: Shard,
+        stop: &AtomicBool,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Vec<Placed<Answer>>, String> {
+        let questions = shard.part_of(self.questions::<H>()?);
+        let done = AtomicUsize::new(0);
+        let answers = parallel::map_until(&questions, stop, |_, (place, question)| {
+            let value = answer(question)?;
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, questions.len());
+            Ok::<_, String>(Placed {
+                place: *place,
+                value,
+            })
+        })?;
+        Ok(answers.into_iter().map(|(_, answer)| answer).collect())
     }
-    Ok(test)
+
+    /// What the answers come to.
+    ///
+    /// # Errors
+    ///
+    /// An effect that there is not.
+    pub fn total(&self, answers: Vec<Placed<Answer>>) -> Result<BlindTest, String> {
+        match self.contact {
+            true => self.total_on::<contact_bench::HiddenEffect>(answers),
+            false => self.total_on::<joint_bench::HiddenEffect>(answers),
+        }
+    }
+
+    fn total_on<H: TestBench>(&self, answers: Vec<Placed<Answer>>) -> Result<BlindTest, String> {
+        let questions = self.questions::<H>()?;
+        let mut test = BlindTest::default();
+        for Placed { place, value } in answers {
+            test.coverage.add(&value.held);
+            if let (Some(Question::One(case)), Some(given)) =
+                (questions.get(place as usize), value.given)
+            {
+                test.note(case, given);
+            }
+            if let Some(found) = value.of_two {
+                test.both_of_two.note(found == 2);
+                test.one_of_two.note(found >= 1);
+            }
+        }
+        Ok(test)
+    }
+}
+
+fn answer<H: TestBench>(question: &Question<H>) -> Result<Answer, String> {
+    Ok(match question {
+        Question::One(case) => Answer {
+            given: Some(ask::ask(case)?),
+            held: coverage::held(case)?,
+            of_two: None,
+        },
+        Question::Two(seed) => Answer {
+            given: None,
+            held: Vec::new(),
+            of_two: Some(two::two_at_once::<H>(*seed)?),
+        },
+    })
 }

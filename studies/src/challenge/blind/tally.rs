@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use ferntast_identification::Verdict;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{super::TestBench, Case, ask::Given, coverage::Coverage};
 
@@ -36,7 +36,7 @@ impl Count {
 }
 
 /// What came of the experiment that the lab proposed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FollowedUp {
     /// Which experiment.
     pub experiment: String,

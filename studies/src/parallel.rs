@@ -19,6 +19,21 @@ pub fn map<J: Sync, T: Send, E: Send>(
     jobs: &[J],
     work: impl Fn(usize, &J) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
+    let done = map_until(jobs, &AtomicBool::new(false), work)?;
+    Ok(done.into_iter().map(|(_, result)| result).collect())
+}
+
+/// The same until `stop`: results of the jobs that were begun before that, each with its
+/// place among the jobs, in their order.
+///
+/// # Errors
+///
+/// As [`map`].
+pub fn map_until<J: Sync, T: Send, E: Send>(
+    jobs: &[J],
+    stop: &AtomicBool,
+    work: impl Fn(usize, &J) -> Result<T, E> + Sync,
+) -> Result<Vec<(usize, T)>, E> {
     let threads = thread::available_parallelism()
         .map_or(1, NonZero::get)
         .min(jobs.len());
@@ -33,7 +48,7 @@ pub fn map<J: Sync, T: Send, E: Send>(
                     let Some(job) = jobs.get(index) else {
                         return;
                     };
-                    if failed.load(Ordering::Relaxed) {
+                    if failed.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed) {
                         return;
                     }
                     let result = work(index, job);
@@ -48,12 +63,14 @@ pub fn map<J: Sync, T: Send, E: Send>(
         .into_inner()
         .unwrap_or_else(|poisoned| poisoned.into_inner());
     done.sort_by_key(|(index, _)| *index);
-    done.into_iter().map(|(_, result)| result).collect()
+    done.into_iter()
+        .map(|(index, result)| Ok((index, result?)))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::map;
+    use super::*;
 
     #[test]
     fn results_keep_the_order_of_the_jobs() {
@@ -70,5 +87,18 @@ mod tests {
         let jobs: Vec<u64> = (0..200).collect();
         let result = map(&jobs, |_, job| if *job == 17 { Err(*job) } else { Ok(()) });
         assert_eq!(result, Err(17));
+    }
+
+    #[test]
+    fn what_was_begun_before_a_stop_is_given() {
+        let jobs: Vec<usize> = (0..200).collect();
+        let stop = AtomicBool::new(false);
+        let done = map_until(&jobs, &stop, |_, job| {
+            stop.fetch_or(*job >= 17, Ordering::Relaxed);
+            Ok::<usize, ()>(*job)
+        })
+        .unwrap();
+        assert!((18..200).contains(&done.len()), "{}", done.len());
+        assert!(done.iter().all(|(place, job)| place == job));
     }
 }
