@@ -109,7 +109,10 @@ mod tests {
         assert_eq!(choice, Ok(Choice::Process(command.into())));
         assert_eq!("ros2".parse(), Ok(Choice::Ros2(String::new())));
         let settings = "interface=velocity".to_owned();
-        assert_eq!("ros2:interface=velocity".parse(), Ok(Choice::Ros2(settings)));
+        assert_eq!(
+            "ros2:interface=velocity".parse(),
+            Ok(Choice::Ros2(settings))
+        );
         for wrong in [
             "",
             "process",

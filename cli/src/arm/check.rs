@@ -10,15 +10,12 @@ use ferntast_nodes::{
 use serde::Serialize;
 
 use super::terminal::RawTerminal;
-use crate::{
-    Failure,
-    output::print_json,
-    scenario_options::ScenarioOptions,
-};
+use crate::{Failure, output::print_json, scenario_options::ScenarioOptions};
 
 /// Read everything of an arm for some seconds and say what is implausible.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Nothing is moved without --move: the drives stay off. Looked at are the rate and age of readings, \
+#[command(
+    after_help = "Nothing is moved without --move: the drives stay off. Looked at are the rate and age of readings, \
 jitter of stamps,
 positions against the limits, velocity against the change of position, torque against the weight by the
 model, sensors that stand still, units that look like degrees, torques that are missing. Move the arm by
@@ -33,10 +30,16 @@ it no longer repeats: it has to repeat at least every 60 ms (xset r rate 250 30;
 Examples:
   ferntast arm check --arm panda --driver ros2
   ferntast arm check --arm my_arm.toml --driver ros2:joint_states=/left/joint_states --seconds 10
-  ferntast arm check --arm panda --move          # on the simulated arm, to see what it does")]
+  ferntast arm check --arm panda --move          # on the simulated arm, to see what it does"
+)]
 pub struct Arguments {
     /// How long to look [s].
-    #[arg(long, default_value_t = 5.0, value_name = "S", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        default_value_t = 5.0,
+        value_name = "S",
+        allow_negative_numbers = true
+    )]
     seconds: f64,
 
     /// Move the joints one after the other, a little and slowly, while the space bar is held.
@@ -128,7 +131,10 @@ fn drive(
             Progress::Waits => eprint!("waiting for the space bar\r\n"),
             Progress::Moves(joint) => eprint!("moving {}\r\n", name(joint)),
             Progress::Stands(joint) => {
-                eprint!("released: it stands; hold again to move {}\r\n", name(joint));
+                eprint!(
+                    "released: it stands; hold again to move {}\r\n",
+                    name(joint)
+                );
             }
             Progress::Over => eprint!("over: the drives are off\r\n"),
         }

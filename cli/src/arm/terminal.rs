@@ -24,7 +24,9 @@ impl RawTerminal {
         }
         let failed = || {
             let error = io::Error::last_os_error();
-            Failure::refused(format!("this terminal does not give keys one by one: {error}"))
+            Failure::refused(format!(
+                "this terminal does not give keys one by one: {error}"
+            ))
         };
         // SAFETY: a termios is numbers and bytes, of which zeros are a value; tcgetattr fills it.
         let mut before: libc::termios = unsafe { std::mem::zeroed() };

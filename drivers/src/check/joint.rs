@@ -211,7 +211,10 @@ fn at_rest(expected: &Expected, record: &Record, joint: usize) -> (Option<f64>, 
         .map(|own| own[joint])
         .collect();
     let mean = torques.iter().sum::<f64>() / torques.len() as f64;
-    ((!torques.is_empty()).then_some(mean), weight.sum::<f64>() / count)
+    (
+        (!torques.is_empty()).then_some(mean),
+        weight.sum::<f64>() / count,
+    )
 }
 
 /// The torque that there is.
@@ -243,27 +246,32 @@ fn against_weight(
     }
     let numbers = format!("its {sensor} tells {torque:.2} where the model's weight is {weight:.2}");
     let large = weight.abs() > allowed.max(0.05 * most);
-    let (severity, what, why) = if large && torque * weight < 0.0 && torque.abs() > 0.3 * weight.abs() {
-        (Severity::Wrong, "torque_sign", "the sign of the torque is wrong")
-    } else if large && torque.abs() < 0.1 * weight.abs() {
-        match expected.torque {
-            Torque::Joint => (
+    let (severity, what, why) =
+        if large && torque * weight < 0.0 && torque.abs() > 0.3 * weight.abs() {
+            (
                 Severity::Wrong,
-                "torque_without_weight",
-                "the torque is not measured, or the weight is taken out of it already",
-            ),
-            Torque::Motor => (
+                "torque_sign",
+                "the sign of the torque is wrong",
+            )
+        } else if large && torque.abs() < 0.1 * weight.abs() {
+            match expected.torque {
+                Torque::Joint => (
+                    Severity::Wrong,
+                    "torque_without_weight",
+                    "the torque is not measured, or the weight is taken out of it already",
+                ),
+                Torque::Motor => (
+                    Severity::Doubtful,
+                    "torque_without_weight",
+                    "is a brake on? With the drives on it has to carry that",
+                ),
+            }
+        } else {
+            (
                 Severity::Doubtful,
-                "torque_without_weight",
-                "is a brake on? With the drives on it has to carry that",
-            ),
-        }
-    } else {
-        (
-            Severity::Doubtful,
-            "torque_weight",
-            "a load that the URDF does not know, a zero that is off, or other units?",
-        )
-    };
+                "torque_weight",
+                "a load that the URDF does not know, a zero that is off, or other units?",
+            )
+        };
     found.push(Finding::new(severity, what, format!("{numbers}: {why}")));
 }

@@ -135,8 +135,20 @@ impl fmt::Display for Report {
             writeln!(
                 f,
                 "\n{:width$}  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n{:width$}  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
-                "joint", "position", "travel", "speed", "Δq/∫q̇dt", "torque", "weight",
-                "", "[rad, m]", "[rad, m]", "[rad/s]", "[-]", "[Nm, N]", "[Nm, N]"
+                "joint",
+                "position",
+                "travel",
+                "speed",
+                "Δq/∫q̇dt",
+                "torque",
+                "weight",
+                "",
+                "[rad, m]",
+                "[rad, m]",
+                "[rad/s]",
+                "[-]",
+                "[Nm, N]",
+                "[Nm, N]"
             )?;
             for own in &self.joints {
                 writeln!(

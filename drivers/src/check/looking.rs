@@ -70,7 +70,8 @@ impl Bench {
             self.driver.enable(enabled);
         }
         let mut health = NodeHealth::default();
-        self.driver.write(&DriverCommand { torque, elapsed }, &mut health);
+        self.driver
+            .write(&DriverCommand { torque, elapsed }, &mut health);
         let reading = self.driver.read(&mut health);
         let reading = reading.filter(|_| self.driver.is_homed());
         let before = match (self.before, reading.is_some()) {
@@ -83,17 +84,16 @@ impl Bench {
         // Until the first reading a driver may say that it waits; what keeps it is told below.
         let homing = self.before.is_none() && self.passed < HOMING;
         if health.level >= Level::WARN && !homing {
-            let words = told(&health);
-            *self.record.words.entry(words).or_default() += counts;
+            self.record.say(told(&health).as_str(), counts);
         }
         if let Some(reading) = reading {
             let stamp = self.driver.stamp();
             self.record.seen.push(Seen {
                 at: self.passed - before,
                 stamp: stamp.map(|own| own.nanos() as f64 * 1e-9),
+                delay: stamp.map(|own| now.seconds_since(own)),
                 reading,
             });
-            self.record.seconds = self.passed - before;
             self.last_reading = Some(reading);
         }
         (counts, reading)
@@ -113,22 +113,15 @@ impl Bench {
     }
 }
 
-/// What a driver says; what changes from step to step (numbers) is left as it first was.
-fn told(health: &NodeHealth) -> String {
-    let words: Text<96> = match health.message.is_empty() {
+/// What a driver says, in words.
+fn told(health: &NodeHealth) -> Text<96> {
+    match health.message.is_empty() {
         true => {
             let fault = health.faults.iter().next();
             Text::new(fault.map_or("", |own| own.name()))
         }
         false => health.message,
-    };
-    // One entry for what is said with a growing number.
-    words
-        .as_str()
-        .split(" for ")
-        .next()
-        .unwrap_or_default()
-        .to_owned()
+    }
 }
 
 /// Looks at the session's arm for `seconds` \[s\] from its first reading on, or until `stop`. It is

@@ -274,7 +274,8 @@ impl Mover {
         let most = self.amplitudes[joint];
         let share = (passed / DURATION).clamp(0.0, 1.0);
         // It begins and ends at rest.
-        let turn = std::f64::consts::TAU * (share - (std::f64::consts::TAU * share).sin() / std::f64::consts::TAU);
+        let turn = std::f64::consts::TAU
+            * (share - (std::f64::consts::TAU * share).sin() / std::f64::consts::TAU);
         let wave = turn.sin();
         let room = match wave >= 0.0 {
             true => upper - start[joint],
@@ -313,7 +314,9 @@ impl Mover {
         let stands = measured.velocity.iter().all(|own| own.abs() < STANDS);
         if let Some(released) = self.released.filter(|_| self.stops && stands) {
             self.stops = false;
-            self.moved.stopped_ms.push(now.seconds_since(released) * 1e3);
+            self.moved
+                .stopped_ms
+                .push(now.seconds_since(released) * 1e3);
         }
     }
 

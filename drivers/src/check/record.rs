@@ -14,6 +14,8 @@ pub struct Seen {
     pub at: f64,
     /// When it was measured, by the arm's own clock, where that is told \[s\].
     pub stamp: Option<f64>,
+    /// How much later than that it came by our clock, what the clocks are apart in it \[s\].
+    pub delay: Option<f64>,
     /// What was measured.
     pub reading: Reading,
 }
@@ -30,6 +32,18 @@ pub struct Record {
 }
 
 impl Record {
+    /// The driver had that to say for `seconds` \[s\]. What differs in its numbers only is one word.
+    pub fn say(&mut self, words: &str, seconds: f64) {
+        let letters = |words: &str| words.replace(|own: char| own.is_ascii_digit(), "");
+        let same = |known: &str| letters(known) == letters(words);
+        match self.words.iter_mut().find(|(known, _)| same(known)) {
+            Some((_, told)) => *told += seconds,
+            None => {
+                self.words.insert(words.to_owned(), seconds);
+            }
+        }
+    }
+
     /// Values of a joint, those that were not measured left out.
     pub fn of<'a>(
         &'a self,

@@ -35,6 +35,7 @@ fn record(motion: f64, spoil: impl Fn(&mut Seen)) -> Record {
         let mut seen = Seen {
             at,
             stamp: Some(at - 3600.0),
+            delay: Some(3600.0),
             reading: Reading {
                 position,
                 velocity: Joints::filled(count, motion * 1.5 * turn.cos()),
@@ -76,7 +77,14 @@ fn an_arm_that_is_right_is_found_right() {
     let change = report.joints[3].change_per_velocity.unwrap();
     assert!((change - 1.0).abs() < 0.01, "{change}");
     let json = serde_json::to_value(&report).unwrap();
-    for key in ["rate_hz", "longest_gap_ms", "stamp_jitter_ms", "delay_p99_ms", "joints", "ok"] {
+    for key in [
+        "rate_hz",
+        "longest_gap_ms",
+        "stamp_jitter_ms",
+        "delay_p99_ms",
+        "joints",
+        "ok",
+    ] {
         assert!(json.get(key).is_some(), "{key}");
     }
 }
@@ -149,7 +157,10 @@ fn degrees_and_places_out_of_range_are_told_apart() {
     let turned = record(0.0, |seen| seen.reading.position[3] += 4.0);
     let report = judged(&turned);
     let mut findings = report.findings.iter();
-    assert!(findings.any(|own| own.words.contains("its zero, its sign")), "{report}");
+    assert!(
+        findings.any(|own| own.words.contains("its zero, its sign")),
+        "{report}"
+    );
     assert!(!report.ok);
 }
 
@@ -170,7 +181,7 @@ fn times_are_told() {
 
     let late = record(0.1, |seen| {
         if seen.at % 1.0 < 0.05 {
-            seen.stamp = seen.stamp.map(|own| own - 0.04);
+            seen.delay = seen.delay.map(|own| own + 0.04);
         }
     });
     let told: Vec<&str> = found(&late).iter().map(|own| own.0).collect();
@@ -184,19 +195,21 @@ fn times_are_told() {
     let report = judged(&silent);
     let told: Vec<&str> = report.findings.iter().map(|own| own.what).collect();
     assert_eq!(told, ["driver", "silent"]);
-    assert!(report.findings[0].words.contains("lacks joint panda_joint1"));
+    assert!(
+        report.findings[0]
+            .words
+            .contains("lacks joint panda_joint1")
+    );
 }
 
 /// The simulated arm, moved in virtual time by a key that is held as `held` says; `wire` is
 /// what becomes of torques on the way to the motors.
-fn moved(
-    held: impl Fn(f64) -> bool,
-    wire: impl Fn(&mut Joints<f64>),
-) -> (Moved, Record, f64) {
+fn moved(held: impl Fn(f64) -> bool, wire: impl Fn(&mut Joints<f64>)) -> (Moved, Record, f64) {
     let session = session();
     let loaded = &session.loaded;
     let mut arm = Choice::Simulated.driver(&session, false).unwrap();
-    let mut mover = Mover::new(&loaded.arm.model, session.joints(), &loaded.scenario.servo).unwrap();
+    let mut mover =
+        Mover::new(&loaded.arm.model, session.joints(), &loaded.scenario.servo).unwrap();
     let count = JointCount::new(7).unwrap();
     let weight = Weight::new(&loaded.arm.model, count);
     let mut record = Record::default();
@@ -215,6 +228,7 @@ fn moved(
         record.seen.push(Seen {
             at,
             stamp: None,
+            delay: None,
             reading,
         });
         record.seconds = at;
@@ -224,10 +238,16 @@ fn moved(
         if !drive.enabled {
             // Its brakes.
             let carried = weight.at(&reading.position);
-            torque = Joints::from_fn(count, |joint| carried[joint] - 100.0 * reading.velocity[joint]);
+            torque = Joints::from_fn(count, |joint| {
+                carried[joint] - 100.0 * reading.velocity[joint]
+            });
         }
         let any: &dyn Any = &*arm;
-        let truth = any.downcast_ref::<SimulatedSerialArm>().unwrap().arm().truth();
+        let truth = any
+            .downcast_ref::<SimulatedSerialArm>()
+            .unwrap()
+            .arm()
+            .truth();
         for (joint, home) in HOME.iter().enumerate() {
             farthest = farthest.max((truth.position[joint] - home).abs());
         }
@@ -249,7 +269,13 @@ fn every_joint_goes_out_and_back_while_the_key_is_held() {
     assert!((0.025..0.04).contains(&farthest), "{farthest} rad");
     let report = judged(&record);
     assert!(report.ok, "{report}");
-    assert!(report.joints.iter().all(|own| own.change_per_velocity.is_some()), "{report}");
+    assert!(
+        report
+            .joints
+            .iter()
+            .all(|own| own.change_per_velocity.is_some()),
+        "{report}"
+    );
 }
 
 #[test]
@@ -282,11 +308,11 @@ fn nothing_is_moved_before_the_key_is_held() {
 /// A joint whose motor turns the other way runs away from what it is told: it is not let far.
 #[test]
 fn a_wrong_sign_ends_it_before_the_arm_goes_far() {
-    let (moved, _, farthest) = moved(
-        |_| true,
-        |torque| torque[2] *= -1.0,
-    );
+    let (moved, _, farthest) = moved(|_| true, |torque| torque[2] *= -1.0);
     let words: Vec<&str> = moved.findings.iter().map(|own| own.what).collect();
-    assert!(words.contains(&"motion_sign") || words.contains(&"servo"), "{words:?}");
+    assert!(
+        words.contains(&"motion_sign") || words.contains(&"servo"),
+        "{words:?}"
+    );
     assert!(farthest < 0.15, "{farthest} rad");
 }

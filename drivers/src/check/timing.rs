@@ -37,12 +37,11 @@ impl Timing {
         let longest = gaps.iter().copied().reduce(f64::max);
         let stamps: Vec<f64> = record.seen.iter().filter_map(|own| own.stamp).collect();
         let mut intervals: Vec<f64> = stamps.windows(2).map(|own| own[1] - own[0]).collect();
-        let whole = stamps.len() == times.len();
-        let delays = times.iter().zip(&stamps).map(|(at, stamp)| at - stamp);
+        let delays = record.seen.iter().filter_map(|own| own.delay);
         let least = delays.clone().reduce(f64::min).unwrap_or(0.0);
-        let mut delays: Vec<f64> = delays.filter(|_| whole).map(|own| own - least).collect();
+        let mut delays: Vec<f64> = delays.map(|own| own - least).collect();
         let ms = |seconds: f64| seconds * 1e3;
-        let mut share = |values: &mut Vec<f64>, share| quantile(values, share, f64::total_cmp);
+        let share = |values: &mut Vec<f64>, share| quantile(values, share, f64::total_cmp);
         let middle = share(&mut intervals, 0.5);
         Timing {
             rate_hz: match record.seconds > 0.0 {
@@ -67,7 +66,9 @@ impl Timing {
             find(
                 Severity::Wrong,
                 "rate",
-                format!("{rate:.0} readings a second; the servo needs {LEAST_RATE:.0}: raise the rate of the arm's own driver"),
+                format!(
+                    "{rate:.0} readings a second; the servo needs {LEAST_RATE:.0}: raise the rate of the arm's own driver"
+                ),
             );
         }
         let limit = expected.longest_gap * 1e3;
@@ -75,12 +76,16 @@ impl Timing {
             (Some(gap), _) if gap > limit => find(
                 Severity::Wrong,
                 "gap",
-                format!("{gap:.0} ms without a reading; after {limit:.0} ms the servo takes that as a fault"),
+                format!(
+                    "{gap:.0} ms without a reading; after {limit:.0} ms the servo takes that as a fault"
+                ),
             ),
             (_, Some(gap)) if gap > BEGINS_ANEW * 1e3 => find(
                 Severity::Doubtful,
                 "jitter",
-                format!("one reading in a hundred comes more than {gap:.1} ms after the one before: an uneven way, or a busy computer"),
+                format!(
+                    "one reading in a hundred comes more than {gap:.1} ms after the one before: an uneven way, or a busy computer"
+                ),
             ),
             _ => {}
         }
@@ -88,14 +93,18 @@ impl Timing {
             find(
                 Severity::Doubtful,
                 "age",
-                format!("one reading in a hundred is {delay:.0} ms older than the youngest when it comes"),
+                format!(
+                    "one reading in a hundred is {delay:.0} ms older than the youngest when it comes"
+                ),
             );
         }
         if let Some(jitter) = self.stamp_jitter_ms.filter(|&own| own > limit) {
             find(
                 Severity::Doubtful,
                 "stamps",
-                format!("stamps are up to {jitter:.0} ms further apart than usual: is the arm's own loop held up?"),
+                format!(
+                    "stamps are up to {jitter:.0} ms further apart than usual: is the arm's own loop held up?"
+                ),
             );
         }
     }

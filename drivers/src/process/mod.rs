@@ -28,7 +28,10 @@ use crate::driver::{Driver, DriverCommand, Measures, Reading};
 use pipe::Pipe;
 
 /// The plant that `command` is.
-pub(crate) fn driver(session: &SessionContext, command: &str) -> Result<Box<dyn Driver>, NodeError> {
+pub(crate) fn driver(
+    session: &SessionContext,
+    command: &str,
+) -> Result<Box<dyn Driver>, NodeError> {
     let (joints, loaded) = (session.joints(), &session.loaded);
     let period = STEP_NANOS as f64 * 1e-9;
     let greeting = Greeting::new(&joints, period, loaded.scenario.seed, loaded.arm.whole()?);

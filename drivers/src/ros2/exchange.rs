@@ -79,7 +79,9 @@ impl Exchange {
     pub fn start(wiring: Wiring) -> io::Result<Exchange> {
         if wiring.gateway.middleware == Middleware::Dds {
             // As in the gateway: RustDDS ends silently when a signal interrupts it.
-            end_after_a_stop("node arm: it was stopped for a while, which its DDS does not survive")?;
+            end_after_a_stop(
+                "node arm: it was stopped for a while, which its DDS does not survive",
+            )?;
         }
         let (to_driver, states) = sync_channel(QUEUE);
         let (commands, from_driver) = sync_channel(QUEUE);
@@ -155,7 +157,10 @@ impl Worker {
             ..
         } = self.wiring;
         let opened = bus
-            .subscriber(Topic::new(joint_states, Delivery::Stream), Depth::Queue(QUEUE))
+            .subscriber(
+                Topic::new(joint_states, Delivery::Stream),
+                Depth::Queue(QUEUE),
+            )
             // Controllers take commands reliably.
             .and_then(|states| {
                 let commands = bus.publisher(Topic::new(command, Delivery::Event))?;

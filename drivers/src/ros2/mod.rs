@@ -104,7 +104,10 @@ impl Ros2 {
         });
         let tuning = loaded.scenario.servo.joints(count)?;
         let each = Joints::from_fn(count, |joint| Joint {
-            range: [believed[joint].position_lower, believed[joint].position_upper],
+            range: [
+                believed[joint].position_lower,
+                believed[joint].position_upper,
+            ],
             speed: believed[joint].velocity_limit,
             damping: tuning[joint].damping.max(1e-3),
             hold_damping: tuning[joint].hold_damping,

@@ -98,10 +98,15 @@ impl fmt::Display for InWords<'_> {
         let topic = self.topic;
         let name = |joint: usize| self.joints.get(joint).unwrap_or_default();
         match self.refusal {
-            Refusal::NothingYet => write!(f, "nothing on {topic} yet: does the robot's driver run?"),
+            Refusal::NothingYet => {
+                write!(f, "nothing on {topic} yet: does the robot's driver run?")
+            }
             Refusal::Silent(seconds) => write!(f, "{topic} is silent for {seconds:.2} s"),
             Refusal::Slow { rate, needed } => {
-                write!(f, "{topic} comes at {rate:.0} Hz, {needed:.0} Hz are needed")
+                write!(
+                    f,
+                    "{topic} comes at {rate:.0} Hz, {needed:.0} Hz are needed"
+                )
             }
             Refusal::Late(seconds) => {
                 write!(f, "{topic} comes {:.0} ms late", seconds * 1e3)
@@ -122,13 +127,20 @@ impl fmt::Display for InWords<'_> {
                     false => "zero or sign wrong?",
                 };
                 let name = name(joint);
-                write!(f, "{name} at {position:.2}, not in {lower:.2} … {upper:.2}: {hint}")
+                write!(
+                    f,
+                    "{name} at {position:.2}, not in {lower:.2} … {upper:.2}: {hint}"
+                )
             }
             Refusal::TooFast {
                 joint,
                 velocity,
                 limit,
-            } => write!(f, "{} at {velocity:.2} rad/s, the limit is {limit:.2}", name(joint)),
+            } => write!(
+                f,
+                "{} at {velocity:.2} rad/s, the limit is {limit:.2}",
+                name(joint)
+            ),
             Refusal::Jumped { joint, by } => write!(f, "{} jumped by {by:.3} rad", name(joint)),
             Refusal::Settling => write!(f, "{topic} is well again, not yet for long enough"),
         }

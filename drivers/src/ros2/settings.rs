@@ -224,7 +224,10 @@ mod tests {
             ("interface=torque", "unknown variant `torque`"),
             ("least_rate=1", "least_rate = 1 Hz is outside"),
             ("fast", "write settings as key=value"),
-            ("joint_states=js", "joint_states = \"js\": the name does not begin with /"),
+            (
+                "joint_states=js",
+                "joint_states = \"js\": the name does not begin with /",
+            ),
         ] {
             let told = Settings::read(None, text).unwrap_err().to_string();
             assert!(told.contains(words), "{told}");
@@ -242,7 +245,12 @@ mod tests {
         };
         assert_eq!(Settings::default().order(&arm).unwrap(), [0, 1, 2]);
         assert_eq!(of(&["c", "a", "b"]).order(&arm).unwrap(), [2, 0, 1]);
-        for wrong in [&["a", "b"][..], &["a", "b", "b"], &["a", "b", "x"], &["a", "b", "c", "c"]] {
+        for wrong in [
+            &["a", "b"][..],
+            &["a", "b", "b"],
+            &["a", "b", "x"],
+            &["a", "b", "c", "c"],
+        ] {
             let told = of(wrong).order(&arm).unwrap_err().to_string();
             assert!(told.contains("the arm's a, b, c"), "{told}");
         }

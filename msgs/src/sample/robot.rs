@@ -47,7 +47,10 @@ impl RobotJointsSample {
 
     /// The joints' names.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.names.iter().take(self.joints as usize).map(Text::as_str)
+        self.names
+            .iter()
+            .take(self.joints as usize)
+            .map(Text::as_str)
     }
 }
 

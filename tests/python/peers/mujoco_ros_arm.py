@@ -8,11 +8,12 @@ until the first command comes, and again 50 ms after the last.
 
 `--spoil` makes it a bad one, from `--spoil-after` on: silent, slow (20 Hz), jump, nan, names, degrees,
 sign (of the torques that it tells). Prints JSON at the end: `peak_force_N` on the tip (true),
-`contact_s`, `commands` (how many came), `states`, `states_hz`, `braked` (how often), `moved_rad` (the farthest
+`contact_s`, `commands` (how many came), `states`, `states_hz`, `braked` (how often), `stopped` (it was too fast), `moved_rad` (the farthest
 that a joint was from home), `tip_m` in the end.
 """
 
 import argparse
+import os
 import time
 import tomllib
 import xml.etree.ElementTree
@@ -30,6 +31,8 @@ from std_msgs.msg import Float64MultiArray
 SPOILS = ("silent", "slow", "jump", "nan", "names", "degrees", "sign")
 # Without a command for so long the brakes fall in [s].
 COMMAND_LIFE = 0.05
+# A joint that is faster makes it stop for good, as robots do [rad/s].
+STOP_SPEED = 4.0
 # The robot's own controllers work in steps of [s].
 STEP = 1e-3
 # As joint_state_broadcaster and forward command controllers have it.
@@ -65,6 +68,15 @@ def arm_of(path: Path) -> tuple[dict, list[str]]:
     return arm, names
 
 
+def real_time() -> None:
+    """A robot has a computer of its own: as far as that is allowed no other program holds it up, but
+    for the loops of ferntast that stand before all."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(36))
+    except PermissionError:
+        pass
+
+
 def last_link(urdf: str) -> str:
     """The link that carries no other."""
     robot = xml.etree.ElementTree.fromstring(urdf)
@@ -81,6 +93,7 @@ class Robot:
         self.interface, self.joints = interface, joints
         self.command: tuple[float, np.ndarray] | None = None
         self.torque, self.braked, self.brakes = np.zeros(len(joints)), 0, True
+        self.stopped = False
         self.home = np.array(arm["home"])
         self.peak, self.contact, self.moved, self.commands = 0.0, 0.0, 0.0, 0
         inertia = np.zeros((self.plant.model.nv, self.plant.model.nv))
@@ -107,7 +120,9 @@ class Robot:
 
     def step(self, elapsed: float) -> None:
         plant, command = self.plant, self.command
-        if command is None or time.monotonic() - command[0] > COMMAND_LIFE:
+        silent = command is None or time.monotonic() - command[0] > COMMAND_LIFE
+        self.stopped |= bool(np.abs(plant.data.qvel).max() > STOP_SPEED)
+        if silent or self.stopped:
             self.braked += not self.brakes
             self.brakes = True
             plant.data.qvel[:] = 0.0
@@ -168,6 +183,7 @@ def main() -> None:
     arguments = parser.parse_args()
     command = arguments.command or f"/forward_{arguments.interface}_controller/commands"
     stop = stop_on_signal()
+    real_time()
     robot = Robot(*arm_of(arguments.arm), arguments.interface)
     with ros_node("mujoco_arm") as node:
         publisher = node.create_publisher(JointState, arguments.joint_states, QOS)
@@ -201,6 +217,7 @@ def main() -> None:
             "states": states,
             "states_hz": states / passed,
             "braked": robot.braked,
+            "stopped": robot.stopped,
             "moved_rad": robot.moved,
             "tip_m": robot.plant.place().tolist(),
         }

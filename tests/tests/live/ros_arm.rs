@@ -62,7 +62,10 @@ fn a_hand_feels_what_a_robot_on_ros_2_touches() {
         assert_eq!(summary["driver"], driver);
         assert!(told("contact.time_s") > 0.5, "{summary:#}");
         let (felt, pushed) = (told("contact.peak_force_N"), number(&robot, "peak_force_N"));
-        assert!(felt > 3.0 && felt < 2.0 * pushed + 5.0, "{felt} N of {pushed} N");
+        assert!(
+            felt > 3.0 && felt < 2.0 * pushed + 5.0,
+            "{felt} N of {pushed} N"
+        );
         assert!(pushed < 400.0, "{pushed} N");
         assert!(told("felt_stiffness_N_per_m") > 50.0);
         assert!(told("tip.drift_mm") < 20.0);
@@ -71,7 +74,17 @@ fn a_hand_feels_what_a_robot_on_ros_2_touches() {
 }
 
 fn check(session: &Session, arm: &str) -> (Option<i32>, Value) {
-    let arguments = ["arm", "check", "--arm", arm, "--driver", "ros2", "--seconds", "2", "--json"];
+    let arguments = [
+        "arm",
+        "check",
+        "--arm",
+        arm,
+        "--driver",
+        "ros2",
+        "--seconds",
+        "2",
+        "--json",
+    ];
     let ended = run(session, &arguments);
     (ended.status.code(), ended.json())
 }
@@ -107,7 +120,9 @@ fn a_robot_is_checked_without_being_moved() {
         ended(bad);
         assert_eq!(code, Some(1), "{spoil}: {report:#}");
         let told = findings(&report);
-        let wrong = told.iter().any(|own| own.0 == "wrong" && own.2.contains(words));
+        let wrong = told
+            .iter()
+            .any(|own| own.0 == "wrong" && own.2.contains(words));
         assert!(wrong, "{spoil}: {told:#?}");
     }
 }
@@ -126,7 +141,10 @@ fn a_robot_that_falls_silent_stops_the_arm() {
     process.interrupt();
     let summary = process.wait(PATIENCE).success().json();
     ended(robot);
-    assert_eq!(summary["states"]["follower"]["final"], "FAULT", "{summary:#}");
+    assert_eq!(
+        summary["states"]["follower"]["final"], "FAULT",
+        "{summary:#}"
+    );
     let faults = summary["nodes"]["arm"]["faults"].to_string();
     assert!(faults.contains("measurement silent"), "{faults}");
 }
@@ -135,9 +153,18 @@ fn a_robot_that_falls_silent_stops_the_arm() {
 fn what_cannot_be_is_refused_before_anything_is_moved() {
     let session = Session::new();
     for (arguments, words) in [
-        (vec!["lockstep", "--driver", "ros2", "--arm", "panda"], "virtual time"),
-        (vec!["arm", "check", "--driver", "ros2:speed=3", "--arm", "panda"], "unknown field"),
-        (vec!["arm", "check", "--move", "--arm", "panda"], "a person who holds a key"),
+        (
+            vec!["lockstep", "--driver", "ros2", "--arm", "panda"],
+            "virtual time",
+        ),
+        (
+            vec!["arm", "check", "--driver", "ros2:speed=3", "--arm", "panda"],
+            "unknown field",
+        ),
+        (
+            vec!["arm", "check", "--move", "--arm", "panda"],
+            "a person who holds a key",
+        ),
     ] {
         ferntast_tests::refused(&session, &arguments, &[words]);
     }
@@ -150,7 +177,9 @@ fn a_held_key_moves_the_arm_and_letting_go_stops_it() {
     let session = Session::new();
     let ferntast = ferntast_tests::ferntast();
     let program = ferntast.to_str().expect("UTF-8");
-    let arguments = ["--hold", "3", "--", program, "arm", "check", "--move", "--json"];
+    let arguments = [
+        "--hold", "3", "--", program, "arm", "check", "--move", "--json",
+    ];
     let told = Process::spawn(session.peer("hold_key.py", &arguments));
     let told = told.wait(PATIENCE).success().json();
     assert_eq!(told["terminal_restored"], true);
@@ -162,7 +191,12 @@ fn a_held_key_moves_the_arm_and_letting_go_stops_it() {
     let stops = moved["stopped_ms"].as_array().expect("stops");
     assert!(!stops.is_empty(), "{moved:#}");
     let words = told["stderr"].as_str().expect("text");
-    for word in ["MOVE", "moving joint_1", "released: it stands", "the drives are off"] {
+    for word in [
+        "MOVE",
+        "moving joint_1",
+        "released: it stands",
+        "the drives are off",
+    ] {
         assert!(words.contains(word), "{word:?} in {words}");
     }
 }

@@ -158,7 +158,10 @@ fn a_stiff_robot_presses_as_the_servo_wants_and_no_more() {
             }
             let pressed = stiffness * q;
             println!("{interface:?}, {stiffness} Nm/rad: {pressed:.2} Nm, {most:.2} Nm at most");
-            assert!((pressed - wanted).abs() < 0.5, "{interface:?} {stiffness}: {pressed} Nm");
+            assert!(
+                (pressed - wanted).abs() < 0.5,
+                "{interface:?} {stiffness}: {pressed} Nm"
+            );
             assert!(most < 2.0 * wanted, "{interface:?} {stiffness}: {most} Nm");
         }
     }

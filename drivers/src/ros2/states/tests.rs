@@ -138,7 +138,11 @@ fn what_is_wrong_with_a_joint_is_told_with_its_name() {
             Fault::MeasurementInvalid,
         ),
         (
-            |ros| ros.position.iter_mut().for_each(|own| *own = own.to_degrees()),
+            |ros| {
+                ros.position
+                    .iter_mut()
+                    .for_each(|own| *own = own.to_degrees())
+            },
             "panda_joint2 at -44.98, not in -1.81 … 1.81: degrees?",
             Fault::MeasurementInvalid,
         ),
@@ -252,6 +256,11 @@ fn clocks_need_not_agree() {
     for _ in 0..5000 {
         heard.now += 0.002;
         let stamp = heard.now - 3600.0 + heard.now * 1e-4;
-        assert!(heard.say(stamp, |_| ()), "{} at {} s", heard.words(), heard.now);
+        assert!(
+            heard.say(stamp, |_| ()),
+            "{} at {} s",
+            heard.words(),
+            heard.now
+        );
     }
 }
