@@ -1,5 +1,6 @@
 //! The `ferntast` command.
 
+mod arm;
 mod bag;
 mod challenge;
 mod completions;
@@ -86,6 +87,8 @@ enum Command {
     Paper(paper::Arguments),
     /// Look into recordings, mend them.
     Bag(bag::Arguments),
+    /// Look at an arm before a session moves it: what of it is implausible.
+    Arm(arm::Arguments),
     /// Tell the operating state, or change it: enable, disable, pause, resume (re-arm).
     State(state::Arguments),
     /// Tell how the link does, or change its delay law.
@@ -108,10 +111,17 @@ impl Command {
     /// Whether it holds processes or a recording, so that nobody who stops
     /// reading its output may end it.
     fn keeps_running(&self) -> bool {
-        use Command::{Experiment, Faults, Lockstep, Node, Paper, Play, Session};
+        use Command::{Arm, Experiment, Faults, Lockstep, Node, Paper, Play, Session};
         matches!(
             self,
-            Session(_) | Node(_) | Play(_) | Lockstep(_) | Faults(_) | Experiment(_) | Paper(_)
+            Session(_)
+                | Arm(_)
+                | Node(_)
+                | Play(_)
+                | Lockstep(_)
+                | Faults(_)
+                | Experiment(_)
+                | Paper(_)
         )
     }
 }
@@ -166,6 +176,7 @@ fn main() -> ExitCode {
         Command::Experiment(arguments) => experiment::run(arguments, json),
         Command::Paper(arguments) => paper::run(&arguments, json),
         Command::Bag(arguments) => bag::run(arguments, json),
+        Command::Arm(arguments) => arm::run(arguments, json),
         Command::State(arguments) => state::run(arguments, json),
         Command::Link(arguments) => link::run(arguments, json),
         Command::Twin(arguments) => twin::run(arguments, json),

@@ -5,10 +5,14 @@ use std::str::FromStr;
 use ferntast_nodes::{
     graph::{Build, NodeRow},
     node::Ticking,
-    process::{NodeError, Priority},
+    process::{NodeError, Priority, SessionContext},
 };
 
-use crate::{node::ArmPorts, process, simulated};
+use crate::{
+    driver::Driver,
+    node::{ArmNode, ArmPorts},
+    process, ros2, simulated,
+};
 
 /// Which driver, as it is written after `--driver`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,11 +21,13 @@ pub enum Choice {
     Simulated,
     /// `process:COMMAND`: a plant in a program of its own.
     Process(String),
+    /// `ros2`, `ros2:SETTINGS`: a robot that others drive over ROS 2.
+    Ros2(String),
 }
 
 /// A driver that there is not.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no driver {0:?}; there are: simulated, process:COMMAND")]
+#[error("no driver {0:?}; there are: simulated, process:COMMAND, ros2[:KEY=VALUE,…]")]
 pub struct UnknownDriver(String);
 
 impl FromStr for Choice {
@@ -30,6 +36,8 @@ impl FromStr for Choice {
     fn from_str(text: &str) -> Result<Choice, UnknownDriver> {
         match text.split_once(':') {
             None if text == "simulated" => Ok(Choice::Simulated),
+            None if text == "ros2" => Ok(Choice::Ros2(String::new())),
+            Some(("ros2", settings)) => Ok(Choice::Ros2(settings.to_owned())),
             Some(("process", command)) if !command.trim().is_empty() => {
                 Ok(Choice::Process(command.trim().to_owned()))
             }
@@ -49,13 +57,43 @@ pub const fn row() -> NodeRow {
 }
 
 fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
-    let choice = match &build.session.driver {
-        None => Choice::Simulated,
-        Some(text) => text.parse().map_err(NodeError::own)?,
-    };
-    match choice {
-        Choice::Simulated => simulated::make(build),
-        Choice::Process(command) => process::make(build, &command),
+    let driver = Choice::of(build.session)?.driver(build.session, build.virtual_time)?;
+    ArmNode::new(driver)?.join(build)
+}
+
+impl Choice {
+    /// That of a session.
+    ///
+    /// # Errors
+    ///
+    /// There is no such driver.
+    pub fn of(session: &SessionContext) -> Result<Choice, NodeError> {
+        match &session.driver {
+            None => Ok(Choice::Simulated),
+            Some(text) => text.parse().map_err(NodeError::own),
+        }
+    }
+
+    /// The driver of the session's arm.
+    ///
+    /// # Errors
+    ///
+    /// What keeps it from being made: settings, a program or device that is not there.
+    pub fn driver(
+        &self,
+        session: &SessionContext,
+        virtual_time: bool,
+    ) -> Result<Box<dyn Driver>, NodeError> {
+        match self {
+            Choice::Simulated => simulated::driver(session),
+            Choice::Process(command) => process::driver(session, command),
+            Choice::Ros2(settings) => ros2::driver(session, settings, virtual_time),
+        }
+    }
+
+    /// Whether the arm's time is that of our steps: no hardware moves.
+    pub fn is_stepped(&self) -> bool {
+        matches!(self, Choice::Simulated | Choice::Process(_))
     }
 }
 
@@ -69,6 +107,12 @@ mod tests {
         let command = "python3 plant.py --wall 'a:b'";
         let choice = format!("process: {command}").parse();
         assert_eq!(choice, Ok(Choice::Process(command.into())));
+        assert_eq!("ros2".parse(), Ok(Choice::Ros2(String::new())));
+        let settings = "interface=velocity".to_owned();
+        assert_eq!(
+            "ros2:interface=velocity".parse(),
+            Ok(Choice::Ros2(settings))
+        );
         for wrong in [
             "",
             "process",
@@ -79,7 +123,7 @@ mod tests {
         ] {
             let error = wrong.parse::<Choice>().unwrap_err().to_string();
             assert!(
-                error.ends_with("there are: simulated, process:COMMAND"),
+                error.contains("there are: simulated, process:COMMAND, ros2"),
                 "{error}"
             );
         }

@@ -3,7 +3,10 @@
 use std::any::Any;
 
 use ferntast_model::Joints;
-use ferntast_msgs::sample::{JointNames, RobotDescriptionSample};
+use ferntast_msgs::{
+    Time,
+    sample::{JointNames, RobotDescriptionSample},
+};
 use ferntast_nodes::node::NodeHealth;
 
 /// Something that moves joints and measures them: a simulation, a program, a bus of motors.
@@ -36,6 +39,11 @@ pub trait Driver: Any {
 
     /// Reads its sensors; `None` where there is nothing that can be trusted.
     fn read(&mut self, health: &mut NodeHealth) -> Option<Reading>;
+
+    /// When the last reading was measured by the arm's own clock, where it tells that.
+    fn stamp(&self) -> Option<Time> {
+        None
+    }
 
     /// Why it can do no more, where that is so for good.
     fn failure(&self) -> Option<String> {

@@ -6,12 +6,15 @@
 //! driver turns vendor signs, units and offsets, once, and comes with a function that
 //! makes it of its kind of arm's file.
 
+pub mod check;
 mod choice;
 mod driver;
 mod node;
 pub mod process;
+pub mod ros2;
 pub mod serial_arm;
 pub mod simulated;
+mod weight;
 
 pub use choice::{Choice, UnknownDriver, row};
 pub use driver::{Driver, DriverCommand, Measures, Reading};

@@ -19,24 +19,24 @@ use ferntast_msgs::{
     sample::{Fault, JointNames, Level, RobotDescriptionSample},
 };
 use ferntast_nodes::{
-    graph::{Build, STEP_NANOS},
-    node::{NodeHealth, Ticking},
-    process::NodeError,
+    graph::STEP_NANOS,
+    node::NodeHealth,
+    process::{NodeError, SessionContext},
 };
 
-use crate::{
-    driver::{Driver, DriverCommand, Measures, Reading},
-    node::ArmNode,
-};
+use crate::driver::{Driver, DriverCommand, Measures, Reading};
 use pipe::Pipe;
 
-/// The node of the arm that `command` is the plant of.
-pub(crate) fn make(build: Build, command: &str) -> Result<Box<dyn Ticking>, NodeError> {
-    let (joints, loaded) = (build.session.joints(), &build.session.loaded);
+/// The plant that `command` is.
+pub(crate) fn driver(
+    session: &SessionContext,
+    command: &str,
+) -> Result<Box<dyn Driver>, NodeError> {
+    let (joints, loaded) = (session.joints(), &session.loaded);
     let period = STEP_NANOS as f64 * 1e-9;
     let greeting = Greeting::new(&joints, period, loaded.scenario.seed, loaded.arm.whole()?);
     let plant = ProcessPlant::start(command, joints, &greeting, Patience::default());
-    ArmNode::new(Box::new(plant.map_err(NodeError::own)?))?.join(build)
+    Ok(Box::new(plant.map_err(NodeError::own)?))
 }
 
 /// How long it is waited for a plant.

@@ -6,31 +6,28 @@ pub mod serial;
 mod serial_description;
 
 pub use config::{arm_file, load_arm, load_config};
+pub(crate) use serial_description::describe_serial;
 
 use ferntast_model::{ArmModel, Joints};
 use ferntast_msgs::sample::{Fault, JointNames, Level, RobotDescriptionSample};
 use ferntast_nodes::{
     config::joint_names,
-    graph::Build,
-    node::{NodeHealth, Ticking},
-    process::NodeError,
+    node::NodeHealth,
+    process::{NodeError, SessionContext},
 };
 use ferntast_sim::arm::{ArmConfig, SimulatedArm, SimulatedArmError};
 
-use crate::{
-    driver::{Driver, DriverCommand, Measures, Reading},
-    node::ArmNode,
-};
+use crate::driver::{Driver, DriverCommand, Measures, Reading};
 
-/// The node of the arm that the session is of.
-pub(crate) fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
-    let loaded = &build.session.loaded;
+/// The simulated arm that the session is of.
+pub(crate) fn driver(session: &SessionContext) -> Result<Box<dyn Driver>, NodeError> {
+    let loaded = &session.loaded;
+    let seed = loaded.scenario.seed;
     if let Some(serial) = loaded.arm.model.serial() {
-        let arm = serial::simulated(&loaded.arm, serial, loaded.scenario.seed)?;
-        return ArmNode::new(Box::new(arm))?.join(build);
+        return Ok(Box::new(serial::simulated(&loaded.arm, serial, seed)?));
     }
-    let arm = Simulated::new(&loaded.arm.whole()?, loaded.scenario.seed).map_err(NodeError::own)?;
-    ArmNode::new(Box::new(arm))?.join(build)
+    let arm = Simulated::new(&loaded.arm.whole()?, seed).map_err(NodeError::own)?;
+    Ok(Box::new(arm))
 }
 
 /// The simulated arm behind the arm's node.

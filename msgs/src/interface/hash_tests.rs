@@ -20,6 +20,18 @@ const STANDARD: &[(&str, &str)] = &[
         "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01",
     ),
     (
+        "std_msgs/msg/MultiArrayDimension",
+        "RIHS01_5e773a60a4c7fc8a54985f307c7837aa2994252a126c301957a24e31282c9cbe",
+    ),
+    (
+        "std_msgs/msg/MultiArrayLayout",
+        "RIHS01_4c66e6f78e740ac103a94cf63259f968e48c617e7699e829b63c21a5cb50dac6",
+    ),
+    (
+        "std_msgs/msg/Float64MultiArray",
+        "RIHS01_1025ddc6b9552d191f89ef1a8d2f60f3d373e28b283d8891ddcc974e8c55397f",
+    ),
+    (
         "sensor_msgs/msg/JointState",
         "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
     ),

@@ -40,6 +40,9 @@ texts! {
     "builtin_interfaces/msg/Time": "standard/builtin_interfaces/msg/Time.msg";
     "std_msgs/msg/Header": "standard/std_msgs/msg/Header.msg";
     "std_msgs/msg/String": "standard/std_msgs/msg/String.msg";
+    "std_msgs/msg/MultiArrayDimension": "standard/std_msgs/msg/MultiArrayDimension.msg";
+    "std_msgs/msg/MultiArrayLayout": "standard/std_msgs/msg/MultiArrayLayout.msg";
+    "std_msgs/msg/Float64MultiArray": "standard/std_msgs/msg/Float64MultiArray.msg";
     "sensor_msgs/msg/JointState": "standard/sensor_msgs/msg/JointState.msg";
     "sensor_msgs/msg/Temperature": "standard/sensor_msgs/msg/Temperature.msg";
     "geometry_msgs/msg/Point": "standard/geometry_msgs/msg/Point.msg";

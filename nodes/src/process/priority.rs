@@ -21,6 +21,8 @@ pub enum Priority {
     Estimator,
     /// A hand on the page.
     Hand,
+    /// What carries the arm's joints and commands to and from a middleware.
+    ArmTransport,
     /// An operator's word on the command line.
     Command,
     /// What looks after the nodes, and what hears the page's stop.
@@ -54,6 +56,7 @@ impl Priority {
             Priority::Master => Scheduling::RealTime(42),
             Priority::Estimator => Scheduling::RealTime(41),
             Priority::Hand => Scheduling::RealTime(40),
+            Priority::ArmTransport => Scheduling::RealTime(35),
             Priority::Command => Scheduling::RealTime(30),
             Priority::Supervision => Scheduling::Ordinary(-15),
             Priority::Recording => Scheduling::Ordinary(-10),
@@ -105,6 +108,7 @@ mod tests {
             Priority::Recording,
             Priority::Supervision,
             Priority::Command,
+            Priority::ArmTransport,
             Priority::Hand,
             Priority::Estimator,
             Priority::Master,

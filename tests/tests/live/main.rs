@@ -17,6 +17,7 @@ mod own_tools;
 mod refusals;
 mod rigid_body;
 mod ros;
+mod ros_arm;
 mod serial_arm;
 mod session;
 mod soak;
