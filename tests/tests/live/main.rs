@@ -20,5 +20,6 @@ mod ros;
 mod serial_arm;
 mod session;
 mod soak;
+mod tool;
 mod twin;
 mod zenoh;
