@@ -14,6 +14,7 @@ pub mod haptics;
 pub mod link;
 pub mod meter;
 pub mod operating;
+pub mod orientation;
 pub mod planted;
 pub mod playout;
 pub mod servo;

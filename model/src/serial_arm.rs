@@ -29,6 +29,9 @@ parameters! {
     check Plane::normal_is_a_direction;
 }
 
+/// So many joints turn a tool as one likes wherever its tip is.
+const JOINTS_OF_POSE: usize = 6;
+
 fn default_stiffness() -> f64 {
     2e4
 }
@@ -131,6 +134,11 @@ impl SerialArm {
     /// How many joints it has.
     pub fn count(&self) -> JointCount {
         self.chain.count()
+    }
+
+    /// Whether it has the joints to turn its tool as it likes wherever its tip is: six or more.
+    pub fn turns_tool(&self) -> bool {
+        self.count().get() >= JOINTS_OF_POSE
     }
 
     /// Its links: what is behind the torque sensors, without motors.

@@ -6,8 +6,8 @@
 //! | 0 | kind of message |
 //! | 1 | number of the key, so that a frame from before a restart is told from a forged one |
 //! | 2 | number of the frame, u32 little-endian: never twice under one key; with zeros behind it the nonce |
-//! | 6 | what the frame says, 46 bytes, or 15 of a keep-alive, encrypted |
-//! | 52, or 21 | tag over all of it |
+//! | 6 | what the frame says, 46 bytes, 54 with an orientation, or 15 of a keep-alive, encrypted |
+//! | 52, 60 or 21 | tag over all of it |
 //!
 //! Two keys, one a direction: a frame that is sent back to its sender is forged
 //! there. Who has no key forges one of 2⁶⁴; at 100 000 attempts a second that
@@ -36,6 +36,8 @@ const TAG: usize = 8;
 pub const PLAIN_LENGTH: usize = 50;
 /// The same, sealed \[bytes\].
 pub const SEALED_LENGTH: usize = PLAIN_LENGTH + ADDED;
+/// Number and content of a frame with an orientation, the longest \[bytes\].
+pub const LONG_LENGTH: usize = 58;
 /// Number and content of a keep-alive \[bytes\].
 pub const SHORT_LENGTH: usize = 19;
 /// What a seal adds: kind, number of the key, tag \[bytes\].
@@ -45,9 +47,9 @@ const ADDED: usize = HEADER - 4 + TAG;
 const MOST_FRAMES: u32 = 1 << 31;
 
 /// A frame as the link's ends make it: four bytes of number, then its content.
-pub type PlainFrame = FrameBytes<PLAIN_LENGTH>;
+pub type PlainFrame = FrameBytes<LONG_LENGTH>;
 /// A frame as it goes over the wire.
-pub type SealedFrame = FrameBytes<SEALED_LENGTH>;
+pub type SealedFrame = FrameBytes<{ LONG_LENGTH + ADDED }>;
 
 /// Bytes of a frame, in place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +83,7 @@ impl<const MOST: usize> DerefMut for FrameBytes<MOST> {
 
 /// Whether a sealed frame has that many bytes.
 pub(crate) fn is_length(sealed: usize) -> bool {
-    [PLAIN_LENGTH, SHORT_LENGTH].contains(&sealed.saturating_sub(ADDED))
+    [PLAIN_LENGTH, LONG_LENGTH, SHORT_LENGTH].contains(&sealed.saturating_sub(ADDED))
 }
 
 /// The keys of one handshake.
@@ -110,7 +112,7 @@ impl Keys {
         self.sealed >= MOST_FRAMES / 2
     }
 
-    /// Seals `plain`, of one of the two lengths, whose number must not have been used before;
+    /// Seals `plain`, of one of the three lengths, whose number must not have been used before;
     /// `None` when the key is used up.
     pub fn seal(&mut self, plain: &[u8]) -> Option<SealedFrame> {
         if self.sealed >= MOST_FRAMES || !is_length(plain.len() + ADDED) {

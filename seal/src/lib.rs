@@ -21,7 +21,9 @@ mod window;
 mod wire;
 
 pub use end::{Established, Received, Role, SecureEnd};
-pub use frame::{FrameBytes, PLAIN_LENGTH, PlainFrame, SEALED_LENGTH, SHORT_LENGTH, SealedFrame};
+pub use frame::{
+    FrameBytes, LONG_LENGTH, PLAIN_LENGTH, PlainFrame, SEALED_LENGTH, SHORT_LENGTH, SealedFrame,
+};
 pub use keys::{ExchangeKey, KEY_LENGTH, KeyError, PrivateKey, PublicKey};
 pub use refusal::{Refusal, RefusalCounts};
 pub use wire::{LONGEST_MESSAGE, Message};

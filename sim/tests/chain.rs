@@ -71,6 +71,7 @@ impl End {
             pace: 0,
             since_content: 0,
             packet,
+            orientation: None,
         };
         let bytes = frame::encode(&frame);
         self.sequence += 1;
@@ -179,6 +180,7 @@ impl Chain {
             stamp_ns: now,
             source: 0,
             position: hand.position,
+            orientation: None,
         };
         self.master.offer(now, &offer).expect("valid");
 

@@ -6,10 +6,14 @@ use crate::delay::{Packet, Sample, Samples};
 use crate::frame::{FrameBytes, LARGEST_PACE, LinkFrame, SEAL_LENGTH, SEND_PERIOD_NS};
 use crate::nanoseconds;
 use crate::operating::OperatingState;
+use crate::orientation::{Orientation, PackedOrientation};
 
 /// So many frames in a row tell that the sender asks to hold, that a state changed, or of a word, as
 /// one may be lost: 12 ms.
 const URGENT: u8 = 6;
+
+/// A hand that turned by less says nothing new [rad].
+const TURN: f64 = 5e-4;
 
 /// What a frame says beside its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +40,8 @@ struct Sent {
     urgent: u8,
     at_ns: i64,
     content_ns: i64,
+    /// The hand's, which the other end takes to stay.
+    orientation: Option<PackedOrientation>,
     since_content: u8,
 }
 
@@ -79,9 +85,9 @@ impl Encoder {
             arming: whole.arming,
             law: whole.law,
         };
-        let due = self.due(&deadband, now_ns, header, &whole.packet, samples);
+        let due = self.due(&deadband, header, &whole, samples);
         let pace = pace(deadband.keep_alive);
-        let (frame, content_ns) = match (due, self.sent) {
+        let (frame, content_ns, orientation) = match (due, self.sent) {
             (Due::Nothing, _) => return None,
             (Due::KeepAlive, Some(sent)) => {
                 let frame = LinkFrame {
@@ -91,14 +97,15 @@ impl Encoder {
                         valid: whole.packet.valid,
                         ..Packet::default()
                     },
+                    orientation: None,
                     ..whole
                 };
-                (frame, sent.content_ns)
+                (frame, sent.content_ns, sent.orientation)
             }
             (Due::Content | Due::KeepAlive, _) => {
                 let frame = LinkFrame { pace, ..whole };
                 self.predictor.learn(&frame, samples);
-                (frame, now_ns)
+                (frame, now_ns, whole.orientation)
             }
         };
         let urgent = match self.sent {
@@ -110,6 +117,7 @@ impl Encoder {
             urgent,
             at_ns: now_ns,
             content_ns,
+            orientation,
             since_content: frame.since_content,
         });
         Some(frame)
@@ -118,11 +126,11 @@ impl Encoder {
     fn due(
         &self,
         deadband: &Deadband,
-        now_ns: i64,
         header: Header,
-        packet: &Packet,
+        whole: &LinkFrame,
         samples: &Samples,
     ) -> Due {
+        let now_ns = whole.stamp_ns;
         let Some(sent) = self.sent else {
             return Due::Content;
         };
@@ -137,7 +145,8 @@ impl Encoder {
         let news = law != header.law
             || sent.since_content == u8::MAX
             || late(sent.content_ns, deadband.refresh)
-            || is_news(deadband, samples, &predicted, packet);
+            || has_turned(sent.orientation, whole.orientation)
+            || is_news(deadband, samples, &predicted, &whole.packet);
         if news {
             Due::Content
         } else if sent.header != header || sent.urgent > 0 || late(sent.at_ns, deadband.keep_alive)
@@ -160,6 +169,16 @@ impl Encoder {
 fn pace(keep_alive: f64) -> u8 {
     let periods = (nanoseconds(keep_alive) + SEND_PERIOD_NS - 1) / SEND_PERIOD_NS;
     periods.clamp(1, i64::from(LARGEST_PACE)) as u8
+}
+
+/// Whether a hand has turned since it was sent how it is turned.
+fn has_turned(sent: Option<PackedOrientation>, now: Option<PackedOrientation>) -> bool {
+    match (sent, now) {
+        (Some(sent), Some(now)) if sent != now => {
+            Orientation::from(now).angle_to(&Orientation::from(sent)) > TURN
+        }
+        (sent, now) => sent.is_some() != now.is_some(),
+    }
 }
 
 /// Whether `packet` is further off `predicted` than the other end may believe.

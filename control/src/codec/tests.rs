@@ -4,6 +4,7 @@ use super::*;
 use crate::delay::{Packet, Sample, Samples};
 use crate::frame::{self, LinkFrame, SEND_PERIOD_NS};
 use crate::operating::OperatingState;
+use crate::orientation::{Orientation, PackedOrientation};
 use proptest::prelude::*;
 
 const START_NS: i64 = 1_700_000_000_000_000_000;
@@ -42,6 +43,7 @@ struct Wire {
     sequence: u32,
     ms: i64,
     hold: bool,
+    orientation: Option<PackedOrientation>,
 }
 
 impl Wire {
@@ -53,6 +55,7 @@ impl Wire {
             sequence: 0,
             ms: 0,
             hold: false,
+            orientation: None,
         }
     }
 
@@ -72,6 +75,7 @@ impl Wire {
             pace: 0,
             since_content: 0,
             packet,
+            orientation: self.orientation,
         };
         let sent = self.encoder.pass(whole, &self.samples);
         if let Some(sent) = &sent {
@@ -116,6 +120,39 @@ fn what_is_said_of_a_stop_goes_out_at_once() {
         let told = wire.step(rest, true).expect("at once");
         assert!(told.hold && told.since_content > 0);
     }
+}
+
+/// A hand that turns is news every half milliradian; one that rests is sent how it is turned anew
+/// with everything else only.
+#[test]
+fn how_a_hand_turns_is_sent_as_it_changes() {
+    let mut wire = Wire::new(Deadband::default(), motion());
+    let rest = packet(0.1, 0.0, 0.0);
+    let about_z = |angle: f64| {
+        let [sine, cosine] = [(0.5 * angle).sin(), (0.5 * angle).cos()];
+        Orientation::given([0.0, 0.0, sine, cosine]).unwrap()
+    };
+    let mut heard = about_z(0.5);
+    let mut step = |wire: &mut Wire, angle: f64| {
+        wire.orientation = Some(about_z(angle).into());
+        if let Some(frame) = wire.step(rest, true) {
+            assert_eq!(frame.orientation.is_some(), frame.since_content == 0);
+            heard = frame.orientation.map_or(heard, Orientation::from);
+        }
+        heard.angle_to(&about_z(angle))
+    };
+    for k in 0..500 {
+        // 0.1 rad/s.
+        let off = step(&mut wire, 0.5 + 2e-4 * f64::from(k));
+        assert!(off < 5.1e-4, "{off} rad");
+    }
+    let turning = wire.encoder.traffic().contents;
+    assert!((150..190).contains(&turning), "{turning}");
+    for _ in 0..500 {
+        step(&mut wire, 0.6);
+    }
+    let resting = wire.encoder.traffic().contents - turning;
+    assert!((9..=12).contains(&resting), "{resting}");
 }
 
 /// The frame with which a hand goes is lost: the next one says so, too.
@@ -281,6 +318,7 @@ proptest! {
                 pace,
                 since_content,
                 packet: packet(value, value, 0.0),
+                orientation: None,
             };
             let content = (since_content == 0).then_some(&frame);
             decoder.heard(&frame, content, now_ns, |_| motion());

@@ -18,6 +18,7 @@ pub use force::{ForceLimiter, LimitedForce};
 
 use crate::delay::Motion;
 use crate::operating::{OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
+use crate::orientation::Orientation;
 use crate::planted::{Planted, Rule};
 use crate::{nanoseconds, seconds};
 use ferntast_model::ParameterError;
@@ -31,6 +32,8 @@ pub struct HandCommand {
     pub source: u64,
     /// Position, leader base frame \[m\].
     pub position: [f64; 3],
+    /// How it is turned, where it says so.
+    pub orientation: Option<Orientation>,
 }
 
 /// Why a hand command was refused.
@@ -116,6 +119,8 @@ pub struct MasterOutput {
     /// The hand, as far as it can be believed now; `None` while it is silent,
     /// or the master is not enabled.
     pub hand: Option<Motion>,
+    /// How it is turned, where it says so.
+    pub orientation: Option<Orientation>,
     /// The hand moved on since the last step: pass it on.
     pub fresh: bool,
     /// Force on the hand \[N\].
@@ -135,6 +140,7 @@ struct Hand {
     stamp_ns: i64,
     accepted_ns: i64,
     motion: Motion,
+    orientation: Option<Orientation>,
 }
 
 /// The haptic master.
@@ -288,6 +294,7 @@ impl Master {
                 position: command.position,
                 velocity,
             },
+            orientation: command.orientation,
         });
         self.fresh = true;
         Ok(())
@@ -330,8 +337,10 @@ impl Master {
         } else {
             self.limiter.stop()
         };
+        let hand = self.hand.filter(|_| live);
         MasterOutput {
-            hand: self.hand.filter(|_| live).map(|hand| hand.motion),
+            hand: hand.map(|own| own.motion),
+            orientation: hand.and_then(|own| own.orientation),
             fresh: std::mem::take(&mut self.fresh) && live,
             force: force.force,
             force_limited: force.limited,

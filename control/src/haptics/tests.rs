@@ -17,6 +17,7 @@ fn hand(stamp_ns: i64, source: u64, x: f64) -> HandCommand {
         stamp_ns,
         source,
         position: [x, 0.0, 0.0],
+        orientation: None,
     }
 }
 
@@ -134,7 +135,7 @@ proptest! {
         let mut master = enabled();
         let near = near.into_iter().map(|(age, source, position)| (NOW - age * MS, source, position));
         for (stamp_ns, source, position) in offers.into_iter().chain(near) {
-            let _ = master.offer(NOW, &HandCommand { stamp_ns, source, position });
+            let _ = master.offer(NOW, &HandCommand { stamp_ns, source, position, orientation: None });
             if let Some(hand) = master.step(NOW, 1e-3, None).hand {
                 prop_assert!(hand.position.iter().all(|value| value.abs() <= 0.12));
                 prop_assert!(hand.velocity.iter().all(|value| value.is_finite()));

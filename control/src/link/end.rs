@@ -6,6 +6,7 @@ use crate::delay::{Received, Samples};
 use crate::frame::{self, FrameBytes, LAST_LAW_CODE, LinkFrame};
 use crate::meter::{Arrival, LinkMeasurement, LinkMeter, passed};
 use crate::operating::OperatingState;
+use crate::orientation::{Orientation, PackedOrientation};
 use crate::playout::{Offered, PlayOut};
 use crate::seconds;
 use crate::switching::{Laws, MarkedPacket, Outgoing};
@@ -37,6 +38,8 @@ pub(super) struct End {
     /// When it arrived, or, where frames wait to be played out, was taken from there \[ns\].
     taken_ns: i64,
     fresh: bool,
+    /// How the hand at the other end is turned, as the newest content says.
+    orientation: Option<Orientation>,
     /// Time of the last step [ns].
     last_ns: Option<i64>,
     encoder: Encoder,
@@ -70,6 +73,7 @@ impl End {
             newest: None,
             taken_ns: 0,
             fresh: false,
+            orientation: None,
             last_ns: None,
         }
     }
@@ -99,6 +103,7 @@ impl End {
         self.heard_arming = None;
         self.newest = None;
         self.fresh = false;
+        self.orientation = None;
     }
 
     /// Bytes arrived at `arrived_ns`.
@@ -150,6 +155,9 @@ impl End {
             };
             let theirs = |law| said(&self.samples, law)[1];
             let content = self.play_out.content();
+            if let Some(content) = content {
+                self.orientation = content.orientation.map(Orientation::from);
+            }
             self.decoder.heard(frame, content, self.taken_ns, theirs);
         }
         self.decoder.step(now_ns);
@@ -174,6 +182,11 @@ impl End {
     pub fn silence(&self, now_ns: i64) -> f64 {
         self.newest
             .map_or(f64::INFINITY, |_| passed(self.taken_ns, now_ns))
+    }
+
+    /// How the hand at the other end is turned, where it says so.
+    pub fn orientation(&self) -> Option<Orientation> {
+        self.orientation
     }
 
     /// Whether the other end asks to hold, in what it said last.
@@ -224,13 +237,14 @@ impl End {
         elapsed
     }
 
-    /// The frame with `outgoing`, when it is time to send one and it says something.
+    /// The frame with `outgoing`, and the hand's `orientation`, when it is time to send one and it says something.
     pub fn send(
         &mut self,
         now_ns: i64,
         state: OperatingState,
         arming: u8,
         outgoing: Outgoing,
+        orientation: Option<Orientation>,
     ) -> Option<FrameBytes> {
         // Further ahead than a period: a clock jumped back.
         let due_ns = self.send_due_ns;
@@ -257,6 +271,7 @@ impl End {
             pace: 0,
             since_content: 0,
             packet: outgoing.packet,
+            orientation: orientation.map(PackedOrientation::from),
         };
         let ours = said(&self.samples, frame.law)[0];
         let frame = self.encoder.pass(frame, &ours)?;

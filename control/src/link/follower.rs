@@ -10,6 +10,7 @@ use crate::delay::Motion;
 use crate::frame::FrameBytes;
 use crate::nanoseconds;
 use crate::operating::OperatingState;
+use crate::orientation::Orientation;
 use crate::planted::{Planted, Rule};
 use crate::switching::{FollowerSwitch, Laws};
 
@@ -44,6 +45,8 @@ impl FollowerReadings {
 pub struct FollowerStep {
     /// A new tip command; `None` when there is nothing new.
     pub command: Option<Motion>,
+    /// How the hand is turned that commands it, where it says so.
+    pub orientation: Option<Orientation>,
     /// When it counts as made: never the same twice, [`FRESH`] after the newest frame at
     /// most \[ns since the UNIX epoch\].
     pub command_ns: i64,
@@ -151,12 +154,17 @@ impl FollowerLink {
         };
         FollowerStep {
             command: step.command.filter(|_| !hold),
+            orientation: self.end.orientation(),
             command_ns: now_ns.saturating_sub(nanoseconds(age)),
             word,
             resume_after_gap: self.gap.step(now_ns, &flow),
-            frame: self
-                .end
-                .send(now_ns, readings.state, self.words.stops(), step.outgoing),
+            frame: self.end.send(
+                now_ns,
+                readings.state,
+                self.words.stops(),
+                step.outgoing,
+                None,
+            ),
         }
     }
 

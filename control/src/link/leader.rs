@@ -7,6 +7,7 @@ use crate::arming::ArmingCount;
 use crate::codec::Deadband;
 use crate::frame::FrameBytes;
 use crate::operating::OperatingState;
+use crate::orientation::Orientation;
 use crate::switching::{Laws, LeaderSwitch};
 
 /// What a step of the operator's end takes.
@@ -14,6 +15,8 @@ use crate::switching::{Laws, LeaderSwitch};
 pub struct LeaderReadings {
     /// The hand, newest measurement.
     pub hand: Option<StampedPosition>,
+    /// How it is turned, where it says so and the arm can follow.
+    pub orientation: Option<Orientation>,
     /// Operating state of the master.
     pub state: OperatingState,
 }
@@ -93,12 +96,17 @@ impl LeaderLink {
         let hand = self.velocity.fresh_by_its_rate(readings.hand);
         let dt = self.end.elapsed(now_ns);
         let connected = self.end.connected(now_ns) && !self.end.is_held();
+        let orientation = readings.orientation.filter(|_| hand.is_some());
         let step = self.law.step(dt, hand, self.end.newest(now_ns), connected);
         LeaderStep {
             force: step.force,
-            frame: self
-                .end
-                .send(now_ns, readings.state, self.arming.get(), step.outgoing),
+            frame: self.end.send(
+                now_ns,
+                readings.state,
+                self.arming.get(),
+                step.outgoing,
+                orientation,
+            ),
         }
     }
 

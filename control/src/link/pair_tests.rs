@@ -101,6 +101,7 @@ impl Pair {
             here,
             &LeaderReadings {
                 hand: Some(hand),
+                orientation: None,
                 state: OperatingState::Enabled,
             },
         );

@@ -50,6 +50,7 @@ impl Rig {
                 position: [0.01, 0.02, 0.0],
                 ..Packet::default()
             },
+            orientation: None,
         }
     }
 
@@ -288,6 +289,7 @@ fn words(leader: &mut LeaderLink, rig: &mut Rig, steps: usize) -> usize {
     for _ in 0..steps {
         let hand = LeaderReadings {
             hand: None,
+            orientation: None,
             state: OperatingState::Enabled,
         };
         if let Some(frame) = leader.step(rig.now_ns, &hand).frame {
@@ -331,6 +333,7 @@ fn a_word_that_a_stop_overtakes_is_forgotten() {
         let step = |_| {
             let hand = LeaderReadings {
                 hand: None,
+                orientation: None,
                 state: OperatingState::Enabled,
             };
             let frame = leader.step(rig.now_ns, &hand).frame;

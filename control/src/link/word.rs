@@ -139,6 +139,7 @@ mod tests {
             pace: 0,
             since_content: 0,
             packet: Packet::default(),
+            orientation: None,
         }
     }
 

@@ -19,6 +19,7 @@ fn frame(sequence: u32, sent_ns: i64) -> LinkFrame {
         pace: 0,
         since_content: 0,
         packet: Packet::default(),
+        orientation: None,
     }
 }
 

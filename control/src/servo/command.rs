@@ -6,6 +6,8 @@ use super::ServoConfig;
 use super::planar_tip::PlanarTip;
 use super::serial_tip::SerialTip;
 use super::tip::{Led, TipKinematics};
+use super::turning::{self, Turning};
+use crate::orientation::Orientation;
 use crate::{nanoseconds, seconds};
 use ferntast_model::kinematics::{Kinematics, LINKS};
 use ferntast_model::serial_arm::SerialArm;
@@ -18,8 +20,21 @@ pub enum Target {
     /// Tip position x, y, z, base frame \[m\] (`servo_cp`). An arm that works in
     /// the plane z = 0 does not look at z any further, but it must be finite.
     Tip([f64; 3]),
+    /// The same, with how the hand is turned that leads it: the tool of an arm of six joints or
+    /// more turns as that does, from where it was when the arm was armed.
+    Pose([f64; 3], Orientation),
     /// Joint positions \[rad\] (`servo_jp`).
     Joints(Joints<f64>),
+}
+
+impl Target {
+    /// How the hand is turned that leads it.
+    fn orientation(&self) -> Option<&Orientation> {
+        match self {
+            Target::Pose(_, orientation) => Some(orientation),
+            Target::Tip(_) | Target::Joints(_) => None,
+        }
+    }
 }
 
 /// A command with its stamp.
@@ -39,6 +54,7 @@ impl Command {
         self.stamp_ns == other.stamp_ns
             && match (&self.target, &other.target) {
                 (Target::Tip(a), Target::Tip(b)) => bits(a, b),
+                (Target::Pose(a, turn), Target::Pose(b, other)) => bits(a, b) && turn == other,
                 (Target::Joints(a), Target::Joints(b)) => bits(a, b),
                 _ => false,
             }
@@ -133,6 +149,7 @@ struct Accepted {
     /// Where there is a Cartesian model.
     tip: Option<Vector3<f64>>,
     led: Led,
+    turning: Turning,
 }
 
 /// What the servo knows of where its tip is.
@@ -258,7 +275,7 @@ impl CommandCheck {
             return Err(CommandRefusal::StampZero);
         }
         let finite = match &command.target {
-            Target::Tip(tip) => tip.iter().all(|value| value.is_finite()),
+            Target::Tip(tip) | Target::Pose(tip, _) => tip.iter().all(|value| value.is_finite()),
             Target::Joints(joints) => joints.iter().all(|value| value.is_finite()),
         };
         if !finite {
@@ -276,7 +293,7 @@ impl CommandCheck {
         if age < -CLOCK_TOLERANCE {
             return Err(CommandRefusal::FromFuture { ahead: -age });
         }
-        let (led, tip) = self.joints(&command.target, posture)?;
+        let (led, tip, turning) = self.joints(command, posture)?;
         if let Some(last) = self.last
             && let (Some(tip), Some(before)) = (tip, last.tip)
         {
@@ -288,22 +305,39 @@ impl CommandCheck {
             }
         }
         self.newest_ns = stamp_ns;
-        self.last = Some(Accepted { stamp_ns, tip, led });
+        self.last = Some(Accepted {
+            stamp_ns,
+            tip,
+            led,
+            turning,
+        });
         Ok(led.joints)
     }
 
-    /// Joint positions \[rad\] and, where that is known, the tip \[m\].
+    /// Joint positions \[rad\] and, where that is known, the tip \[m\], and what becomes of the
+    /// tool's orientation.
     fn joints(
         &self,
-        target: &Target,
+        command: &Command,
         posture: &Joints<f64>,
-    ) -> Result<(Led, Option<Vector3<f64>>), CommandRefusal> {
-        let (led, tip) = match target {
-            Target::Tip(tip) => {
+    ) -> Result<(Led, Option<Vector3<f64>>, Turning), CommandRefusal> {
+        let mut turning = Turning::default();
+        let (led, tip) = match &command.target {
+            Target::Tip(tip) | Target::Pose(tip, _) => {
                 let model = self.tip.as_ref().ok_or(CommandRefusal::NoTipModel)?;
                 let tip = model.followed(&Vector3::from(*tip));
-                let last = self.last.as_ref().map(|own| &own.led);
-                (model.joints(&tip, posture, last)?, Some(tip))
+                let last = self.last.as_ref();
+                let from = last.map_or(posture, |own| &own.led.joints);
+                let passed = turning::passed(last.map(|own| own.stamp_ns), command.stamp_ns);
+                turning = last.map_or(turning, |own| own.turning).next(
+                    passed,
+                    command.target.orientation(),
+                    || model.orientation(from),
+                );
+                let turn = turning.turn(passed);
+                let last = last.map(|own| &own.led);
+                let led = model.joints(&tip, turn.as_ref(), posture, last)?;
+                (led, Some(tip))
             }
             Target::Joints(joints) => {
                 self.check_count(joints)?;
@@ -331,7 +365,7 @@ impl CommandCheck {
                 return Err(CommandRefusal::OutOfRange { limit });
             }
         }
-        Ok((led, tip))
+        Ok((led, tip, turning))
     }
 
     fn check_count(&self, joints: &Joints<f64>) -> Result<(), CommandRefusal> {

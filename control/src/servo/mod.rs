@@ -38,6 +38,7 @@ mod take_over;
 #[cfg(test)]
 mod tests;
 mod tip;
+mod turning;
 
 pub use command::{
     CartesianModel, Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target,

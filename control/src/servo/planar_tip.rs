@@ -1,6 +1,6 @@
 //! The planar arm of two links, in closed form.
 
-use super::tip::{Led, TipKinematics};
+use super::tip::{Led, TipKinematics, Turn};
 use super::{CommandRefusal, Range};
 use ferntast_model::kinematics::{Elbow, Kinematics, planar};
 use ferntast_model::{JointCount, Joints, Vector2};
@@ -32,6 +32,7 @@ impl TipKinematics for PlanarTip {
     fn joints(
         &self,
         tip: &Vector3<f64>,
+        _turn: Option<&Turn>,
         posture: &Joints<f64>,
         _last: Option<&Led>,
     ) -> Result<Led, CommandRefusal> {

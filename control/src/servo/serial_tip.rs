@@ -1,19 +1,22 @@
 //! Any serial arm: its tip is led by damped steps of inverse kinematics.
 //!
-//! While the tip goes along, an arm of six joints or more holds the orientation that its
-//! tip has at home, and what that leaves free goes towards home. One command leads a few
+//! While the tip goes along, an arm of six joints or more turns its tool as the hand turns
+//! ([`turning`](super::turning)), or holds the orientation that it has at home, and what that leaves
+//! free goes towards home. A tool that is turned is asked for no more than one command's turn
+//! from where it has come to, so that one that cannot follow, at a singularity or at a joint's end,
+//! stays behind and does not pull the tip away. One command leads a few
 //! steps at most. Near a singularity each is as long as that one is away
 //! ([`inverse_kinematics`](ferntast_model::rigid_body::inverse_kinematics)): the arm slows, and
 //! stands before it. Where the last look found none within reach, steps are the same without
 //! the looking, Δq = h + J⁺ (e − J h) with h towards home.
 
-use super::tip::{Led, TipKinematics};
+use super::tip::{Led, TipKinematics, Turn};
 use super::{CommandRefusal, Range};
 use ferntast_model::rigid_body::inverse_kinematics::{Settings, Task, motion_to};
 use ferntast_model::rigid_body::{Chain, Jacobian, Placement};
 use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, MAX_JOINTS};
-use nalgebra::{Matrix3, Matrix6, SVector, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Rotation3, SVector, UnitQuaternion, Vector3, Vector6};
 
 /// Steps that one command leads at most: 40 mrad of all joints together near a singularity,
 /// 160 mrad elsewhere.
@@ -30,8 +33,6 @@ const ALIKE: f64 = 1e-6;
 const FAR: f64 = 2e-3;
 /// By so much a command leads it nearer that can be followed, as a share of what is left.
 const PROGRESS: f64 = 1e-3;
-/// Joints of an arm that can hold an orientation.
-const JOINTS_OF_POSE: usize = 6;
 
 /// The arm's links with how they are led.
 #[derive(Clone, Debug)]
@@ -44,9 +45,9 @@ pub(super) struct SerialTip {
 
 impl SerialTip {
     pub(super) fn new(arm: &SerialArm) -> SerialTip {
-        let task = match arm.count().get() < JOINTS_OF_POSE {
-            true => Task::Position,
-            false => Task::Pose,
+        let task = match arm.turns_tool() {
+            true => Task::Pose,
+            false => Task::Position,
         };
         SerialTip {
             chain: arm.chain().clone(),
@@ -118,6 +119,22 @@ impl SerialTip {
     }
 }
 
+/// `from`, turned towards where it is to be as far as one command does.
+fn turned(from: &Matrix3<f64>, turn: &Turn) -> Matrix3<f64> {
+    let from = quaternion(*from);
+    let left = (turn.to * from.inverse()).scaled_axis();
+    let angle = left.norm();
+    let to = match angle <= turn.most {
+        true => turn.to,
+        false => UnitQuaternion::from_scaled_axis(left * (turn.most / angle)) * from,
+    };
+    to.to_rotation_matrix().into_inner()
+}
+
+fn quaternion(rotation: Matrix3<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation))
+}
+
 impl TipKinematics for SerialTip {
     fn count(&self) -> JointCount {
         self.chain.count()
@@ -134,9 +151,15 @@ impl TipKinematics for SerialTip {
         }
     }
 
+    fn orientation(&self, joints: &Joints<f64>) -> Option<UnitQuaternion<f64>> {
+        let turns = self.settings.task == Task::Pose && joints.count() == self.count();
+        turns.then(|| quaternion(self.chain.forward(joints).rotation))
+    }
+
     fn joints(
         &self,
         tip: &Vector3<f64>,
+        turn: Option<&Turn>,
         posture: &Joints<f64>,
         last: Option<&Led>,
     ) -> Result<Led, CommandRefusal> {
@@ -147,11 +170,14 @@ impl TipKinematics for SerialTip {
         if led.joints.count() != self.count() {
             return Err(CommandRefusal::NoTipModel);
         }
+        let (mut place, mut jacobian) = self.chain.forward_and_jacobian(&led.joints);
         let target = Placement {
-            rotation: self.orientation,
+            rotation: match turn {
+                Some(turn) => turned(&place.rotation, turn),
+                None => self.orientation,
+            },
             translation: *tip,
         };
-        let (mut place, mut jacobian) = self.chain.forward_and_jacobian(&led.joints);
         let (mut left, begun) = self.left(&place, &target);
         let mut distance = begun;
         for _ in 0..STEPS {

@@ -9,11 +9,13 @@ mod impedance;
 mod recorded;
 mod script;
 mod tremor;
+mod turn;
 
 pub use impedance::{HandImpedance, ImpedanceParameters};
 pub use recorded::{RecordedHand, RecordedHandConfig, RecordedMotion, RecordingError};
 pub use script::{Motion, Phase, Point, Script, ScriptedHand, ScriptedHandConfig};
 pub use tremor::{Tremor, TremorParameters};
+pub use turn::{Turn, TurnParameters};
 
 /// Where the hand is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +24,9 @@ pub struct HandState {
     pub position: [f64; 3],
     /// Velocity \[m/s\].
     pub velocity: [f64; 3],
+    /// How it is turned, leader base frame: quaternion x, y, z, w. `None` of a hand that does not
+    /// say so.
+    pub orientation: Option<[f64; 4]>,
     /// The script or recording has come to its end; the hand stays.
     pub finished: bool,
 }

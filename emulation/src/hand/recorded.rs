@@ -269,6 +269,7 @@ impl RecordedHand {
         HandState {
             position: [at(0), at(1), 0.0],
             velocity: [speed(0), speed(1), 0.0],
+            orientation: None,
             finished,
         }
     }

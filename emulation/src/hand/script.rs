@@ -1,6 +1,8 @@
 //! The scripted operator: a hand with an impedance whose target follows a script.
 
-use super::{HandImpedance, HandState, ImpedanceParameters, Tremor, TremorParameters};
+use super::{
+    HandImpedance, HandState, ImpedanceParameters, Tremor, TremorParameters, Turn, TurnParameters,
+};
 use ferntast_model::{Bounded, ParameterError, Section, check, parameters};
 use serde::{Deserialize, Serialize};
 
@@ -135,6 +137,9 @@ parameters! {
         /// Trembling; none when left out.
         #[serde(default)]
         pub tremor: Option<TremorParameters> [section],
+        /// Turning; a hand without an orientation when left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub turn: Option<TurnParameters> [section],
         /// Where it wants to be.
         pub script: Script [section],
     }
@@ -146,6 +151,7 @@ pub struct ScriptedHand {
     script: Script,
     impedance: HandImpedance<3>,
     tremor: Option<Tremor>,
+    turn: Option<Turn>,
     phase: usize,
     /// Time in this phase [s].
     time: f64,
@@ -164,6 +170,7 @@ impl ScriptedHand {
         Ok(ScriptedHand {
             impedance: HandImpedance::new(config.impedance, config.script.start.0),
             tremor: config.tremor.map(|own| Tremor::new(own, seed)),
+            turn: config.turn.map(Turn::new),
             from: config.script.start.0,
             script: config.script.clone(),
             phase: 0,
@@ -199,6 +206,7 @@ impl ScriptedHand {
         HandState {
             position: self.impedance.position(),
             velocity: self.impedance.velocity(),
+            orientation: self.turn.as_mut().map(|own| own.step(dt)),
             finished: self.phase >= self.script.phase.len(),
         }
     }

@@ -17,7 +17,8 @@ pub struct PoseSample {
     pub stamp: Time,
     /// Position x, y, z \[m\].
     pub position: [f64; 3],
-    /// Orientation as unit quaternion x, y, z, w.
+    /// Orientation as unit quaternion x, y, z, w; all zeros: none is known. Of a hand one that is not
+    /// turned, (0, 0, 0, 1) exactly, says as little.
     pub orientation: [f64; 4],
     /// Who sent it, as the middleware tells senders apart; 0 for senders on
     /// this host. Not on the wire of ROS 2: the gateway fills it in.
@@ -78,7 +79,9 @@ impl Message for PoseSample {
     fn check(&self) -> Result<(), InvalidMessage> {
         checks::stamp(self.stamp)?;
         checks::finite("pose.position", &self.position)?;
-        checks::unit_quaternion("pose.orientation", &self.orientation)?;
+        if self.orientation != [0.0; 4] {
+            checks::unit_quaternion("pose.orientation", &self.orientation)?;
+        }
         self.frame.check()
     }
 }

@@ -55,6 +55,11 @@ impl Believed {
         }
     }
 
+    /// Whether it has the joints to turn its tool as it likes.
+    pub fn turns_tool(&self) -> bool {
+        self.serial().is_some_and(|own| own.arm.turns_tool())
+    }
+
     /// The model of two links in a plane, where it is one.
     pub fn planar(&self) -> Option<&ArmModel> {
         match self {

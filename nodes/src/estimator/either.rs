@@ -33,6 +33,8 @@ pub(super) struct Told {
     /// Quaternion x, y, z, w.
     pub(super) orientation: [f64; 4],
     pub(super) force: [f64; 3],
+    /// About the tip.
+    pub(super) torque: [f64; 3],
     pub(super) contact_force: [f64; 3],
     pub(super) normal_force: f64,
     pub(super) tangential_force: f64,
@@ -115,6 +117,7 @@ impl From<ContactEstimate> for Told {
             tip: [x, y, 0.0],
             orientation: about_z(own.position.iter().sum()),
             force: [fx, fy, 0.0],
+            torque: [0.0; 3],
             contact_force: [tangential, 0.0, normal],
             normal_force: own.normal_force,
             tangential_force: own.tangential_force,
@@ -141,11 +144,13 @@ impl From<ContactEstimate> for Told {
 
 impl From<SpatialEstimate> for Told {
     fn from(own: SpatialEstimate) -> Told {
+        let [force, torque] = own.wrench;
         Told {
             position: own.position,
             tip: own.tip,
             orientation: own.orientation,
-            force: own.force,
+            force,
+            torque,
             contact_force: own.contact_force,
             normal_force: own.normal_force,
             tangential_force: own.tangential_force,

@@ -227,11 +227,10 @@ fn publish(stamp: Time, estimate: &Told, output: &mut EstimatorOutput) {
         orientation: estimate.orientation,
         ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, estimate.tip)
     });
-    output.measured_cf = Some(WrenchSample::force(
-        stamp,
-        Frame::FOLLOWER_BASE,
-        estimate.force,
-    ));
+    output.measured_cf = Some(WrenchSample {
+        torque: estimate.torque,
+        ..WrenchSample::force(stamp, Frame::FOLLOWER_BASE, estimate.force)
+    });
     output.contact_cf = Some(WrenchSample::force(
         stamp,
         Frame::CONTACT,

@@ -121,7 +121,12 @@ impl Node for FollowerLinkNode {
         output.state_command = command.map(|own| StateCommandSample::new(now, own));
         output.servo_cp = step.command.map(|tip| {
             let made = Time::from_nanos(step.command_ns);
-            PoseSample::at(made, Frame::FOLLOWER_BASE, tip.position)
+            let at = PoseSample::at(made, Frame::FOLLOWER_BASE, tip.position);
+            let hand = step.orientation.map(|own| own.quaternion());
+            PoseSample {
+                orientation: hand.unwrap_or(at.orientation),
+                ..at
+            }
         });
         output.frame.frame = step.frame;
         let state = self.link.state(now.nanos());

@@ -2,6 +2,7 @@
 
 use ferntast_control::{
     link::{LeaderLink, LeaderReadings},
+    orientation::Orientation,
     switching,
 };
 use ferntast_msgs::{
@@ -46,6 +47,8 @@ ports! {
 /// The operator's end of the link.
 pub struct LeaderLinkNode {
     link: LeaderLink,
+    /// The arm can turn its tool.
+    turns: bool,
     status: Status,
     /// A law that was asked for and is not there.
     unknown_law: Option<Text<24>>,
@@ -53,10 +56,12 @@ pub struct LeaderLinkNode {
 }
 
 impl LeaderLinkNode {
-    /// The end `link` of the session of that number.
-    pub fn new(link: LeaderLink, session: u16) -> LeaderLinkNode {
+    /// The end `link` of the session of that number. To an arm that `turns` its tool, the hand's
+    /// orientation is sent, too.
+    pub fn new(link: LeaderLink, session: u16, turns: bool) -> LeaderLinkNode {
         LeaderLinkNode {
             link,
+            turns,
             status: Status::new(LinkEnd::LEADER, session),
             unknown_law: None,
             peers: PeerWatch::default(),
@@ -100,8 +105,12 @@ impl Node for LeaderLinkNode {
         for (bytes, arrived) in input.frames.iter() {
             self.link.arrived(bytes, arrived.nanos());
         }
+        let hand = input.setpoint_cp.message;
         let readings = LeaderReadings {
             hand: position(now, &input.setpoint_cp),
+            orientation: hand
+                .filter(|_| self.turns)
+                .and_then(|own| Orientation::given(own.orientation)),
             state: operating_state(&input.operating_state),
         };
         let step = self.link.step(now.nanos(), &readings);

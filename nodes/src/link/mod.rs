@@ -1,7 +1,7 @@
 //! The two ends of the link as nodes.
 //!
 //! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz or fewer, sealed
-//! ([`ferntast_seal`]). What an end does is in [`ferntast_control::link`]; here are its
+//! ([`ferntast_seal`]); of 68 bytes where a hand's orientation goes along. What an end does is in [`ferntast_control::link`]; here are its
 //! topics. Frames come in through the channel emulator ([`transport`]), whose way
 //! out is the moment of arrival.
 
@@ -33,7 +33,7 @@ pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let session = session_number(&build.session.session);
     let link = &loaded.scenario.link;
     let end = LeaderLink::new(loaded.laws(), link.buffer).coded(link.codec.of(link.deadband));
-    let node = LeaderLinkNode::new(end, session);
+    let node = LeaderLinkNode::new(end, session, loaded.arm.model.turns_tool());
     let wire = (build.open_link)(LinkDirection::Forward)?;
     let seed = loaded.scenario.seed.wrapping_add(2);
     let transport = LinkTransport::new(wire, loaded.link.down.clone(), seed)?;

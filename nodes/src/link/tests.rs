@@ -96,7 +96,7 @@ impl Operator {
         into_master.state_command.push(enable);
         Operator {
             master: MasterNode::new(&config, hand).expect("valid"),
-            leader: LeaderLinkNode::new(LeaderLink::new(laws(), 0.0), 7),
+            leader: LeaderLinkNode::new(LeaderLink::new(laws(), 0.0), 7, false),
             arm: FollowerLink::new(laws(), 0.0),
             into_master,
             into_leader: LeaderLinkInput::default(),

@@ -8,7 +8,8 @@ use ferntast_bus::{
     frames::{Door, FrameReceiver, FrameSender, MAX_FRAME, Reason},
 };
 use ferntast_control::frame::{
-    FRAME_LENGTH, FrameBytes, KEEP_ALIVE_LENGTH, SEAL_LENGTH, WIRE_LENGTH,
+    FRAME_LENGTH, FrameBytes, KEEP_ALIVE_LENGTH, LONGEST_WIRE_LENGTH, POSE_LENGTH, SEAL_LENGTH,
+    WIRE_LENGTH,
 };
 use ferntast_emulation::channel::{Channel, ChannelConfig};
 use ferntast_model::ParameterError;
@@ -18,8 +19,8 @@ use ferntast_msgs::{
     topics::{JointNameError, TopicName},
 };
 use ferntast_seal::{
-    Established, PLAIN_LENGTH, PlainFrame, Received, Refusal, RefusalCounts, SEALED_LENGTH,
-    SHORT_LENGTH, SecureEnd,
+    Established, LONG_LENGTH, PLAIN_LENGTH, PlainFrame, Received, Refusal, RefusalCounts,
+    SEALED_LENGTH, SHORT_LENGTH, SecureEnd,
 };
 
 use crate::node::{Node, Output, Ports};
@@ -29,7 +30,7 @@ use crate::node::{Node, Output, Ports};
 const BATCH: usize = 256;
 
 const _: () = assert!(FRAME_LENGTH == PLAIN_LENGTH && WIRE_LENGTH == SEALED_LENGTH);
-const _: () = assert!(KEEP_ALIVE_LENGTH == SHORT_LENGTH);
+const _: () = assert!(KEEP_ALIVE_LENGTH == SHORT_LENGTH && POSE_LENGTH == LONG_LENGTH);
 
 /// One end of the link, open.
 pub struct LinkWire {
@@ -72,7 +73,7 @@ pub struct Emulated {
 /// A frame, opened, and when it arrived.
 #[derive(Clone, Copy, Debug)]
 struct Arrived {
-    bytes: [u8; FRAME_LENGTH],
+    bytes: [u8; POSE_LENGTH],
     length: usize,
     at: Time,
 }
@@ -92,7 +93,7 @@ impl Default for FrameInput {
     fn default() -> Self {
         FrameInput {
             frames: [Arrived {
-                bytes: [0; FRAME_LENGTH],
+                bytes: [0; POSE_LENGTH],
                 length: 0,
                 at: Time::INVALID,
             }; BATCH],
@@ -117,7 +118,7 @@ impl FrameInput {
     /// One more; there is no room for more than a batch.
     fn add(&mut self, frame: &[u8], at: Time) {
         if let Some(place) = self.frames.get_mut(self.count) {
-            place.length = frame.len().min(FRAME_LENGTH);
+            place.length = frame.len().min(POSE_LENGTH);
             place.bytes[..place.length].copy_from_slice(&frame[..place.length]);
             place.at = at;
             self.count += 1;
@@ -206,7 +207,7 @@ impl LinkTransport {
     /// Puts a frame that came into the channel, as long as it was when it was sealed, with the
     /// mark where the seal was.
     fn push(&mut self, arrived: Time, plain: &PlainFrame) {
-        let mut on_the_way = [0; WIRE_LENGTH];
+        let mut on_the_way = [0; LONGEST_WIRE_LENGTH];
         on_the_way[..plain.len()].copy_from_slice(plain);
         on_the_way[plain.len()] = self.mark();
         let sealed = plain.len() + SEAL_LENGTH;
@@ -222,7 +223,7 @@ impl LinkTransport {
             }
         }
         let mark = self.mark();
-        let mut on_the_way = [0; WIRE_LENGTH];
+        let mut on_the_way = [0; LONGEST_WIRE_LENGTH];
         input.count = 0;
         while !input.is_full() {
             let Some((length, released)) = self.channel.pop(now.nanos(), &mut on_the_way) else {

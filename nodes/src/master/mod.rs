@@ -3,6 +3,7 @@
 use ferntast_control::{
     haptics::{HandCommand, HandRefusal, Master, MasterConfig},
     operating::OperatingState,
+    orientation::Orientation,
     planted::{Planted, Rule},
 };
 use ferntast_emulation::hand::Hand;
@@ -119,6 +120,7 @@ impl MasterNode {
             stamp_ns: pose.stamp.nanos(),
             source: pose.source.max(THIS_HOST),
             position: pose.position,
+            orientation: Orientation::given(pose.orientation),
         };
         if let Err(refusal) = self.master.offer(now.nanos(), &command) {
             let fault = match refusal {
@@ -194,7 +196,8 @@ impl Node for MasterNode {
         }
         if let Some(hand) = self.hand.as_mut().filter(|_| !self.taken) {
             let moved = hand.step(if running { dt } else { 0.0 }, self.force);
-            let pose = PoseSample::at(now, Frame::LEADER_BASE, moved.position);
+            let mut pose = PoseSample::at(now, Frame::LEADER_BASE, moved.position);
+            pose.orientation = moved.orientation.unwrap_or(pose.orientation);
             self.offer(now, &pose, &mut output.health);
             output.own_hand = Some(pose);
         } else {
@@ -217,7 +220,12 @@ impl Node for MasterNode {
         if step.fresh
             && let Some(hand) = step.hand
         {
-            output.setpoint_cp = Some(PoseSample::at(now, Frame::LEADER_BASE, hand.position));
+            let at = PoseSample::at(now, Frame::LEADER_BASE, hand.position);
+            let turned = step.orientation.map(|own| own.quaternion());
+            output.setpoint_cp = Some(PoseSample {
+                orientation: turned.unwrap_or(at.orientation),
+                ..at
+            });
         }
         output.servo_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
         output.authority = self.publish_authority(now);

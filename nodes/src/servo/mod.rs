@@ -9,6 +9,7 @@ pub use summary::{FrictionParameter, FrictionSummary};
 
 use ferntast_control::{
     operating,
+    orientation::Orientation,
     planted::Planted,
     servo::{
         Command, CommandRefusal, Measurement, Servo, ServoConfig, ServoInput as LawInput,
@@ -136,7 +137,10 @@ fn command(
 ) -> Option<Command> {
     let tip = input.servo_cp.message.map(|pose| Command {
         stamp_ns: pose.stamp.nanos(),
-        target: Target::Tip(pose.position),
+        target: match Orientation::given(pose.orientation) {
+            Some(orientation) => Target::Pose(pose.position, orientation),
+            None => Target::Tip(pose.position),
+        },
     });
     let position = servo_jp
         .filter(|sample| sample.fields.has(JointFields::POSITION))

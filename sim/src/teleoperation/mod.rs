@@ -28,7 +28,7 @@ pub use whole_arm::ArmUnderTrial;
 
 use ferntast_control::codec::{Deadband, Traffic};
 use ferntast_control::delay::Law;
-use ferntast_control::frame::{FrameBytes, SEAL_LENGTH, WIRE_LENGTH};
+use ferntast_control::frame::{FrameBytes, LONGEST_WIRE_LENGTH, SEAL_LENGTH, WIRE_LENGTH};
 use ferntast_control::haptics::{ForceLimiter, MasterConfig};
 use ferntast_control::link::{
     FollowerLink, FollowerReadings, FollowerStep, LeaderLink, LeaderReadings, LeaderStep,
@@ -287,6 +287,7 @@ impl<'a> Run<'a> {
                 position: [hand[0], hand[1], 0.0],
                 silence: 0.0,
             }),
+            orientation: None,
             state: OperatingState::Enabled,
         };
         self.leader.step(now_ns, &readings)
@@ -302,14 +303,14 @@ impl<'a> Run<'a> {
 
 /// Sends a frame with what a seal adds to it: a channel of limited rate counts that too.
 fn send(channel: &mut Channel, now_ns: i64, frame: &FrameBytes) {
-    let mut bytes = [0; WIRE_LENGTH];
+    let mut bytes = [0; LONGEST_WIRE_LENGTH];
     bytes[..frame.len()].copy_from_slice(frame);
     channel.push(now_ns, &bytes[..frame.len() + SEAL_LENGTH]);
 }
 
 /// What is on its way through `channel` arrives.
 fn deliver(channel: &mut Channel, now_ns: i64, mut arrived: impl FnMut(&[u8], i64)) {
-    let mut bytes = [0; WIRE_LENGTH];
+    let mut bytes = [0; LONGEST_WIRE_LENGTH];
     while let Some((length, at_ns)) = channel.pop(now_ns, &mut bytes) {
         arrived(&bytes[..length.saturating_sub(SEAL_LENGTH)], at_ns);
     }

@@ -46,6 +46,19 @@ class Wall:
         return pressed * (self.normal - self.friction * sliding / max(speed, SLIDES))
 
 
+class Push:
+    """A wrench on the tip for a time: force and torque about it, base frame."""
+
+    def __init__(self, text: str) -> None:
+        numbers = [float(number) for number in text.split(",")]
+        self.begin, self.end = numbers[:2]
+        self.force, self.torque = np.array(numbers[2:5]), np.array(numbers[5:8])
+
+    def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        on = float(self.begin <= time < self.end)
+        return on * self.force, on * self.torque
+
+
 class Plant:
     def __init__(self, arm: dict, joints: list[str], options: argparse.Namespace) -> None:
         self.model = load(options.urdf or arm["urdf"], joints)
@@ -61,6 +74,7 @@ class Plant:
         self.tip = body(self.model, options.tip or arm["tip"])
         walls = [Wall.parse(text) for text in options.wall]
         self.walls = walls or [Wall(**surface) for surface in arm.get("surface", [])]
+        self.pushes = [Push(text) for text in options.push]
         self.force, self.work = np.zeros(3), 0.0
         self.jacobian, self.turning = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
         self.left = 0.0
@@ -86,7 +100,12 @@ class Plant:
             motion = self.base.T @ self.jacobian
             tip, velocity = self.place(), motion @ data.qvel
             self.force = sum((wall.force(tip, velocity) for wall in self.walls), np.zeros(3))
-            data.qfrc_applied[:] = motion.T @ self.force
+            data.qfrc_applied[:] = 0.0
+            for push in self.pushes:
+                force, turn = push.at(data.time)
+                self.force = self.force + force
+                data.qfrc_applied[:] += (self.base.T @ self.turning).T @ turn
+            data.qfrc_applied[:] += motion.T @ self.force
             data.qfrc_applied[self.rates] += torque
             mujoco.mj_step2(self.model, data)
             # Positions go on with the new velocities.
@@ -118,6 +137,12 @@ def main() -> None:
         action="append",
         default=[],
         help="x,y,z,nx,ny,nz,stiffness[,damping[,friction]]; in place of the surfaces of the greeting",
+    )
+    parser.add_argument(
+        "--push",
+        action="append",
+        default=[],
+        help="from,to,fx,fy,fz,mx,my,mz: for that time [s] a force [N] and a torque [Nm] on the tip",
     )
     options = parser.parse_args()
     source, sink = sys.stdin.buffer, sys.stdout.buffer

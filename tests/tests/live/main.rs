@@ -21,5 +21,6 @@ mod ros_arm;
 mod serial_arm;
 mod session;
 mod soak;
+mod tool;
 mod twin;
 mod zenoh;

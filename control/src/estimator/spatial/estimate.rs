@@ -20,7 +20,11 @@ pub struct SpatialEstimate {
     /// Force of the surroundings on the tip \[N\], base frame, filtered; also without
     /// contact, where it shows the estimator's noise.
     pub force: [f64; 3],
-    /// The same in the contact frame \[N\]: along two tangents, which are right-handed with
+    /// Force \[N\] and torque \[Nm\] of the surroundings on the tool, about the tip, base frame,
+    /// filtered. Where a force at the tip is enough, and where no torque can be told (fewer than six
+    /// joints, near a singularity, by motor currents), that force and no torque.
+    pub wrench: [[f64; 3]; 2],
+    /// `force` in the contact frame \[N\]: along two tangents, which are right-handed with
     /// the normal, and along the normal; zero without contact.
     pub contact_force: [f64; 3],
     /// Normal force F_N ≥ 0 \[N\]; zero without contact.
@@ -64,6 +68,7 @@ impl SpatialEstimate {
             orientation: [0.0, 0.0, 0.0, 1.0],
             tip_velocity: [0.0; 3],
             force: [0.0; 3],
+            wrench: [[0.0; 3]; 2],
             contact_force: [0.0; 3],
             normal_force: 0.0,
             tangential_force: 0.0,

@@ -9,7 +9,7 @@ use ferntast_model::rigid_body::Jacobian;
 use nalgebra::{Matrix3, Vector3};
 
 /// As large as the arm, about: what makes the tip's mobility a number \[m\].
-const LENGTH: f64 = 0.5;
+pub(super) const LENGTH: f64 = 0.5;
 /// λ \[m\]; of a mobility of 0.05 it changes a force by 2·10⁻⁵.
 const DAMPING: f64 = 1e-4;
 
@@ -80,6 +80,11 @@ impl<'a> TipForce<'a> {
         let each = torque.iter().enumerate();
         each.map(|(joint, torque)| self.of_joint(joint, *torque))
             .sum()
+    }
+
+    /// What `force` \[N\] makes of a joint's torque \[Nm\].
+    pub(super) fn torque_of(&self, joint: usize, force: &Vector3<f64>) -> f64 {
+        lever(self.jacobian, joint).dot(force)
     }
 
     /// The share of the force \[N\] that one joint's torque \[Nm\] makes.

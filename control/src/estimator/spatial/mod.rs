@@ -3,26 +3,29 @@
 //! Equation (5) gives the torque of the contact in each joint, τ_c = J_vᵀ F, by the same
 //! forms and filters as for the planar arm. A contact at the tip makes a force and no
 //! moment, so that all joints together tell three numbers: F is what fits their torques best
-//! ([`force`]). Equation (6)'s split is along the believed planes, or, where none is near,
-//! along and across the tip's motion ([`split`]).
+//! ([`force`]). Where there are six joints or more they tell force and torque of whatever pushes and
+//! turns the tool, too, if a force at the tip is not enough ([`wrench`]). Equation (6)'s split is
+//! along the believed planes, or, where none is near, along and across the tip's motion ([`split`]).
 
 mod estimate;
 mod force;
 mod split;
 #[cfg(test)]
 mod tests;
+mod wrench;
 
 pub use estimate::SpatialEstimate;
 
 use super::intake::Intake;
 use super::systematic::SensorErrors;
 use super::zeroing::Zeroing;
-use super::{EstimatorParameters, JointMeasurement, TorqueFromMotor};
+use super::{EstimatorParameters, Form, JointMeasurement, TorqueFromMotor};
 use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, ParameterError};
 use force::TipForce;
 use nalgebra::Vector3;
 use split::{Motion, Split};
+use wrench::Wrench;
 
 /// Estimates contact forces of a serial arm step by step.
 #[derive(Clone, Debug)]
@@ -33,6 +36,9 @@ pub struct SpatialEstimator {
     zeroing: Zeroing,
     /// How much a joint's torque counts \[-\].
     weights: Joints<f64>,
+    /// Of the torque sensors \[Nm\].
+    ranges: Joints<f64>,
+    wrench: Wrench,
     split: Split,
     last: SpatialEstimate,
 }
@@ -52,6 +58,8 @@ impl SpatialEstimator {
             parameters,
             zeroing: Zeroing::new(ranges),
             weights: force::weights(&ranges),
+            ranges,
+            wrench: Wrench::default(),
             split: Split::new(arm.surfaces()),
             last: SpatialEstimate::unknown(intake.joints()),
             intake,
@@ -94,8 +102,16 @@ impl SpatialEstimator {
             motion.contact_torque[joint] - zero[joint]
         });
         let jacobian = self.arm.chain().jacobian(&motion.position);
-        let solver = TipForce::new(&jacobian, &self.weights, self.parameters.singularity);
+        let singularity = self.parameters.singularity;
+        let solver = TipForce::new(&jacobian, &self.weights, singularity);
         let force = solver.force(&torque);
+        // By motor currents no torque is told: what is not known of friction would be one.
+        let whole = (self.parameters.form != Form::MotorCurrent)
+            .then(|| wrench::whole(&jacobian, &self.weights, singularity, &torque))
+            .flatten();
+        let wrench = self
+            .wrench
+            .step(taken.passed, &torque, &self.ranges, &solver, whole);
         let tip = self.arm.chain().forward(&taken.link);
         let velocity = force::velocity(&jacobian, &motion.velocity);
 
@@ -106,6 +122,7 @@ impl SpatialEstimator {
             orientation: tip.quaternion(),
             tip_velocity: velocity.into(),
             force: force.into(),
+            wrench,
             friction: self.last.friction,
             singular: solver.is_singular(),
             saturated: taken.sensors.saturated,

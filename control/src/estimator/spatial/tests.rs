@@ -95,16 +95,21 @@ fn parameters(form: Form) -> EstimatorParameters {
 }
 
 /// What the sensors give while the arm moves like that with `force` on its tip.
-fn sensed(
+fn sensed(arm: &SerialArm, motion: &[Joints<f64>; 3], force: Vector3<f64>) -> JointMeasurement {
+    pushed(arm, motion, [force, Vector3::zeros()])
+}
+
+/// The same with a force and a torque about the tip.
+fn pushed(
     arm: &SerialArm,
     [q, qd, qdd]: &[Joints<f64>; 3],
-    force: Vector3<f64>,
+    [force, turn]: [Vector3<f64>; 2],
 ) -> JointMeasurement {
     let needed = arm.inverse_dynamics(q, qd, qdd);
     let jacobian = arm.chain().jacobian(q);
     let carried = |joint: usize| {
         (0..3)
-            .map(|row| jacobian[(row, joint)] * force[row])
+            .map(|row| jacobian[(row, joint)] * force[row] + jacobian[(row + 3, joint)] * turn[row])
             .sum::<f64>()
     };
     let torque = Joints::from_fn(q.count(), |joint| needed[joint] - carried(joint));
@@ -141,6 +146,33 @@ fn at_rest_the_force_is_that_on_the_tip_in_both_forms() {
         assert!((tangents - 13f64.sqrt()).abs() < 1e-3, "{tangents} N");
         let tip = Vector3::from(estimate.tip) - arm.home_tip().translation;
         assert!(tip.norm() < 1e-12, "{tip}");
+    }
+}
+
+/// A force at the tip is told as one, without a torque; what turns the tool as well, with it.
+#[test]
+fn a_torque_is_told_where_a_force_at_the_tip_is_not_enough() {
+    let arm = arm();
+    let force = Vector3::new(3.0, -2.0, 15.0);
+    let turn = Vector3::new(1.5, -0.8, 0.6);
+    let told = |form: Form, turn: Vector3<f64>| {
+        let measured = pushed(&arm, &resting(*arm.home()), [force, turn]);
+        let mut estimator = SpatialEstimator::new(&arm, &parameters(form)).unwrap();
+        let mut estimate = SpatialEstimate::unknown(arm.count());
+        for _ in 0..1000 {
+            estimate = estimator.step(1e-3, &measured);
+        }
+        estimate.wrench.map(Vector3::from)
+    };
+    for form in [Form::Direct, Form::MomentumObserver] {
+        let [alone, none] = told(form, Vector3::zeros());
+        assert!(
+            (alone - force).norm() < 1e-3 && none.norm() < 1e-6,
+            "{none}"
+        );
+        let [both, turned] = told(form, turn);
+        assert!((both - force).norm() < 1e-3, "{form:?}: {both}");
+        assert!((turned - turn).norm() < 1e-3, "{form:?}: {turned}");
     }
 }
 

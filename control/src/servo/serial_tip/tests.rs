@@ -67,7 +67,7 @@ fn round(tip: &SerialTip, arm: &SerialArm, radius: f64) -> [f64; 2] {
     for step in 0..4000 {
         let angle = std::f64::consts::TAU * f64::from(step) / 2000.0;
         let at = middle + Vector3::new(angle.cos() - 1.0, angle.sin(), 0.5 * angle.sin()) * radius;
-        let next = tip.joints(&at, arm.home(), led.as_ref()).unwrap();
+        let next = tip.joints(&at, None, arm.home(), led.as_ref()).unwrap();
         let place = arm.chain().forward(&next.joints);
         let turn = (place.rotation - tip.orientation).norm();
         worst[0] = worst[0].max((place.translation - at).norm());
@@ -117,7 +117,7 @@ fn it_stands_before_a_singularity_and_is_refused_beyond_reach() {
     let (mut led, mut refused) = (None, 0);
     for step in 0..4000 {
         let at = home + outwards * (2e-4 * f64::from(step));
-        match tip.joints(&at, arm.home(), led.as_ref()) {
+        match tip.joints(&at, None, arm.home(), led.as_ref()) {
             Ok(next) => led = Some(next),
             Err(refusal) => {
                 let limit = Range::Reach;
@@ -134,10 +134,83 @@ fn it_stands_before_a_singularity_and_is_refused_beyond_reach() {
     assert!(q.iter().all(|own| own.abs() <= 2.5 && own.is_finite()));
     // And back it comes.
     let back = (0..2000).try_fold(led.unwrap(), |led, _| {
-        tip.joints(&home, arm.home(), Some(&led))
+        tip.joints(&home, None, arm.home(), Some(&led))
     });
     let place = arm.chain().forward(&back.unwrap().joints);
     assert!((place.translation - home).norm() < 1e-4);
+}
+
+/// The tool is turned about `axis` by up to `angle`, in a time of so many commands, and the tip
+/// stays: gives the farthest that the tip was from its place, and the angle that is left.
+fn turn_about(arm: &SerialArm, axis: Vector3<f64>, angle: f64, commands: u32) -> ([f64; 2], Led) {
+    let tip = SerialTip::new(arm);
+    let home = arm.home_tip();
+    let (mut led, mut apart): (Option<Led>, f64) = (None, 0.0);
+    let axis = axis.normalize();
+    let begin = tip.orientation(arm.home()).unwrap();
+    let mut to = begin;
+    for command in 1..=commands {
+        let share = f64::from(command) / f64::from(commands);
+        to = UnitQuaternion::from_scaled_axis(axis * (angle * share)) * begin;
+        let turn = Turn { to, most: 2e-3 };
+        let next = tip.joints(&home.translation, Some(&turn), arm.home(), led.as_ref());
+        let next = next.unwrap();
+        let place = arm.chain().forward(&next.joints);
+        apart = apart.max((place.translation - home.translation).norm());
+        led = Some(next);
+    }
+    let led = led.unwrap();
+    let left = tip.orientation(&led.joints).unwrap().angle_to(&to);
+    ([apart, left], led)
+}
+
+#[test]
+fn the_tool_turns_about_a_tip_that_stays() {
+    let arm = arm(7);
+    for axis in [
+        Vector3::x(),
+        Vector3::y(),
+        Vector3::z(),
+        Vector3::new(1.0, -1.0, 0.5),
+    ] {
+        // 0.4 rad at 0.4 rad/s, and the same in a tenth of the time: as fast as it goes then.
+        let ([apart, left], _) = turn_about(&arm, axis, 0.4, 1000);
+        assert!(
+            apart < 1e-5 && left < 1e-5,
+            "{axis:?}: {apart} m, {left} rad"
+        );
+        let ([apart, left], _) = turn_about(&arm, axis, 0.4, 100);
+        assert!(apart < 1e-4, "{axis:?}: {apart} m");
+        assert!((0.19..0.21).contains(&left), "{left}");
+    }
+}
+
+/// It is turned as far as it goes, half a turn and more about any axis: a tool that cannot follow
+/// stays behind, and the tip stays where it is.
+#[test]
+fn a_tool_stays_behind_before_a_singularity() {
+    let arm = arm(7);
+    let mut behind = 0;
+    for axis in [
+        Vector3::x(),
+        -Vector3::x(),
+        Vector3::y(),
+        -Vector3::y(),
+        Vector3::z(),
+    ] {
+        let ([apart, left], led) = turn_about(&arm, axis, 3.0, 4000);
+        let zero = Vector6::zeros();
+        let settings = SerialTip::new(&arm).settings;
+        let mobility = settings
+            .step(arm.chain(), &led.joints, &zero, &led.joints)
+            .mobility;
+        println!("{axis:?}: {apart:.6} m, {left:.3} rad left, mobility {mobility:.3}");
+        assert!(mobility >= 0.9 * settings.stop_below, "{mobility}");
+        assert!(apart < FAR, "{axis:?}: {apart} m");
+        assert!(led.joints.iter().all(|own| own.abs() <= 2.5));
+        behind += u32::from(left > 0.1);
+    }
+    assert!(behind > 0, "none was turned too far");
 }
 
 #[test]
@@ -145,10 +218,10 @@ fn what_is_not_finite_or_of_other_joints_leads_nowhere() {
     let arm = arm(7);
     let tip = SerialTip::new(&arm);
     let far = Vector3::new(f64::NAN, 0.0, 0.0);
-    if let Ok(led) = tip.joints(&far, arm.home(), None) {
+    if let Ok(led) = tip.joints(&far, None, arm.home(), None) {
         assert!(led.joints.iter().all(|own| own.is_finite()));
     }
     let home = arm.home_tip().translation;
-    let refused = tip.joints(&home, &[0.0; 3].into(), None);
+    let refused = tip.joints(&home, None, &[0.0; 3].into(), None);
     assert!(matches!(refused, Err(CommandRefusal::NoTipModel)));
 }

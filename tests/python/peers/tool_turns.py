@@ -1,0 +1,74 @@
+"""Whether a tool turned as the hand did, by a recording (rosbag2 directory) and MuJoCo.
+
+Reads JSON from stdin: `bag` (folder), `urdf` (file), `joints` (names from the base on), `tip`, `base` (links), `from` and
+`to`: the time that counts, since the recording's first message [s]. How the tool is turned follows from the recorded
+joint positions by MuJoCo's kinematics, how the hand is from `/leader/measured_cp`; nothing of ferntast's own kinematics or
+quaternions takes part. Prints JSON: `delay_s`, by which the tool is behind the hand at its best, `error_rad`, the largest
+difference then, and `turned_rad`, how far the tool turned.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from mujoco_urdf import body, load, places
+from rosbags.highlevel import AnyReader
+
+# Delays that are tried [s].
+DELAYS = np.arange(0.0, 0.1, 1e-3)
+
+
+def rotation(orientation) -> np.ndarray:
+    matrix = np.empty(9)
+    quaternion = [orientation.w, orientation.x, orientation.y, orientation.z]
+    mujoco.mju_quat2Mat(matrix, np.array(quaternion))
+    return matrix.reshape(3, 3)
+
+
+def angle(a: np.ndarray, b: np.ndarray) -> float:
+    """From one rotation to the other [rad]; by the chord, which is exact for small ones."""
+    return 2.0 * np.arcsin(min(1.0, np.linalg.norm(a - b) / np.sqrt(8.0)))
+
+
+def main() -> None:
+    asked = json.load(sys.stdin)
+    model = load(asked["urdf"], asked["joints"])
+    data = mujoco.MjData(model)
+    positions, _ = places(model, asked["joints"])
+    tip, base = body(model, asked["tip"]), body(model, asked["base"]) if asked.get("base") else 0
+    hand, tool, begin = {}, {}, None
+    with AnyReader([Path(asked["bag"])]) as reader:
+        for connection, time, raw in reader.messages():
+            begin = time if begin is None else begin
+            if connection.topic == "/leader/measured_cp":
+                message = reader.deserialize(raw, connection.msgtype)
+                hand[(time - begin) / 1e9] = rotation(message.pose.orientation)
+            elif connection.topic == "/follower/measured_js":
+                message = reader.deserialize(raw, connection.msgtype)
+                at = dict(zip(message.name, message.position))
+                data.qpos[positions] = [at[name] for name in asked["joints"]]
+                mujoco.mj_kinematics(model, data)
+                seen = data.xmat[base].reshape(3, 3).T @ data.xmat[tip].reshape(3, 3)
+                tool[(time - begin) / 1e9] = seen
+    times = np.array(sorted(tool))
+    counts = times[(times >= asked["from"]) & (times < asked["to"])][::5]
+    hands = np.array(sorted(hand))
+    first_tool, first_hand = tool[times[0]], hand[hands[0]]
+
+    def error(delay: float) -> float:
+        worst = 0.0
+        for time in counts:
+            then = hands[max(np.searchsorted(hands, time - delay, side="right") - 1, 0)]
+            worst = max(worst, angle(tool[time] @ first_tool.T, hand[then] @ first_hand.T))
+        return worst
+
+    errors = [error(delay) for delay in DELAYS]
+    best = int(np.argmin(errors))
+    turned = max(angle(tool[time], first_tool) for time in counts)
+    print(json.dumps({"delay_s": DELAYS[best], "error_rad": errors[best], "turned_rad": turned}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,145 @@
+//! An arm in MuJoCo whose tool turns with the hand, and what pushes and turns the tool.
+
+use std::{fs, path::Path};
+
+use ferntast_model::rigid_body::Vector3;
+use ferntast_msgs::{sample::WrenchSample, topics};
+use ferntast_tests::{Session, ask_python, messages, number, peer, python, root, run};
+use serde_json::{Value, json};
+
+const JOINTS: [&str; 7] = [
+    "panda_joint1",
+    "panda_joint2",
+    "panda_joint3",
+    "panda_joint4",
+    "panda_joint5",
+    "panda_joint6",
+    "panda_joint7",
+];
+
+/// A panda over a link of 20 ms, whose hand does what `script` and `more` say.
+fn scenario(session: &Session, script: &str, more: &str) {
+    let text = format!(
+        r#"
+        name = "tool"
+        description = "A hand that turns."
+        arm = "panda"
+        seed = 1
+        duration = 9.0
+        start = 1111658400
+        [hand]
+        source = "scripted"
+        [hand.scripted.script]
+        phase = [{script}]
+        {more}
+        [link]
+        channel = "rokviss_20ms"
+        [law]
+        kind = "position_force"
+        "#
+    );
+    fs::write(session.folder().join("tool.toml"), text).expect("scratch");
+}
+
+/// Runs it with MuJoCo as the arm; `run` is the recording.
+fn lockstep(session: &Session, options: &str) -> Value {
+    let plant = format!(
+        "process:'{}' '{}' {options}",
+        python().display(),
+        peer("mujoco_plant.py").display()
+    );
+    let arguments = [
+        "lockstep",
+        "tool.toml",
+        "--driver",
+        &plant,
+        "--record",
+        "run",
+        "--json",
+    ];
+    run(session, &arguments).success().json()
+}
+
+fn turned(bag: &Path) -> Value {
+    let asked = json!({
+        "bag": bag, "urdf": root().join("config/arms/panda.urdf"), "joints": JOINTS, "tip": "stylus_tip",
+        "from": 1.0, "to": 9.0,
+    });
+    ask_python(&peer("tool_turns.py"), &asked)
+}
+
+/// The hand goes to and fro and turns by up to half a radian about a slanted axis, at up to 0.8 rad/s.
+#[test]
+fn the_tool_turns_with_the_hand() {
+    let session = Session::new();
+    let script = r#"{ label = "to and fro", kind = "sine", amplitude = [0.03, 0.03, 0.02],
+        frequency = 0.25, duration = 20.0 }"#;
+    let turn = "[hand.scripted.turn]\namplitude = [0.3, -0.2, 0.35]\nperiod = 4.0";
+    scenario(&session, script, turn);
+    let told = lockstep(&session, "");
+    assert_eq!(told["states"]["follower"]["final"], "ENABLED", "{told:#}");
+    assert!(number(&told, "tip.drift_mm") < 1.0, "{told:#}");
+    let turned = turned(&session.folder().join("run"));
+    println!("{turned}");
+    assert!(number(&turned, "turned_rad") > 0.45, "{turned}");
+    assert!(number(&turned, "error_rad") < 0.005, "{turned}");
+    assert!(number(&turned, "delay_s") < 0.03, "{turned}");
+}
+
+/// A hand that says nothing of how it is turned, as before: the tool stays as it is.
+#[test]
+fn the_tool_of_a_hand_without_an_orientation_stays() {
+    let session = Session::new();
+    let script = r#"{ label = "to and fro", kind = "sine", amplitude = [0.03, 0.03, 0.02],
+        frequency = 0.25, duration = 20.0 }"#;
+    scenario(&session, script, "");
+    lockstep(&session, "");
+    let turned = turned(&session.folder().join("run"));
+    println!("{turned}");
+    assert!(number(&turned, "turned_rad") < 0.005, "{turned}");
+}
+
+const REST: &str = r#"{ label = "rest", kind = "hold", duration = 20.0 }"#;
+
+/// What is estimated of a known push on the tool from 2 s after it began: mean force \[N\] and
+/// torque \[Nm\].
+fn told(force: [f64; 3], turn: [f64; 3]) -> [Vector3<f64>; 2] {
+    let session = Session::new();
+    scenario(&session, REST, "");
+    let push = [force, turn].concat().map(|own| own.to_string());
+    let push = push.join(",");
+    lockstep(&session, &format!("--push 3,9,{push}"));
+    let wrenches = messages(&session.folder().join("run"), topics::FOLLOWER_MEASURED_CF);
+    let begin = wrenches.first().expect("wrenches").message.stamp;
+    let late = |own: &WrenchSample| (5.0..8.5).contains(&own.stamp.seconds_since(begin));
+    let late: Vec<WrenchSample> = wrenches
+        .iter()
+        .map(|own| own.message)
+        .filter(late)
+        .collect();
+    assert!(late.len() > 3000);
+    let count = late.len() as f64;
+    let mean = |part: fn(&WrenchSample) -> [f64; 3]| {
+        let sum: Vector3<f64> = late.iter().map(|own| Vector3::from(part(own))).sum();
+        sum / count
+    };
+    [mean(|own| own.force), mean(|own| own.torque)]
+}
+
+/// The wrench is that which MuJoCo applied, with a torque and without.
+#[test]
+fn a_known_push_and_turn_is_told_in_six_components() {
+    let [force, turn] = [[4.0, -3.0, 6.0], [0.8, -0.5, 0.6]];
+    let [found, turned] = told(force, turn);
+    println!("{found:?} N of {force:?}, {turned:?} Nm of {turn:?}");
+    let off = (found - Vector3::from(force)).norm() / Vector3::from(force).norm();
+    assert!(off < 0.05, "{off}");
+    let off = (turned - Vector3::from(turn)).norm() / Vector3::from(turn).norm();
+    assert!(off < 0.05, "{off}");
+    let [found, turned] = told(force, [0.0; 3]);
+    let off = (found - Vector3::from(force)).norm() / Vector3::from(force).norm();
+    assert!(
+        off < 0.05 && turned.norm() < 0.01,
+        "{found:?} N, {turned:?} Nm"
+    );
+}
