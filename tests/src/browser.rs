@@ -4,7 +4,7 @@ use std::{path::Path, process::Command, time::Duration};
 
 use fantoccini::{
     Client, ClientBuilder, Locator,
-    actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction},
+    actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, MouseActions, PointerAction},
     elements::Element,
     wd::{Capabilities, WebDriverCompatibleCommand},
 };
@@ -43,6 +43,32 @@ impl WebDriverCompatibleCommand for ConsoleLog {
         )
     }
 }
+
+/// A command of the Chrome DevTools Protocol.
+#[derive(Debug)]
+struct DevTools(&'static str, Value);
+
+impl WebDriverCompatibleCommand for DevTools {
+    fn endpoint(&self, base: &Url, session: Option<&str>) -> Result<Url, ParseError> {
+        base.join(&format!(
+            "session/{}/goog/cdp/execute",
+            session.unwrap_or_default()
+        ))
+    }
+
+    fn method_and_body(&self, _: &Url) -> (http::Method, Option<String>) {
+        let DevTools(command, parameters) = self;
+        let body = json!({"cmd": command, "params": parameters});
+        (http::Method::POST, Some(body.to_string()))
+    }
+}
+
+/// What finds texts that are cut off.
+const LAYOUT: &str = include_str!("layout.js");
+/// So long a page may take to lay itself out anew.
+const SETTLED: Duration = Duration::from_millis(900);
+/// A desk's small and large window, and a phone's \[pixels\].
+const SIZES: [(u32, u32); 3] = [(1280, 800), (1920, 1080), (390, 844)];
 
 impl Browser {
     /// Starts one with a window of that many pixels.
@@ -196,6 +222,15 @@ impl Browser {
     /// Presses the pointer in the middle of an element and draws it along
     /// `path`, pixels from the middle, each in `step`. The button stays down.
     pub fn drag(&self, selector: &str, path: &[(f64, f64)], step: Duration) {
+        self.drag_with(MOUSE_BUTTON_LEFT, selector, path, step);
+    }
+
+    /// The same with the right button.
+    pub fn drag_right(&self, selector: &str, path: &[(f64, f64)], step: Duration) {
+        self.drag_with(MOUSE_BUTTON_RIGHT, selector, path, step);
+    }
+
+    fn drag_with(&self, button: u64, selector: &str, path: &[(f64, f64)], step: Duration) {
         let element = self.find(selector);
         let at = |x: f64, y: f64, duration: Duration| PointerAction::MoveToElement {
             element: element.clone(),
@@ -203,7 +238,6 @@ impl Browser {
             x,
             y,
         };
-        let button = MOUSE_BUTTON_LEFT;
         let mut mouse = MouseActions::new("mouse".to_owned())
             .then(at(0.0, 0.0, Duration::ZERO))
             .then(PointerAction::Down { button });
@@ -216,6 +250,48 @@ impl Browser {
     /// Lets the pointer go.
     pub fn release(&self) {
         self.wait("release", self.client().release_actions());
+    }
+
+    fn dev_tools(&self, command: &'static str, parameters: Value) {
+        let done = self.client().issue_cmd(DevTools(command, parameters));
+        self.wait(command, done);
+    }
+
+    /// Shows the page in another size and theme.
+    pub fn show_as(&self, (width, height): (u32, u32), theme: &str) {
+        let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500});
+        self.dev_tools("Emulation.setDeviceMetricsOverride", metrics);
+        let features = json!({"features": [{"name": "prefers-color-scheme", "value": theme}]});
+        self.dev_tools("Emulation.setEmulatedMedia", features);
+        std::thread::sleep(SETTLED);
+    }
+
+    /// From now on it is noted which words are drawn where, for [`Browser::misfits`].
+    pub fn watch_words(&self) {
+        self.run(&format!("{LAYOUT}; watchCanvases()"), Vec::new());
+    }
+
+    /// Texts that cannot be read, cut off or on top of each other, in small and large windows, on
+    /// a phone, in both themes; each with where that is.
+    pub fn misfits(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        for theme in ["light", "dark"] {
+            for size in SIZES {
+                self.show_as(size, theme);
+                let told = self.run(&format!("{LAYOUT}; return misfits()"), Vec::new());
+                let told = told.as_array().cloned().unwrap_or_default();
+                let words = told.iter().filter_map(Value::as_str);
+                found.extend(words.map(|text| format!("{} px, {theme}: {text}", size.0)));
+            }
+        }
+        found
+    }
+
+    /// How many words have been drawn on canvases since [`Browser::watch_words`].
+    pub fn words_drawn(&self) -> f64 {
+        self.number(
+            "return [...window.drawnWords.values()].reduce((sum, own) => sum + own.length, 0)",
+        )
     }
 
     /// Writes what is seen into `file`, as PNG.

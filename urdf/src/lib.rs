@@ -4,8 +4,9 @@
 //! [`Robot::of_joints`] make of a part of it the [`Chain`](ferntast_model::rigid_body::Chain)
 //! that dynamics and kinematics work on.
 //!
-//! Of a URDF, `<link>` with `<inertial>` and `<joint>` count; meshes, colours,
-//! transmissions and plugins are not looked at. What hangs on a link of the chain moves
+//! Of a URDF, `<link>` with `<inertial>` and `<joint>` count, and for pictures the boxes,
+//! cylinders and balls of `<visual>` and `<collision>`; meshes, colours, transmissions and
+//! plugins are not looked at. What hangs on a link of the chain moves
 //! with it: what is fixed to it, and what another joint carries, as if that joint were held
 //! at position zero (a gripper's fingers).
 //!
@@ -17,10 +18,12 @@ mod arm;
 mod document;
 mod error;
 mod robot;
+mod solid;
 
 pub use arm::Arm;
 pub use error::{ArmError, ReadError};
 pub use robot::{Joint, JointType, Limit, Link, Robot};
+pub use solid::{Placed, Solid};
 
 /// Of `names` the one most like `wanted`, for a message: `; did you mean "…"?`.
 fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> String {

@@ -8,6 +8,7 @@ use crate::{
     did_you_mean,
     document::{self, Element},
     error::ReadError,
+    solid::{self, Placed},
 };
 
 /// How a joint of a URDF moves.
@@ -72,6 +73,8 @@ pub struct Link {
     pub line: usize,
     /// Its masses in its own frame; none where the file has none.
     pub inertia: Option<LinkInertia>,
+    /// What it looks like, as far as the file tells it without meshes.
+    pub shapes: Vec<Placed>,
 }
 
 /// Everything that a file says of links and joints: one or more trees.
@@ -187,6 +190,7 @@ fn link(element: Element<'_>) -> Result<Link, ReadError> {
         name: name.to_owned(),
         line: element.line(),
         inertia,
+        shapes: solid::shapes(&element),
     })
 }
 

@@ -2,7 +2,7 @@
 
 const NAMES = [
   "page", "panel", "raised", "line", "grid", "text", "quiet", "accent", "measured", "model", "residual", "force",
-  "hand", "second", "good", "warn", "bad", "wall", "shade",
+  "hand", "second", "good", "warn", "bad", "wall", "shade", "link", "joint", "tool", "thing", "table", "dark",
 ];
 
 /** Colours by name; they change with the theme. */

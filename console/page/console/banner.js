@@ -1,8 +1,8 @@
 // The banner on the picture: what happened, why, and the one thing to do about it.
 
 import { byId, write } from "../common/dom.js";
+import { apart } from "../common/mapping.js";
 import { fixed } from "../common/numbers.js";
-import { apart } from "./scene.js";
 
 const NAMES = { follower: "The arm", leader: "The master" };
 /** What a device may be in beside ENABLED, what has to be left first first. */

@@ -5,7 +5,7 @@ import { onTheme } from "../common/theme.js";
 import { connect, on, operates, session } from "./connection.js";
 import * as hand from "./hand.js";
 import * as panel from "./panel.js";
-import * as scene from "./scene.js";
+import * as picture from "./picture.js";
 import * as strips from "./strips.js";
 
 /** Time between drawings of the scene on average, and least time of strips and texts [ms]. */
@@ -52,7 +52,7 @@ function frame(time) {
     shown = session.now;
     const image = byId("delayed").checked ? delayed() : null;
     const target = hand.wanted() || session.now.seat.target;
-    scene.draw(byId("scene"), session.about, session.now, image, target);
+    picture.draw(byId("scene"), session.about, session.now, image, target);
     panel.quick(session.now);
     counted += 1;
   }
@@ -70,8 +70,8 @@ function hint() {
   canvas.classList.toggle("hold", mine && !hand.wanted());
   canvas.classList.toggle("holding", Boolean(hand.wanted()));
   canvas.dataset.drawn = counted;
-  const text = !mine ? "Take the controls to move the hand." : hand.wanted()
-    ? "Release, or Space, lets the hand go." : "Drag, or arrow keys, to take the hand.";
+  const text = (!mine ? "Take the controls to move the hand." : hand.wanted()
+    ? "Release, or Space, lets the hand go." : "Drag, or arrow keys, to take the hand.") + picture.hint();
   if (byId("scene-hint").textContent !== text) byId("scene-hint").textContent = text;
 }
 
@@ -79,13 +79,16 @@ function hint() {
 export function start() {
   legend();
   on("hello", () => {
+    picture.build();
     panel.build();
     strips.build(byId("strips"));
   });
   on("refused", (reason) => toast(reason));
   on("connection", () => { if (session.now) panel.slow(session.now); });
-  onTheme(() => { shown = null; });
-  hand.listen(byId("scene"), () => toast("Take the controls first: the button at the right, “Take the controls”.", 4));
+  const anew = () => { shown = null; };
+  onTheme(anew);
+  hand.listen(byId("scene"), () => toast("Take the controls first: the button at the right, “Take the controls”.", 4), picture.turnsLeft);
+  picture.listen(byId("scene"), anew);
   byId("stop").onclick = panel.stop;
   addEventListener("keydown", (event) => { if (event.key === "Escape") panel.stop(); });
   connect();

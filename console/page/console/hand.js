@@ -1,12 +1,13 @@
 // The operator's hand: pointer or keys on the scene become a target for the master.
 
 import { operates, send, session } from "./connection.js";
-import { view } from "./scene.js";
+import { axes } from "./picture.js";
 
 /** How far an arrow key moves the hand [m]. */
 const KEY_STEP = 0.001;
-/** The hand reaches this far from the middle [m]. */
-const REACH = 0.06;
+/** How far a line of the wheel moves it away [m], and how many pixels of the wheel are a line. */
+const WHEEL_STEP = 0.001;
+const WHEEL_LINE = 40;
 
 let target = null;
 let grip = null;
@@ -18,12 +19,13 @@ export function wanted() {
 }
 
 function move(point) {
-  target = point.map((value) => Math.min(REACH, Math.max(-REACH, value)));
+  const { reach } = session.about;
+  target = point.map((value, axis) => Math.min(reach[axis], Math.max(-reach[axis], value)));
 }
 
 /** Where a hand would begin [m]: where the one is that is there, else where the tip is. */
 function begin() {
-  return session.now?.begin || [0, 0];
+  return session.now?.begin || [0, 0, 0];
 }
 
 /** Takes the hand where the tip is, if nobody else's is on the master: an arm that nobody moves pauses again at once. */
@@ -40,35 +42,47 @@ export function letGo() {
   send({ type: "let_go" });
 }
 
-/** Takes pointers and keys on `canvas`; `refuse` is told when the page only watches. */
-export function listen(canvas, refuse) {
-  const point = (event) => {
-    const box = canvas.getBoundingClientRect();
-    const offset = session.about.workspace_offset;
-    const [x, y] = view(canvas, session.about).back(event.clientX - box.left, event.clientY - box.top);
-    const scale = session.about.position_scale;
-    return [(x - offset[0]) / scale, (y - offset[1]) / scale];
-  };
+/** `from`, moved by so many metres of the hand along those directions. */
+function along(from, ...ways) {
+  return ways.reduce((at, [direction, way]) => at.map((value, axis) => value + way * direction[axis]), from);
+}
+
+/**
+ * Takes pointers and keys on `canvas`; `refuse` is told when the page only watches, and `turns` whether the pointer is
+ * to turn the view instead.
+ */
+export function listen(canvas, refuse, turns) {
   canvas.addEventListener("pointerdown", (event) => {
-    if (!session.about || event.button > 0) return;
+    if (!session.about || event.button > 0 || turns()) return;
     if (!operates()) {
       refuse();
       return;
     }
+    const plane = axes(canvas, session.about);
+    if (!plane) return;
     canvas.setPointerCapture(event.pointerId);
     canvas.focus({ preventScroll: true });
     const start = target || begin();
-    const at = point(event);
-    // The hand is gripped where it is, not moved to the pointer.
-    grip = { id: event.pointerId, from: [start[0] - at[0], start[1] - at[1]] };
+    // The hand is gripped where it is, not moved to the pointer, and stays in the plane in which it is gripped.
+    grip = { id: event.pointerId, plane, from: start, x: event.clientX, y: event.clientY };
     move(start);
     event.preventDefault();
   });
   canvas.addEventListener("pointermove", (event) => {
     if (grip?.id !== event.pointerId || !target) return;
-    const at = point(event);
-    move([at[0] + grip.from[0], at[1] + grip.from[1]]);
+    const { right, up, scale } = grip.plane;
+    const metre = scale * session.about.position_scale;
+    move(along(grip.from, [right, (event.clientX - grip.x) / metre], [up, (grip.y - event.clientY) / metre]));
   });
+  canvas.addEventListener("wheel", (event) => {
+    const away = grip?.plane.away;
+    if (!away || !target) return;
+    event.preventDefault();
+    // The pointer goes on from there.
+    grip.from = along(grip.from, [away, (-event.deltaY / WHEEL_LINE) * WHEEL_STEP]);
+    move(along(target, [away, (-event.deltaY / WHEEL_LINE) * WHEEL_STEP]));
+    touched = true;
+  }, { passive: false });
   // Who releases the pointer lets go, whatever the arm is doing: nothing goes on pulling.
   const up = (event) => {
     if (grip?.id === event.pointerId) letGo();
@@ -77,20 +91,23 @@ export function listen(canvas, refuse) {
   canvas.addEventListener("pointercancel", up);
   canvas.addEventListener("lostpointercapture", up);
   canvas.addEventListener("keydown", (event) => {
-    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const way = {
+      ArrowLeft: ["right", -1], ArrowRight: ["right", 1], ArrowUp: ["up", 1], ArrowDown: ["up", -1],
+      PageUp: ["away", 1], PageDown: ["away", -1],
+    }[event.key];
     if (event.key === " ") {
       letGo();
       event.preventDefault();
     }
-    if (!way || !session.about) return;
+    const direction = way && session.about && axes(canvas, session.about)?.[way[0]];
+    if (!direction) return;
     event.preventDefault();
     if (!operates()) {
       refuse();
       return;
     }
     const step = KEY_STEP * (event.shiftKey ? 5 : 1);
-    const from = target || begin();
-    move([from[0] + way[0] * step, from[1] + way[1] * step]);
+    move(along(target || begin(), [direction, way[1] * step]));
     touched = true;
   });
   document.addEventListener("visibilitychange", () => {
@@ -113,9 +130,9 @@ export function beat(now) {
   }
   // The server let go for us: silence, idleness, a stop.
   if (target && session.now.seat.let_go && !session.now.seat.target && now - sent > 400 && !grip) target = null;
-  const moved = target && (grip || touched || !last || last[0] !== target[0] || last[1] !== target[1]);
+  const moved = target && (grip || touched || !last || last.some((value, axis) => value !== target[axis]));
   if (moved && now - sent >= 14) {
-    send({ type: "hand", x: target[0], y: target[1] });
+    send({ type: "hand", x: target[0], y: target[1], z: target[2] });
     last = target;
     touched = false;
     sent = now;

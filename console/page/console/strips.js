@@ -11,19 +11,24 @@ const SPAN = 20;
 /** An event is told where the pointer is as near [s]. */
 const NEAR = 0.4;
 
-const length = (pair) => (pair ? Math.hypot(pair[0], pair[1]) : null);
+const length = (force) => (force ? Math.hypot(...force) : null);
 const milli = (value) => (value === null || value === undefined ? null : value * 1e3);
 
+/** Dashes of the curves along x, y and z. */
+const DASHES = [null, [4, 3], [1.5, 2.5]];
+const AXES = ["x", "y", "z"];
+
+/** Hand and tip along an axis, both where the hand is. */
+const along = (axis) => [
+  { name: `hand ${AXES[axis]}`, colour: "hand", dash: DASHES[axis], value: (s) => milli(s.hand?.[axis]) },
+  { name: `tip ${AXES[axis]}`, colour: "model", dash: DASHES[axis], value: (s, a) => (s.tip ? milli((s.tip[axis] - a.workspace_offset[axis]) / a.position_scale) : null) },
+];
+
 /** What the charts show: title, unit, least span of each axis, curves (name, colour, value of a snapshot, axis). */
-const CHARTS = [
+const shown = (axes) => [
   {
-    id: "position", title: "Position", unit: "mm", least: 10, decimals: 1, dashed: ["x", "y"],
-    curves: [
-      { name: "hand x", colour: "hand", value: (s) => milli(s.hand?.[0]) },
-      { name: "tip x", colour: "model", value: (s, a) => (s.tip ? milli((s.tip[0] - a.workspace_offset[0]) / a.position_scale) : null) },
-      { name: "hand y", colour: "hand", dash: [4, 3], value: (s) => milli(s.hand?.[1]) },
-      { name: "tip y", colour: "model", dash: [4, 3], value: (s, a) => (s.tip ? milli((s.tip[1] - a.workspace_offset[1]) / a.position_scale) : null) },
-    ],
+    id: "position", title: "Position", unit: "mm", least: 10, decimals: 1, axes,
+    curves: Array.from({ length: axes }, (_, axis) => along(axis)).flat(),
   },
   {
     id: "force", title: "Force", unit: "N", least: 5, leastRight: 1, zero: true, decimals: 1,
@@ -59,9 +64,9 @@ function legend(chart) {
   const line = (style, text) => make("span", {}, make("i", { style }), text);
   const solid = chart.curves.filter((curve) => !curve.dash);
   const keys = solid.map((curve) => line(`border-color:var(--${curve.colour})`,
-    (chart.dashed ? curve.name.replace(` ${chart.dashed[0]}`, "") : curve.name) + (curve.axis === "right" ? " (right)" : "")));
-  if (!chart.dashed) return keys;
-  return [...keys, line("border-color:var(--quiet)", chart.dashed[0]), line("border-color:var(--quiet);border-top:2px dashed;width:17px", chart.dashed[1])];
+    (chart.axes ? curve.name.replace(" x", "") : curve.name) + (curve.axis === "right" ? " (right)" : "")));
+  const styles = ["", ";border-top:2px dashed;width:17px", ";border-top:2px dotted;width:13px"];
+  return [...keys, ...styles.slice(0, chart.axes || 0).map((style, axis) => line(`border-color:var(--quiet)${style}`, AXES[axis]))];
 }
 
 function pause() {
@@ -95,7 +100,7 @@ function follow(chart) {
 /** Makes the charts in `parent`. */
 export function build(parent) {
   paused = pointer = null;
-  charts = CHARTS.map((chart) => {
+  charts = shown(session.about.planar ? 2 : 3).map((chart) => {
     const canvas = make("canvas", { role: "img", "aria-label": `${chart.title} of the last ${SPAN} seconds in ${chart.unit}` });
     const value = make("span", { className: "number" });
     const keys = make("span", { className: "keys" }, legend(chart));

@@ -23,7 +23,9 @@ export function prepare() {
   setTimeout(() => plotly().catch(() => {}), 100);
 }
 
-const CONFIG = { responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+/** On a narrow screen the buttons would lie on the legend. */
+const NARROW = matchMedia("(max-width: 500px)");
+const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
 
 /** An axis with its title and unit. */
 export function axis(title, unit, more = {}) {
@@ -49,7 +51,7 @@ export async function draw(element, make) {
   const library = await plotly();
   drawn.set(element, make);
   const chart = make();
-  await library.react(element, chart.data, layout(chart.layout), chart.small ? { ...CONFIG, displayModeBar: false } : CONFIG);
+  await library.react(element, chart.data, layout(chart.layout), { ...CONFIG, displayModeBar: chart.small || NARROW.matches ? false : "hover" });
 }
 
 /** Forgets charts that are no longer on the page. */
@@ -61,4 +63,6 @@ export async function tidy() {
   }
 }
 
-onTheme(() => drawn.forEach((make, element) => draw(element, make)));
+const anew = () => drawn.forEach((make, element) => draw(element, make));
+onTheme(anew);
+NARROW.addEventListener("change", anew);

@@ -106,7 +106,7 @@ async function staircase(element, { view, joint, results }, actions) {
       yaxis: axis("error", unit, { rangemode: "tozero" }), showlegend: false, dragmode: false,
       margin: { l: 56, r: 12, t: 18, b: 34 },
       shapes: floor ? [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: floor, y1: floor, line: { color: colours.good, width: 1.5, dash: "dash" } }] : [],
-      annotations: floor ? [{ xref: "paper", x: 1, y: floor, text: "noise between repeats", showarrow: false, xanchor: "right", yanchor: "bottom", font: { size: 11, color: colours.good } }] : [],
+      annotations: floor ? [{ xref: "paper", x: 1, y: floor, text: "noise between repeats", showarrow: false, xanchor: "right", yanchor: "bottom", bgcolor: colours.panel, borderpad: 1, font: { size: 11, color: colours.good } }] : [],
     },
   }));
   element.removeAllListeners?.("plotly_click");

@@ -23,6 +23,9 @@ pub enum Request {
         x: f64,
         /// \[m\]
         y: f64,
+        /// \[m\]
+        #[serde(default)]
+        z: f64,
     },
     /// The operator lets the hand go.
     LetGo,
@@ -125,23 +128,23 @@ pub struct Snapshot {
     /// Seconds since the console was started.
     pub t: f64,
     /// Joint positions; `None` before the first message.
-    pub q: Option<[f32; 2]>,
+    pub q: Option<Vec<f32>>,
     /// Joint torques \[Nm\].
-    pub tau: [f32; 2],
+    pub tau: Vec<f32>,
     /// The tip, follower base frame.
-    pub tip: Option<[f32; 2]>,
+    pub tip: Option<[f32; 3]>,
     /// Where the tip is wanted.
-    pub wanted: Option<[f32; 2]>,
+    pub wanted: Option<[f32; 3]>,
     /// Contact force on the tip, base frame.
-    pub force: [f32; 2],
+    pub force: [f32; 3],
     /// The contact.
     pub contact: ContactView,
     /// The hand that is there, accepted or not, leader base frame.
-    pub hand: Option<[f32; 2]>,
+    pub hand: Option<[f32; 3]>,
     /// Where a page's hand would begin, leader base frame.
-    pub begin: [f32; 2],
+    pub begin: [f32; 3],
     /// The force on the hand.
-    pub hand_force: [f32; 2],
+    pub hand_force: [f32; 3],
     /// The operator's end of the link.
     pub link: Option<LinkView>,
     /// The arm's end of the link.
@@ -274,7 +277,7 @@ pub struct OperatorView {
     /// The page that operates.
     pub operator: Option<u64>,
     /// Where it wants the hand, while it holds it.
-    pub target: Option<[f32; 2]>,
+    pub target: Option<[f32; 3]>,
     /// Why the hand was let go.
     pub let_go: Option<Release>,
     /// Pages that watch, the operator's included.
@@ -333,8 +336,11 @@ mod tests {
     #[test]
     fn requests_are_read_and_others_refused() {
         let read = |text| serde_json::from_str::<Request>(text).ok();
+        let (x, y) = (0.01, -0.02);
         let hand = read(r#"{"type":"hand","x":0.01,"y":-0.02}"#);
-        assert_eq!(hand, Some(Request::Hand { x: 0.01, y: -0.02 }));
+        assert_eq!(hand, Some(Request::Hand { x, y, z: 0.0 }));
+        let hand = read(r#"{"type":"hand","x":0.01,"y":-0.02,"z":0.03}"#);
+        assert_eq!(hand, Some(Request::Hand { x, y, z: 0.03 }));
         let stop = read(r#"{"type":"state","word":"stop"}"#);
         assert_eq!(
             stop,

@@ -3,7 +3,8 @@
 //! * [`operator_lock`]: who operates, and whether the hand is held,
 //! * [`shared_session`]: what pages and the loop share,
 //! * [`link`](SessionPorts): the loop's side, topics of the bus,
-//! * [`message`]: what is said between page and server.
+//! * [`message`]: what is said between page and server,
+//! * [`spatial`]: the arm and what it can touch, to be drawn.
 
 mod event_log;
 pub mod hand;
@@ -11,6 +12,7 @@ pub mod message;
 pub mod operator_lock;
 mod ports;
 pub mod shared_session;
+pub mod spatial;
 
 use std::sync::Arc;
 

@@ -40,7 +40,7 @@ pub struct OperatorLock {
     touch: Time,
     /// Where the operator wants the hand, leader base frame \[m\]; `None` while
     /// the hand is not held.
-    target: Option<[f64; 2]>,
+    target: Option<[f64; 3]>,
     let_go: Option<Release>,
 }
 
@@ -104,7 +104,7 @@ impl OperatorLock {
 
     /// The operator's hand takes the master, or moves it to `target` \[m\].
     /// What is not finite is no target.
-    pub fn hold(&mut self, page: u64, now: Time, target: [f64; 2]) {
+    pub fn hold(&mut self, page: u64, now: Time, target: [f64; 3]) {
         if self.is(page) && target.iter().all(|value| value.is_finite()) {
             self.beat = now;
             self.touch = now;
@@ -142,7 +142,7 @@ impl OperatorLock {
     }
 
     /// Where the hand is wanted \[m\], while it is held.
-    pub fn target(&self) -> Option<[f64; 2]> {
+    pub fn target(&self) -> Option<[f64; 3]> {
         self.target
     }
 
@@ -165,7 +165,7 @@ mod tests {
         let mut lock = OperatorLock::default();
         lock.take(1, at(0.0)).unwrap();
         assert_eq!(lock.take(2, at(0.1)), Err(Taken));
-        lock.hold(2, at(0.1), [0.01, 0.0]);
+        lock.hold(2, at(0.1), [0.01, 0.0, 0.0]);
         assert_eq!(lock.target(), None, "a watcher moves nothing");
         lock.leave(2);
         assert!(lock.is(1));
@@ -178,12 +178,12 @@ mod tests {
     fn a_page_that_is_silent_lets_go_and_then_loses_the_lock() {
         let mut lock = OperatorLock::default();
         lock.take(1, at(0.0)).unwrap();
-        lock.hold(1, at(0.0), [0.01, 0.02]);
+        lock.hold(1, at(0.0), [0.01, 0.02, 0.03]);
         for step in 1..=20 {
             lock.beat(1, at(f64::from(step) * 0.1));
             lock.age(at(f64::from(step) * 0.1 + 0.09));
         }
-        assert_eq!(lock.target(), Some([0.01, 0.02]));
+        assert_eq!(lock.target(), Some([0.01, 0.02, 0.03]));
         lock.age(at(2.0 + BEAT_LIFE + 0.01));
         assert_eq!(
             (lock.target(), lock.reason()),
@@ -197,7 +197,7 @@ mod tests {
     fn a_page_that_nobody_touches_lets_go() {
         let mut lock = OperatorLock::default();
         lock.take(1, at(0.0)).unwrap();
-        lock.hold(1, at(0.0), [0.0; 2]);
+        lock.hold(1, at(0.0), [0.0; 3]);
         let mut last = 0.0;
         for step in 1..=300 {
             let now = f64::from(step) * 0.1;
@@ -216,8 +216,8 @@ mod tests {
     fn what_is_no_number_moves_nothing() {
         let mut lock = OperatorLock::default();
         lock.take(1, at(0.0)).unwrap();
-        lock.hold(1, at(0.0), [f64::NAN, 0.0]);
-        lock.hold(1, at(0.0), [0.0, f64::INFINITY]);
+        lock.hold(1, at(0.0), [f64::NAN, 0.0, 0.0]);
+        lock.hold(1, at(0.0), [0.0, 0.0, f64::INFINITY]);
         assert_eq!(lock.target(), None);
     }
 }

@@ -7,9 +7,9 @@ use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         AuthoritySample, ContactStateSample, Frame, HealthSample, JointNames, JointSample,
-        LawCommandSample, LinkCommandSample, LinkStatusSample, OperatingStateSample, PoseSample,
-        RecorderAction, RecorderCommandSample, RecorderStatusSample, StateCommandSample,
-        TemperatureSample, WrenchSample,
+        LawCommandSample, LinkCommandSample, LinkStatusSample, MAX_JOINTS, OperatingStateSample,
+        PoseSample, RecorderAction, RecorderCommandSample, RecorderStatusSample,
+        StateCommandSample, TemperatureSample, WrenchSample,
     },
     topics,
 };
@@ -69,7 +69,7 @@ pub struct SessionPorts {
     shared: Arc<SharedSession>,
     hand: PageHand,
     /// Where the page's hand is, while it is held.
-    held: Option<[f64; 2]>,
+    held: Option<[f64; 3]>,
     mapping: HandMapping,
     joints: Newest<JointSample>,
     tip: Newest<PoseSample>,
@@ -235,23 +235,23 @@ impl SessionPorts {
     }
 
     /// A hand that is on the master and no page's: a script's, a client's.
-    fn other_hand(&mut self, now: Time) -> Option<[f64; 2]> {
+    fn other_hand(&mut self, now: Time) -> Option<[f64; 3]> {
         let pose = self.any_hand.take(now)?;
         let there = page_of(pose.source).is_none() && now.seconds_since(pose.stamp) < HAND_LIFE;
-        there.then_some([pose.position[0], pose.position[1]])
+        there.then_some(pose.position)
     }
 
     /// Where a page's hand begins: where the one is that it takes the master from, else
     /// where the tip is, so that nothing moves because it is there.
-    fn begin(&mut self, now: Time) -> [f64; 2] {
+    fn begin(&mut self, now: Time) -> [f64; 3] {
         let tip = |own: &mut Self| {
             let tip = own.tip.take(now)?;
-            Some(own.mapping.at_hand([tip.position[0], tip.position[1]]))
+            Some(own.mapping.at_hand(tip.position))
         };
         let last = |own: &mut Self| own.leader.take(now).map(|pose| pose.position);
         self.other_hand(now)
             .or_else(|| tip(self))
-            .or_else(|| last(self).map(|[x, y, _]| [x, y]))
+            .or_else(|| last(self))
             .unwrap_or_default()
     }
 
@@ -274,11 +274,11 @@ impl SessionPorts {
         let force = self.hand_force.take(now);
         let force = force.filter(|force| now.seconds_since(force.stamp) < 0.05);
         let force = force.map_or([0.0; 3], |wrench| wrench.force);
-        self.held = self.hand.step(dt, lock.target(), at, [force[0], force[1]]);
-        if let (Some([x, y]), Some(page)) = (self.held, lock.operator()) {
+        self.held = self.hand.step(dt, lock.target(), at, force);
+        if let (Some(position), Some(page)) = (self.held, lock.operator()) {
             let pose = PoseSample {
                 source: PAGE_SOURCE | page,
-                ..PoseSample::at(now, Frame::LEADER_BASE, [x, y, 0.0])
+                ..PoseSample::at(now, Frame::LEADER_BASE, position)
             };
             self.failed += u64::from(self.measured_cp.publish(now, &pose).is_err());
         }
@@ -316,21 +316,23 @@ impl SessionPorts {
         let snapshot = Snapshot {
             r#type: "snapshot",
             t: now.seconds_since(began),
-            q: joints.map(|joints| short(joints.position())),
-            tau: joints.map_or([0.0; 2], |joints| short(joints.effort())),
-            tip: self.tip.take(now).map(|pose| plane(pose.position)),
-            wanted: self.wanted.take(now).map(|pose| plane(pose.position)),
+            q: joints.map(|joints| of_each(&joints, joints.position::<MAX_JOINTS>())),
+            tau: joints.map_or_else(Vec::new, |joints| {
+                of_each(&joints, joints.effort::<MAX_JOINTS>())
+            }),
+            tip: self.tip.take(now).map(|pose| short(pose.position)),
+            wanted: self.wanted.take(now).map(|pose| short(pose.position)),
             force: self
                 .force
                 .take(now)
-                .map_or([0.0; 2], |wrench| plane(wrench.force)),
+                .map_or([0.0; 3], |wrench| short(wrench.force)),
             contact: self.contact.take(now).map(contact).unwrap_or_default(),
             hand: self.held.or_else(|| self.other_hand(now)).map(short),
             begin: short(self.begin(now)),
             hand_force: self
                 .hand_force
                 .take(now)
-                .map_or([0.0; 2], |wrench| plane(wrench.force)),
+                .map_or([0.0; 3], |wrench| short(wrench.force)),
             link: self.links[0].take(now).map(|status| link(&status)),
             follower_link: self.links[1].take(now).map(|status| link(&status)),
             channel: self.channel(now),
@@ -369,12 +371,14 @@ impl SessionPorts {
     }
 }
 
-fn short(values: [f64; 2]) -> [f32; 2] {
+fn short(values: [f64; 3]) -> [f32; 3] {
     values.map(|value| value as f32)
 }
 
-fn plane(values: [f64; 3]) -> [f32; 2] {
-    [values[0] as f32, values[1] as f32]
+/// One value for each joint that there is.
+fn of_each(joints: &JointSample, values: [f64; MAX_JOINTS]) -> Vec<f32> {
+    let there = values.iter().take(joints.joints.len());
+    there.map(|value| *value as f32).collect()
 }
 
 fn contact(state: ContactStateSample) -> ContactView {

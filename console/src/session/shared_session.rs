@@ -156,7 +156,7 @@ impl SharedSession {
             Request::Operate => return Ok(lock.take(page, now)?),
             Request::Watch => lock.leave(page),
             Request::Beat => lock.beat(page, now),
-            Request::Hand { x, y } => lock.hold(page, now, [x, y]),
+            Request::Hand { x, y, z } => lock.hold(page, now, [x, y, z]),
             Request::LetGo => lock.let_go(page),
             wish => {
                 let stop = wish
@@ -250,7 +250,14 @@ mod tests {
         let wishes = [record, mark, Request::EndRecord, Request::EndRecord];
         assert_eq!(shared.wishes(), wishes);
         shared
-            .ask(operator, Request::Hand { x: 0.01, y: 0.0 })
+            .ask(
+                operator,
+                Request::Hand {
+                    x: 0.01,
+                    y: 0.0,
+                    z: 0.0,
+                },
+            )
             .unwrap();
         assert!(shared.look().target().is_some());
         shared

@@ -64,7 +64,7 @@ const allCharts = [];
 
 /**
  * A chart in `parent`. `curves`: [{name, x, y, colour, band (half width, as
- * long as y), dots, hollow (which of the dots), wide (a broad pale line, on which others
+ * long as y), dots, ring (dots as rings, on which others are seen), hollow (which of the dots), wide (a broad pale line, on which others
  * are seen), tell (text on a point), visible}], x ascending; `labels`: {x, y, step (least distance of ticks on
  * x)}; `height` in px; `shades`: [{from, to, colour}] behind the curves.
  */
@@ -89,7 +89,9 @@ function chart(parent, curves, labels, height, shades) {
       high = Math.max(high, curve.x[curve.x.length - 1]);
     }
     if (!(low < high)) return isFinite(low) ? [low - 0.5, low + 0.5] : [0, 1];
-    return [low, high];
+    // Dots at the ends are whole.
+    const room = self.curves.some((curve) => curve.dots) ? (high - low) * 0.015 : 0;
+    return [low - room, high + room];
   }
 
   function height_of(from, to) {
@@ -133,8 +135,11 @@ function chart(parent, curves, labels, height, shades) {
     const pen = canvas.getContext("2d");
     pen.setTransform(scale, 0, 0, scale, 0, 0);
     pen.clearRect(0, 0, width, height);
-    const f = frame();
     pen.font = "12px system-ui, 'DejaVu Sans', sans-serif";
+    const flat = frame(), upwards = ticks(flat.low, flat.high, flat.tall / 45);
+    // Beside the numbers there is room for the axis's name.
+    margin.left = Math.max(62, 26 + Math.max(...upwards.map(({ text }) => pen.measureText(text).width)));
+    const f = frame();
     pen.lineWidth = 1;
     pen.strokeStyle = colour("--line");
     pen.fillStyle = colour("--quiet");
@@ -147,7 +152,7 @@ function chart(parent, curves, labels, height, shades) {
       pen.fillText(text, f.x(value), height - 22);
     }
     pen.textAlign = "right";
-    for (const { value, text } of ticks(f.low, f.high, f.tall / 45)) {
+    for (const { value, text } of upwards) {
       pen.beginPath();
       pen.moveTo(margin.left, f.y(value));
       pen.lineTo(margin.left + f.width, f.y(value));
@@ -159,7 +164,7 @@ function chart(parent, curves, labels, height, shades) {
     pen.save();
     pen.translate(12, margin.top + f.tall / 2);
     pen.rotate(-Math.PI / 2);
-    write(pen, labels.y, 0, 0, height);
+    write(pen, labels.y, 0, 0, 2 * margin.top + f.tall - 8);
     pen.restore();
     pen.save();
     pen.beginPath();
@@ -216,11 +221,11 @@ function chart(parent, curves, labels, height, shades) {
       for (let i = first; i < last; i++) {
         if (curve.y[i] === null) continue;
         pen.beginPath();
-        pen.arc(f.x(curve.x[i]), f.y(curve.y[i]), 3.5, 0, 7);
+        pen.arc(f.x(curve.x[i]), f.y(curve.y[i]), curve.ring ? 5.5 : 3.5, 0, 7);
         const hollow = curve.hollow && curve.hollow[i];
         pen.fillStyle = hollow ? colour("--panel") : pen.strokeStyle;
-        pen.fill();
-        if (hollow) pen.stroke();
+        if (!curve.ring) pen.fill();
+        if (hollow || curve.ring) pen.stroke();
       }
     }
   }

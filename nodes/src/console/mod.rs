@@ -3,6 +3,9 @@
 //! No 1 kHz loop shares its process: whatever a browser asks of it, the arm's
 //! loops go on.
 
+mod about;
+mod spatial;
+
 use std::{path::PathBuf, sync::Arc};
 
 use ferntast_console::{
@@ -10,19 +13,14 @@ use ferntast_console::{
     server::Content,
     session::{GripModel, HandMapping, PageHand, SessionPorts, SharedSession},
 };
-use ferntast_control::{delay::Law, frame::WIRE_LENGTH};
-use ferntast_emulation::{
-    channel::LinkConfig,
-    hand::{HandImpedance, ImpedanceParameters},
-};
+use ferntast_emulation::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_msgs::{
     sample::{Fault, Faults, Level},
     topics,
 };
-use serde_json::{Value, json};
 
 use crate::{
-    config::{Believed, HandSource, Loaded, known_links},
+    config::Believed,
     events::TELLER,
     node::{InputWatch, NodeHealth},
     process::{NodeError, Priority, ProcessContext},
@@ -41,15 +39,15 @@ const IMPEDANCE: ImpedanceParameters = ImpedanceParameters {
 };
 
 /// A hand with the impedance of a person's.
-struct Grip(HandImpedance);
+struct Grip(HandImpedance<3>);
 
 impl GripModel for Grip {
-    fn rest_at(&mut self, position: [f64; 2]) {
+    fn rest_at(&mut self, position: [f64; 3]) {
         self.0 = HandImpedance::new(IMPEDANCE, position);
     }
 
-    fn step(&mut self, dt: f64, target: [f64; 2], force: [f64; 2]) -> [f64; 2] {
-        self.0.step(dt, target, [0.0; 2], force);
+    fn step(&mut self, dt: f64, target: [f64; 3], force: [f64; 3]) -> [f64; 3] {
+        self.0.step(dt, target, [0.0; 3], force);
         self.0.position()
     }
 }
@@ -62,14 +60,19 @@ impl GripModel for Grip {
 pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let options = process.session.console.clone().unwrap_or_default();
     let clock = process.clock;
-    let about = about(&process.session.session, &process.session.loaded);
+    let loaded = &process.session.loaded;
+    // In the direction in which a planar arm cannot go, its hand does not.
+    let reach = match loaded.arm.model {
+        Believed::Planar(_) => [REACH, REACH, 0.0],
+        Believed::Serial(_) => [REACH; 3],
+    };
+    let about = about::about(&process.session.session, loaded, reach);
     let shared = Arc::new(SharedSession::new(about, Box::new(move || clock.now())));
-    let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 2]));
-    let hand = PageHand::new(Box::new(grip), REACH, LEASH);
-    let mapping = process.session.loaded.scenario.law.mapping();
-    let [x, y, _] = mapping.workspace_offset;
+    let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 3]));
+    let hand = PageHand::new(Box::new(grip), reach, LEASH);
+    let mapping = loaded.scenario.law.mapping();
     let mapping = HandMapping {
-        offset: [x, y],
+        offset: mapping.workspace_offset,
         scale: mapping.position_scale,
     };
     let mut ports = SessionPorts::connect(
@@ -119,69 +122,4 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     });
     drop(server);
     Ok(())
-}
-
-/// What the page has to know of the session before anything moves. Lengths
-/// \[m\], times \[s\], forces \[N\].
-fn about(session: &str, loaded: &Loaded) -> Value {
-    let scenario = &loaded.scenario;
-    let json = |value: Result<Value, serde_json::Error>| value.unwrap_or_default();
-    let mapping = scenario.law.mapping();
-    // What the page draws beside the tip: of an arm in space nothing, which it sees from above.
-    let (lengths, nominal_tip, edges, springs) = match &loaded.arm.model {
-        Believed::Planar(_) => {
-            let arm = json(serde_json::to_value(&loaded.arm));
-            let length = |link: usize| arm["arm"]["link"][link]["length"].clone();
-            let contour = &arm["contour"];
-            (
-                json!([length(0), length(1)]),
-                contour["nominal_tip"].clone(),
-                contour["edge"].clone(),
-                contour["spring"].clone(),
-            )
-        }
-        Believed::Serial(serial) => {
-            let tip = serial.arm.home_tip().translation;
-            (json!([]), json!([tip.x, tip.y]), json!([]), json!([]))
-        }
-    };
-    let presets = known_links();
-    let presets: Vec<Value> = presets
-        .iter()
-        .map(|(name, link)| preset(name, link))
-        .collect();
-    json!({
-        "session": session,
-        "scenario": scenario.name,
-        "hand": match scenario.hand.source {
-            HandSource::Scripted => "the script",
-            HandSource::Recorded => "the recorded motion",
-            HandSource::Crtk => "this host",
-        },
-        "lengths": lengths,
-        "nominal_tip": nominal_tip,
-        "edges": edges,
-        "springs": springs,
-        "workspace_offset": mapping.workspace_offset,
-        "position_scale": mapping.position_scale,
-        "law": scenario.law.name(),
-        "laws": Law::NAMES,
-        "presets": presets,
-        "rearm_after_gap": scenario.link.rearm_after_gap,
-        "force_limit": scenario.master.force_limit,
-        // The hand's force is drawn as long as the contact's that it stands for.
-        "hand_arrow": 1.0 / Some(mapping.force_scale).filter(|scale| *scale > 0.0).unwrap_or(1.0),
-    })
-}
-
-/// A channel to choose: what the sliders are set to. Times \[s\].
-fn preset(name: &str, link: &LinkConfig) -> Value {
-    let (up, down) = (&link.up, &link.down);
-    json!({
-        "name": name,
-        "description": link.description,
-        "round_trip": link.nominal_round_trip(WIRE_LENGTH),
-        "jitter": up.largest_deviation().max(down.largest_deviation()),
-        "loss": up.mean_loss().max(down.mean_loss()),
-    })
 }

@@ -14,6 +14,7 @@ use ferntast_sim::arm::ArmConfig;
 use super::flexible_joint::{self, FlexibleJointEvidence, FlexibleJointJob};
 use super::friction_felt::{self, FrictionFelt};
 use super::sensor_truth::{self, SensorTruthJob, SensorTruthRun};
+use super::trajectory::Trajectory;
 use crate::experiment::{
     Conditions, ExperimentError, IdentifyError, Plan, campaign,
     campaign::{CampaignError, Mission, Run, RunResult},
@@ -42,7 +43,7 @@ const SINE_DAY: f64 = 330.0;
 /// Temperature at which the sets are taken to hold \[degC\]; the paper gives none.
 const TEMPERATURE: f64 = 10.0;
 /// The paper's speeds \[deg/s\].
-const SPEEDS: [f64; 5] = [1.0, 5.0, 10.0, 20.0, 40.0];
+pub const SPEEDS: [f64; 5] = [1.0, 5.0, 10.0, 20.0, 40.0];
 
 /// Why there is no comparison with the paper.
 #[derive(Debug, thiserror::Error)]
@@ -89,6 +90,8 @@ pub struct JointEvidence {
     pub loaded: Friction,
     /// The damping torque itself.
     pub samples: Vec<Sample>,
+    /// How the joint moved.
+    pub trajectory: Trajectory,
 }
 
 /// Everything that was recorded and identified.
@@ -251,6 +254,7 @@ fn joint_evidence(
         cubic: data.friction(path, if is_loaded { CUBIC } else { CUBIC_UNLOADED })?,
         loaded: data.friction(path, CUBIC)?,
         samples: data.samples(),
+        trajectory: Trajectory::of(&data.dataset),
     })
 }
 

@@ -4,6 +4,7 @@ use ferntast_identification::experiments::damping::Sample;
 
 use super::evidence::{Evidence, JointEvidence};
 use super::item::{Chart, Curve, Item, Section};
+use super::trajectory;
 use crate::experiment::campaign::JointResult;
 use crate::experiment::identify::Friction;
 
@@ -209,18 +210,24 @@ pub fn other_trajectory(evidence: &Evidence) -> Section {
         .map(|k| f64::from(k).to_radians())
         .map(|v| (own.torque(v, 0.0) / foreign.torque(v, 0.0) - 1.0).abs())
         .fold(0.0, f64::max);
+    let damping = Chart {
+        title: "Damping of the sinusoid".to_owned(),
+        x: "velocity [deg/s]".to_owned(),
+        y: "damping torque [Nm]".to_owned(),
+        curves: vec![
+            cloud("measured", samples),
+            simulated("simulated with the spring's parameters", foreign, samples),
+        ],
+    };
     Section {
         name: "Fig. 9".to_owned(),
         title: "Parameters of one trajectory predict another".to_owned(),
         text: "The sinusoid is simulated with the parameters identified on the spring (2005-05-12). The paper: they \
                \"approximate the damping behavior of a differently shaped trajectory\"; it gives no error in numbers."
             .to_owned(),
-        charts: vec![Chart {
-            title: "Damping of the sinusoid".to_owned(),
-            x: "velocity [deg/s]".to_owned(),
-            y: "damping torque [Nm]".to_owned(),
-            curves: vec![cloud("measured", samples), simulated("simulated with the spring's parameters", foreign, samples)],
-        }],
+        charts: std::iter::once(damping)
+            .chain(trajectory::sinusoid(&evidence.may_sine.trajectory))
+            .collect(),
         items: vec![
             Item::inside(
                 "fig9/relative_error_of_prediction",

@@ -19,15 +19,18 @@ mod stiffness;
 mod table1;
 mod temperature;
 mod time;
+mod trajectory;
 
 pub use evidence::{Evidence, PaperError, collect, duration};
 pub use item::{Chart, Curve, Item, OnLineItem, Section, Settling};
 pub use page::render;
 
-/// Judges what was recorded: table 1, Figs. 4 to 17, the second paper, and what sensors that are
+/// Judges what was recorded: table 1, Figs. 3 to 17, the second paper, and what sensors that are
 /// off and friction that is found are to the forces felt.
 pub fn judge(evidence: &Evidence) -> Vec<Section> {
     let mut sections = vec![table1::section(evidence)];
+    let speeds = &evidence::SPEEDS;
+    sections.push(trajectory::identification_trajectory(evidence, speeds));
     sections.extend(joints::linear_and_cubic(evidence));
     sections.extend(time::at_low_speed(evidence));
     sections.push(joints::shares(evidence));

@@ -1,11 +1,11 @@
 // The page of `ferntast paper`: one section a table or figure of the paper.
 
-/** Dots as a curve with holes between, so that no line joins them. */
-function drawable(curve, colour) {
+/** Dots as a curve with holes between, so that no line joins them; `below` others that lie on them as rings. */
+function drawable(curve, colour, below) {
   if (!curve.dots) return { name: curve.name, colour, x: curve.x, y: curve.y };
   const x = [], y = [];
   curve.x.forEach((value, i) => { x.push(value, value); y.push(curve.y[i], null); });
-  return { name: curve.name, colour, dots: true, x, y };
+  return { name: curve.name, colour, dots: true, ring: below, x, y };
 }
 
 function showChart(grid, each) {
@@ -18,8 +18,11 @@ function showChart(grid, each) {
     each.curves.forEach((curve, n) => swatch(make(bar, "span", null, "quiet"), colourOf(n), curve.name));
   }
   // The first, which is what was measured, is seen below the others that lie on it.
-  const lines = each.curves.filter((curve) => !curve.dots).length;
-  const drawn = each.curves.map((curve, n) => ({ ...drawable(curve, colourOf(n)), wide: n === 0 && lines > 1 && !many }));
+  const like = (curve) => each.curves.filter((other) => Boolean(other.dots) === Boolean(curve.dots)).length;
+  const drawn = each.curves.map((curve, n) => {
+    const below = n === 0 && like(curve) > 1 && !many;
+    return { ...drawable(curve, colourOf(n), below), wide: below && !curve.dots };
+  });
   chart(panel, drawn.filter((curve) => !curve.dots).concat(drawn.filter((curve) => curve.dots)), { x: each.x, y: each.y }, 260);
 }
 

@@ -80,20 +80,20 @@ pub fn led_back(browser: &Browser) -> Vec<String> {
 }
 
 /// The page's hand, drawn along a path.
-struct Stroke<'a> {
-    browser: &'a Browser,
-    path: Vec<(f64, f64)>,
+pub struct Stroke<'a> {
+    pub browser: &'a Browser,
+    pub path: Vec<(f64, f64)>,
 }
 
 impl Stroke<'_> {
-    fn draw(&self) {
+    pub fn draw(&self) {
         let step = Duration::from_millis(60);
         self.browser.drag("#scene", &self.path, step);
     }
 
     /// Waits until `look` is true. Where the machine was held up, which pauses the arm or is a
     /// fault, it is armed again, and drawn anew: the page's hand goes to the arm then.
-    fn until(&self, what: &str, look: &str) {
+    pub fn until(&self, what: &str, look: &str) {
         let browser = self.browser;
         let seen = wait_for(PATIENCE, || {
             let status = browser.run(

@@ -5,10 +5,10 @@ use std::time::Duration;
 use ferntast_tests::{Browser, PATIENCE, Process, Session, run};
 
 /// Diagnosing takes a while on a machine that is busy.
-const LONG: Duration = Duration::from_secs(180);
+pub const LONG: Duration = Duration::from_secs(180);
 
 /// The lab's page on `folder`, and where it is.
-fn serve(session: &Session, folder: &str) -> (Process, String) {
+pub fn serve(session: &Session, folder: &str) -> (Process, String) {
     let mut process = Process::spawn(session.ferntast(&["lab", "serve", folder, "--json"]));
     let url = ferntast_tests::wait_for(PATIENCE, || {
         let told: serde_json::Value = serde_json::from_str(&process.stdout()).ok()?;

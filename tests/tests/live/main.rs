@@ -6,10 +6,12 @@
 mod arm_lab;
 mod bad_frames;
 mod console;
+mod console_space;
 mod console_trouble;
 mod crashes;
 mod dynamics;
 mod lab_page;
+mod layout;
 mod link_tls;
 mod masters;
 mod numbers;

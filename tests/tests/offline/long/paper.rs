@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fs, time::Duration};
 
-use ferntast_tests::{Process, Session, run};
+use ferntast_tests::{Browser, Process, Session, run};
 use serde_json::Value;
 
 /// Table 1 of the paper, joint 2: b_0, b_0T, b_1, b_2, b_3.
@@ -51,7 +51,7 @@ fn the_paper_holds_item_by_item_from_recordings() {
             assert!(number_of(item, "std_error") > 0.0, "{item:#}");
         }
     }
-    for figure in 4..=17 {
+    for figure in 3..=17 {
         let prefix = format!("fig{figure}/");
         assert!(
             items.keys().any(|name| name.starts_with(&prefix)),
@@ -75,13 +75,21 @@ fn the_paper_holds_item_by_item_from_recordings() {
             "{item:#}"
         );
     }
-    let page = fs::read_to_string(session.folder().join("paper/paper.html")).expect("the page");
+    let file = session.folder().join("paper/paper.html");
+    let page = fs::read_to_string(&file).expect("the page");
     assert!(
         page.contains("Fig. 17")
             && page.contains("seed2/k1")
             && !page.contains("src=\"http")
             && !page.contains("@DATA@")
     );
+    // What is on it can be read, at a desk and on a phone.
+    let browser = Browser::start(1280, 800);
+    browser.open(&format!("file://{}", file.display()));
+    browser.watch_words();
+    assert_eq!(browser.misfits(), Vec::<String>::new());
+    assert!(browser.words_drawn() > 100.0);
+    drop(browser);
     let recording = session
         .folder()
         .join("paper/recordings/2005-03-24_spring_joint_2");
