@@ -16,7 +16,7 @@ the share done, 0 … 1. What is refused raises `RefusedError` with the lab's te
 
 from ferntast._native import FailedError, FerntastError, RefusedError
 from ferntast.experiment import Experiment
-from ferntast.lab import add, auto, challenge, compare, diagnose, effects
+from ferntast.lab import add, auto, challenge, compare, diagnose, effects, export
 from ferntast.results import Added, Automatic, Comparison, Diagnosis, Lockstep, Record, Sweep
 from ferntast.virtual_time import lockstep, sweep
 
@@ -38,6 +38,7 @@ __all__ = [
     "compare",
     "diagnose",
     "effects",
+    "export",
     "lockstep",
     "sweep",
 ]

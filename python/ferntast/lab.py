@@ -71,6 +71,24 @@ def auto(
     return Automatic.from_answer(answer, experiment)
 
 
+def export(
+    source: Any,
+    to: str,
+    output: PathLike | None = None,
+    *,
+    approximate: bool = False,
+    **signals: Any,
+) -> Record:
+    """Writes what was identified for another program: `urdf`, `sdf`, `mujoco`, `ur`, `ferntast`.
+
+    `output` is the new file, else beside the experiment. `approximate` fits what can be said
+    there anew, without the rest. Gives `files`, `joints` (errors), `unsaid` (effects that the
+    form has no words for) and `notes`.
+    """
+    experiment = Experiment.of(source, **signals)
+    return Record(json.loads(_native.export(experiment.path, to, output, approximate)))
+
+
 def effects() -> list[Record]:
     """The effects of the catalogue: `id`, `of` (a joint or a contact), `equation`."""
     return [Record(own) for own in json.loads(_native.effects())]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use ferntast_export::identified::{Program, Request as ExportRequest, identified};
 use ferntast_identification::{JointType, comparison::Series};
 use ferntast_lab::{
     experiment::Join,
@@ -109,6 +110,34 @@ pub fn add(
         let added = opened.add(&effect, &output).map_err(refused)?;
         let result = opened.in_unit(added);
         json(&Answer::new(opened, result))
+    })
+}
+
+/// Writes what was identified for another program.
+#[pyfunction]
+#[pyo3(signature = (path, to, output, approximate))]
+pub fn export(
+    py: Python<'_>,
+    path: PathBuf,
+    to: String,
+    output: Option<PathBuf>,
+    approximate: bool,
+) -> PyResult<String> {
+    interrupt::run(py, None, move |watch| {
+        let to: Program = to.parse().map_err(refused)?;
+        watch.step(0.0);
+        let told = identified(&ExportRequest {
+            output: output.unwrap_or_else(|| to.beside(&path)),
+            experiment: path,
+            to,
+            approximate,
+            into: None,
+            joint: None,
+            servo_hz: None,
+            compensated: None,
+            force: false,
+        });
+        json(&told.map_err(refused)?)
     })
 }
 

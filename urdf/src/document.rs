@@ -55,6 +55,16 @@ impl<'a> Element<'a> {
         space.is_some_and(|space| space.contains("xacro"))
     }
 
+    /// Where it is in the text \[bytes\].
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.node.range()
+    }
+
+    /// All its attributes.
+    pub fn attributes(self) -> impl Iterator<Item = (&'a str, &'a str)> {
+        self.node.attributes().map(|own| (own.name(), own.value()))
+    }
+
     /// Number from 1.
     pub fn line(&self) -> usize {
         let begin = self.node.range().start;

@@ -2,7 +2,7 @@
 //!
 //! [`Robot::read`] takes a file's bytes: links and joints, a tree. [`Robot::between`] and
 //! [`Robot::of_joints`] make of a part of it the [`Chain`](ferntast_model::rigid_body::Chain)
-//! that dynamics and kinematics work on.
+//! that dynamics and kinematics work on. [`edit`] puts other friction and masses into a file.
 //!
 //! Of a URDF, `<link>` with `<inertial>` and `<joint>` count, and for pictures the boxes,
 //! cylinders and balls of `<visual>` and `<collision>`; meshes, colours, transmissions and
@@ -16,6 +16,7 @@
 
 mod arm;
 mod document;
+pub mod edit;
 mod error;
 mod robot;
 mod solid;

@@ -74,6 +74,7 @@ pub fn add(
     }
     print_added(&added, opened.torque_unit());
     table::parameters(&added.parameters, &added.not_excited);
+    tell_held(&added.held_possible);
     Ok(ExitCode::SUCCESS)
 }
 
@@ -145,12 +146,23 @@ fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
         println!("{effect}");
         table::parameters(parameters, &[]);
     }
+    tell_held(&comparison.held_possible);
     for name in &opened.dataset.joints {
         if let Some(own) = comparison.joints.get(name) {
             println!();
             println!("{name}");
             table::parameters(&own.parameters, &own.not_excited);
         }
+    }
+}
+
+/// Effects whose free fit is no body.
+fn tell_held(names: &[String]) {
+    for name in names {
+        println!(
+            "warning: {name}: least squares alone finds a body that cannot exist (negative mass, or an inertia that no \
+             shape has); these are the nearest parameters of one that can, with the standard errors of the free fit"
+        );
     }
 }
 

@@ -6,6 +6,7 @@ mod auto;
 mod compare;
 mod diagnose;
 mod discover;
+mod export;
 mod history;
 mod new;
 mod open;
@@ -32,7 +33,8 @@ pub use auto::tell_folder;
     ferntast lab discover E.toml             # where the catalogue ends: a formula\n  \
     ferntast lab history E2.toml             # the error falling\n  \
     ferntast lab report E2.toml -o report.html\n  \
-    ferntast lab trend E.toml later.toml     # what changed\n\n  All of it in the browser: ferntast lab serve\n\n\
+    ferntast lab trend E.toml later.toml     # what changed\n  \
+    ferntast lab export E.toml --to mujoco   # on to a simulator, a driver, the servo\n\n  All of it in the browser: ferntast lab serve\n\n\
     With recordings of your own begin with:  ferntast lab new my.csv\n\n\
     An experiment file names recording, signals and model:\n  \
     recording = \"bench.mcap\"                 # or a rosbag2 directory, a table (.csv, …), a list\n  \
@@ -87,6 +89,8 @@ enum Action {
     History(history::Arguments),
     /// Tell what changed between recordings or dates.
     Trend(trend::Arguments),
+    /// Write what was identified as URDF, SDF, MuJoCo, for Universal Robots, or as an arm's file.
+    Export(export::Arguments),
     /// Write one page with charts.
     Report(report::Arguments),
     /// Work in the browser.
@@ -106,6 +110,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         Action::Auto(arguments) => auto::run(arguments, json),
         Action::History(arguments) => history::run(&arguments, json),
         Action::Trend(arguments) => trend::run(&arguments, json),
+        Action::Export(arguments) => export::run(arguments, json),
         Action::Report(arguments) => report::run(&arguments, json),
         Action::Serve(arguments) => serve::run(arguments, json),
         Action::Effects => effects(json),

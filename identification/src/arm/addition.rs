@@ -33,6 +33,8 @@ pub struct ArmAddition {
     pub parameters: BTreeMap<String, Parameter>,
     /// Those that the data do not excite.
     pub not_excited: Vec<String>,
+    /// Effects whose free fit is no body that can exist: they are at the nearest that can.
+    pub held_possible: Vec<String>,
 }
 
 /// Fits the model without and with one more effect.
@@ -73,6 +75,7 @@ pub fn add(dataset: &ArmDataset, spec: &ArmSpec, term: &ArmTerm) -> Result<ArmAd
         decrease,
         parameters,
         not_excited,
+        held_possible: after.held_possible(),
     })
 }
 
@@ -110,7 +113,7 @@ pub(super) fn parameters(arm: &PreparedArm<'_>) -> (BTreeMap<String, Parameter>,
 
 impl PreparedArm<'_> {
     /// The same model on the rows of `other`, which is bound to the same recordings.
-    fn on_rows_of(mut self, other: &Self) -> Self {
+    pub(super) fn on_rows_of(mut self, other: &Self) -> Self {
         for (own, theirs) in self.joints.iter_mut().zip(&other.joints) {
             own.prepared = own.prepared.clone().on_rows_of(&theirs.prepared);
             own.design = crate::design::Design::new(&own.prepared);

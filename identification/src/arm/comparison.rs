@@ -27,6 +27,9 @@ pub struct ArmComparison {
     pub rms: Rms,
     /// Parameters of the effects of the arm, by `effect` or `effect@joint`.
     pub arm: BTreeMap<String, BTreeMap<String, Parameter>>,
+    /// Those of them whose free fit is no body that can exist (negative mass, or an inertia
+    /// that no shape has): they are at the nearest that can.
+    pub held_possible: Vec<String>,
     /// Every joint.
     pub joints: BTreeMap<String, Comparison>,
 }
@@ -50,6 +53,7 @@ pub fn compare(dataset: &ArmDataset, spec: &ArmSpec) -> Result<ArmComparison, Ar
         used: used(&arm.joints),
         rms: rms(&fit),
         arm: of_arm(&arm),
+        held_possible: arm.held_possible(),
         joints,
     })
 }
@@ -83,10 +87,7 @@ fn rms(fit: &SharedFit) -> Rms {
 /// Parameters of the effects of the arm that are in the model.
 pub(super) fn of_arm(arm: &PreparedArm<'_>) -> BTreeMap<String, BTreeMap<String, Parameter>> {
     let each = arm.corrections.iter().map(|own| {
-        let name = match own.effect.joint().and_then(|at| arm.joints.get(at)) {
-            Some(joint) => format!("{}@{}", own.effect.id(), joint.name),
-            None => own.effect.id().to_owned(),
-        };
+        let name = arm.name_of(own.effect);
         let parameters = trial::parameters(own.effect, &own.value, &own.covariance);
         (name, parameters)
     });

@@ -7,7 +7,8 @@
 //! are tried ([`JointCoupling`](crate::effects::JointCoupling)). What τ lacks is an
 //! effect of the arm ([`ArmEffect`]): a payload, a base that is not level, a link's
 //! inertial parameters. Its coefficients are shared by all joints, each weighted by its
-//! noise, and are fitted together with all joints' own ([`shared`]).
+//! noise, and are fitted together with all joints' own ([`shared`]); what they make of a
+//! link is always a body that can exist ([`possible`]).
 
 mod addition;
 mod comparison;
@@ -16,6 +17,8 @@ mod data;
 mod diagnosis;
 mod effects;
 mod motion;
+mod parts;
+mod possible;
 mod prepared;
 mod rigid_body;
 mod shared;
@@ -30,4 +33,5 @@ pub use diagnosis::{
     ArmCandidate, ArmDependence, ArmDiagnosis, ArmSuspect, JointDiagnosis, diagnose,
 };
 pub use effects::ArmEffect;
+pub use parts::{ArmParts, Body, take_apart};
 pub use prepared::{ArmJoint, PreparedArm};

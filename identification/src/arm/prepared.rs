@@ -3,11 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
+use ferntast_model::rigid_body::LinkInertia;
+use nalgebra::{DMatrix, DVector};
 
 use super::data::{ArmDataset, ArmError, ArmSpec};
 use super::effects::ArmEffect;
 use super::motion::Motion;
+use super::possible::{nearest_link, nearest_payload};
 use super::rigid_body::RigidBody;
 use super::shared::{self, ArmColumns};
 use crate::data::error::PrepareError;
@@ -15,6 +17,7 @@ use crate::data::stated_filter::StatedFilter;
 use crate::data::{Dataset, ModelSpec, RecordedSession};
 use crate::design::{Design, PreparedModel};
 use crate::effects::{LOAD_OF, POSITION_OF, VELOCITY_OF};
+use crate::numerics::gram::pseudo_inverse;
 use crate::preparation::prepare;
 use crate::validation::left_out::LeftOut;
 
@@ -46,7 +49,11 @@ pub struct ArmJoint {
 pub(super) struct Correction {
     pub(super) effect: ArmEffect,
     pub(super) value: Vec<f64>,
+    /// By folds left out of the free fit.
     pub(super) covariance: DMatrix<f64>,
+    /// Whether the free fit is no body that can exist: then it is at the nearest that can,
+    /// and counts as known.
+    pub(super) is_held: bool,
 }
 
 /// A model bound to the recordings of an arm.
@@ -71,6 +78,7 @@ impl<'a> PreparedArm<'a> {
             effect,
             value: vec![0.0; effect.columns()],
             covariance: DMatrix::zeros(effect.columns(), effect.columns()),
+            is_held: false,
         });
         let mut arm = Self {
             joints: Vec::new(),
@@ -89,7 +97,7 @@ impl<'a> PreparedArm<'a> {
     }
 
     /// Links and gravity with all corrections.
-    fn body(&self) -> RigidBody<'a> {
+    pub(super) fn body(&self) -> RigidBody<'a> {
         let mut body = RigidBody::new(&self.spec.chain, self.spec.gravity);
         for own in &self.corrections {
             own.effect.apply(&mut body, &own.value);
@@ -182,32 +190,125 @@ impl<'a> PreparedArm<'a> {
         each.map(|error| error.max(1e-12).powi(-2)).collect()
     }
 
-    /// Effects of the arm with the coefficients reached.
+    /// Effects of the arm that are free, with the coefficients reached.
     pub(super) fn effects(&self) -> Vec<(ArmEffect, Vec<f64>)> {
-        let each = self.corrections.iter();
-        each.map(|own| (own.effect, own.value.clone())).collect()
+        let free = self.corrections.iter().filter(|own| !own.is_held);
+        free.map(|own| (own.effect, own.value.clone())).collect()
+    }
+
+    /// The effect as it is written: `payload`, `link_inertia@elbow`.
+    pub(super) fn name_of(&self, effect: ArmEffect) -> String {
+        match effect.joint().and_then(|at| self.joints.get(at)) {
+            Some(joint) => format!("{}@{}", effect.id(), joint.name),
+            None => effect.id().to_owned(),
+        }
+    }
+
+    /// Effects whose free fit is no body that can exist.
+    pub(super) fn held_possible(&self) -> Vec<String> {
+        let held = self.corrections.iter().filter(|own| own.is_held);
+        held.map(|own| self.name_of(own.effect)).collect()
     }
 
     /// One Gauss-Newton step of the corrections; the largest change, as a share of the
     /// coefficient and its standard error.
     fn step(&mut self) -> f64 {
-        let columns = ArmColumns::new(self, &self.effects());
+        let before: Vec<(ArmEffect, Vec<f64>)> = (self.corrections.iter())
+            .map(|own| (own.effect, own.value.clone()))
+            .collect();
+        let columns = ArmColumns::new(self, &before);
         let fitted = shared::fit(&self.joints, &columns, &self.weights());
-        let (mut at, mut largest) = (0, 0.0);
+        let mut at = 0;
         for own in &mut self.corrections {
             let count = own.value.len();
-            own.covariance = fitted
-                .covariance
-                .view((at, at), (count, count))
-                .into_owned();
-            for (k, value) in own.value.iter_mut().enumerate() {
-                let step = fitted.shared[at + k];
-                let error = own.covariance[(k, k)].max(0.0).sqrt();
-                *value += step;
-                largest = f64::max(largest, step.abs() / (value.abs() + error).max(1e-300));
-            }
+            let covariance = fitted.covariance.view((at, at), (count, count));
+            own.covariance = covariance.into_owned();
+            own.is_held = false;
+            let steps = fitted.shared.rows(at, count);
+            let each = own.value.iter_mut().zip(steps.iter());
+            each.for_each(|(value, step)| *value += step);
             at += count;
+        }
+        self.hold_possible(&fitted.normal);
+        let mut largest = 0.0;
+        for (own, (_, before)) in self.corrections.iter().zip(&before) {
+            for (k, (value, before)) in own.value.iter().zip(before).enumerate() {
+                let error = own.covariance[(k, k)].max(0.0).sqrt();
+                let size = (value.abs() + error).max(1e-300);
+                largest = f64::max(largest, (value - before).abs() / size);
+            }
         }
         largest
     }
+
+    /// Moves each effect that leaves no body that can exist to the nearest that does, by the
+    /// `normal` equations of all coefficients, and the others along.
+    fn hold_possible(&mut self, normal: &DMatrix<f64>) {
+        let mut at = 0;
+        for number in 0..self.corrections.len() {
+            let (effect, count) = {
+                let own = &self.corrections[number];
+                (own.effect, own.value.len())
+            };
+            let first = at;
+            at += count;
+            let link = match effect {
+                ArmEffect::BaseTilt => continue,
+                ArmEffect::Payload => self.joints.len().saturating_sub(1),
+                ArmEffect::LinkInertia(link) => link,
+            };
+            if self.body().link(link).is_physical() {
+                continue;
+            }
+            let believed: LinkInertia = self.body_without(effect).link(link);
+            if effect == ArmEffect::Payload && !believed.is_physical() {
+                // What the URDF says of the link is at fault.
+                continue;
+            }
+            let others: Vec<usize> = (0..normal.nrows())
+                .filter(|own| !(first..first + count).contains(own))
+                .collect();
+            let along = of_the_others(normal, first, count, &others);
+            let own = normal.view((first, first), (count, count)).into_owned();
+            let cross = DMatrix::from_fn(count, others.len(), |i, j| {
+                normal[(first + i, others[j])]
+            });
+            let own = own + &cross * &along;
+            let free = DVector::from_column_slice(&self.corrections[number].value);
+            let held = match effect {
+                ArmEffect::Payload => nearest_payload(&believed, &free, &own),
+                _ => nearest_link(&believed, &free, &own),
+            };
+            let moved = along * (&held - &free);
+            let correction = &mut self.corrections[number];
+            correction.value = held.as_slice().to_vec();
+            correction.is_held = true;
+            let mut each = others.iter().zip(moved.iter()).peekable();
+            let mut place = 0;
+            for correction in &mut self.corrections {
+                for value in &mut correction.value {
+                    if let Some((_, moved)) = each.next_if(|(other, _)| **other == place) {
+                        *value += moved;
+                    }
+                    place += 1;
+                }
+            }
+        }
+    }
+}
+
+/// How the other coefficients follow those from `first` on, one column each, where these
+/// are moved from the least squares.
+fn of_the_others(
+    normal: &DMatrix<f64>,
+    first: usize,
+    count: usize,
+    others: &[usize],
+) -> DMatrix<f64> {
+    let own = DMatrix::from_fn(others.len(), others.len(), |i, j| {
+        normal[(others[i], others[j])]
+    });
+    let cross = DMatrix::from_fn(others.len(), count, |i, j| normal[(others[i], first + j)]);
+    let (inverse, _) = pseudo_inverse(&own);
+    -(inverse * cross)
 }

@@ -1,7 +1,7 @@
 //! The torques that an arm's links take, with what effects of the arm change.
 
 use ferntast_model::Joints;
-use ferntast_model::rigid_body::{Chain, LINK_PARAMETERS, Regressor, Vector3};
+use ferntast_model::rigid_body::{Chain, LINK_PARAMETERS, LinkInertia, Regressor, Vector3};
 
 use super::motion::States;
 
@@ -66,6 +66,14 @@ impl<'a> RigidBody<'a> {
             }
         }
         torques
+    }
+
+    /// One link.
+    pub(super) fn link(&self, link: usize) -> LinkInertia {
+        let first = Self::first_of(link);
+        let own = self.parameters.get(first..first + LINK_PARAMETERS);
+        let own = own.and_then(|own| <[f64; LINK_PARAMETERS]>::try_from(own).ok());
+        own.map_or_else(LinkInertia::zero, |own| LinkInertia::from_parameters(&own))
     }
 
     /// Number of the first parameter of a link.

@@ -98,6 +98,8 @@ impl ArmColumns {
 struct Solution {
     shared: DVector<f64>,
     own: Vec<DVector<f64>>,
+    /// Products of the shared columns less what the joints' own explain of them.
+    normal: DMatrix<f64>,
 }
 
 /// A fit of all joints together.
@@ -105,6 +107,8 @@ pub(super) struct SharedFit {
     /// Of the columns, in their order.
     pub(super) shared: DVector<f64>,
     pub(super) covariance: DMatrix<f64>,
+    /// Normal equations of them, with the joints' own parameters taken out; weighted.
+    pub(super) normal: DMatrix<f64>,
     /// Residuals on rows left out, of each joint.
     pub(super) left_out: Vec<LeftOut>,
     /// RMS on the rows fitted, of each joint \[Nm\].
@@ -152,6 +156,7 @@ pub(super) fn fit(joints: &[ArmJoint], columns: &ArmColumns, weights: &[f64]) ->
             .map(|(number, joint)| train(&joint.design, &columns.fitted[number], &all, number))
             .collect(),
         covariance: jackknife_covariance(&all.shared, &without),
+        normal: all.normal,
         shared: all.shared,
     }
 }
@@ -175,9 +180,12 @@ fn solve(joints: &[ArmJoint], columns: &ArmColumns, weights: &[f64], fold: &Fold
     let own = explained
         .iter()
         .map(|own| own.column(columns.count) - own.columns(0, columns.count) * &shared);
+    let own = own.collect();
+    let count = columns.count;
     Solution {
-        own: own.collect(),
+        own,
         shared,
+        normal: sum.products.view((0, 0), (count, count)).into_owned(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod extrapolation;
 pub mod noise_floor;
+pub mod parts;
 pub mod residual_map;
 pub mod simulation;
 pub mod usage;

@@ -8,8 +8,10 @@ use std::{
 use ferntast_identification::{
     Dataset, Inertia, RecordedSession, Term,
     arm::{
-        self, ArmComparison, ArmDataset, ArmDiagnosis, ArmSession, ArmSpec, ArmTerm, PreparedArm,
+        self, ArmComparison, ArmDataset, ArmDiagnosis, ArmParts, ArmSession, ArmSpec, ArmTerm,
+        PreparedArm,
     },
+    comparison::parts::Says,
     fit::Parameter,
 };
 use ferntast_model::rigid_body::Vector3;
@@ -53,6 +55,8 @@ pub struct AddedToArm {
     pub parameters: BTreeMap<String, Parameter>,
     /// Those that the data do not excite.
     pub not_excited: Vec<String>,
+    /// Effects whose free fit is no body that can exist: they are at the nearest that can.
+    pub held_possible: Vec<String>,
 }
 
 /// Opens an experiment file that is about an arm; `None` where the path leads to another.
@@ -121,6 +125,15 @@ impl OpenedArm {
         arm::diagnose(&self.dataset, &self.spec, progress).map_err(|error| self.refuse(error))
     }
 
+    /// The fitted model taken apart, for a program that can say some effects.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Arm`]: what data or model lack.
+    pub fn take_apart(&self, says: Says<'_>) -> Result<ArmParts, WorkError> {
+        arm::take_apart(&self.dataset, &self.spec, says).map_err(|error| self.refuse(error))
+    }
+
     /// Adds `effect`, whose name may say of which joint (`stribeck@elbow`), fits again, and
     /// writes the new experiment to `output`.
     ///
@@ -148,6 +161,7 @@ impl OpenedArm {
             experiment: output.to_owned(),
             parameters: addition.parameters,
             not_excited: addition.not_excited,
+            held_possible: addition.held_possible,
         })
     }
 

@@ -19,7 +19,11 @@ mod units;
 use std::path::Path;
 
 use ferntast_identification::{
-    Comparison, Dataset, Diagnosis, Discovery, Usage, compare, comparison::compare_drawing,
+    Comparison, Dataset, Diagnosis, Discovery, Usage, compare,
+    comparison::{
+        compare_drawing,
+        parts::{Parts, Says, take_apart},
+    },
     diagnose, diagnose_at_cutoffs, discover,
 };
 use serde::Serialize;
@@ -139,6 +143,15 @@ impl Opened {
         units::implausible(&self.experiment, &mut comparison.soundness);
         self.account(&mut comparison.used);
         Ok(comparison)
+    }
+
+    /// The fitted model taken apart, for a program that can say some effects.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Prepare`]: what data or model lack.
+    pub fn take_apart(&self, says: Says<'_>) -> Result<Parts, WorkError> {
+        take_apart(&self.dataset, &self.experiment.model, says).map_err(|error| self.refuse(error))
     }
 
     /// Which effect is missing. `progress` is called with the share done, 0 … 1.

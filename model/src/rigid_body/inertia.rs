@@ -2,7 +2,7 @@
 
 use std::ops::Add;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use super::placement::Placement;
 
@@ -65,6 +65,37 @@ impl LinkInertia {
         }
     }
 
+    /// Σ m x xᵀ over its points x, in homogeneous coordinates \[kg m²\], \[kg m\], \[kg\]:
+    /// (½ tr(I) 1 − I, h; hᵀ, m). It is positive definite for the bodies that can exist, of
+    /// whatever shape, and for no others (Traversaro, Brossette, Escande, Nori 2016;
+    /// Wensing, Kim, Slotine 2018).
+    pub fn pseudo_inertia(&self) -> Matrix4<f64> {
+        let second = Matrix3::identity() * (0.5 * self.rotational.trace()) - self.rotational;
+        let mut matrix = Matrix4::zeros();
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
+        matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.first_moment);
+        let row = self.first_moment.transpose();
+        matrix.fixed_view_mut::<1, 3>(3, 0).copy_from(&row);
+        matrix[(3, 3)] = self.mass;
+        matrix
+    }
+
+    /// Whether a body can have it: its pseudo-inertia is positive definite.
+    pub fn is_physical(&self) -> bool {
+        self.pseudo_inertia().cholesky().is_some()
+    }
+
+    /// Centre of mass \[m\] and the rotational inertia about it \[kg m²\], axes as the
+    /// link's frame; `None` without mass.
+    pub fn at_center_of_mass(&self) -> Option<(Vector3<f64>, Matrix3<f64>)> {
+        if self.mass.abs() < 1e-12 {
+            return None;
+        }
+        let center = self.first_moment / self.mass;
+        let cross = center.cross_matrix();
+        Some((center, self.rotational + cross * cross * self.mass))
+    }
+
     /// The same body, in the frame in which its own frame is at `placement`
     /// (Featherstone 2008, eq. 2.66).
     pub fn placed(&self, placement: &Placement) -> LinkInertia {
@@ -121,6 +152,29 @@ mod unit_tests {
         assert!((one.first_moment - other.first_moment).norm() < 1e-14);
         assert!((one.rotational - other.rotational).norm() < 1e-14);
         assert!((one.rotational - one.rotational.transpose()).norm() < 1e-14);
+    }
+
+    #[test]
+    fn a_pseudo_inertia_is_the_sum_over_points_and_a_flat_box_cannot_be_flatter_than_flat() {
+        let points = [
+            (1.0, Vector3::new(0.1, -0.4, 0.3)),
+            (2.5, Vector3::new(-0.7, 0.2, 0.9)),
+            (0.3, Vector3::new(0.5, 0.6, -0.1)),
+            (0.9, Vector3::new(-0.2, 0.1, -0.6)),
+        ];
+        let sum = points.iter().fold(Matrix4::zeros(), |sum, (mass, x)| {
+            sum + x.push(1.0) * x.push(1.0).transpose() * *mass
+        });
+        let body = of_points(&points);
+        assert!((body.pseudo_inertia() - sum).norm() < 1e-12);
+        assert!(body.is_physical());
+        let (center, about) = body.at_center_of_mass().expect("it has mass");
+        let again = LinkInertia::about_center_of_mass(body.mass, center, about);
+        assert!((again.rotational - body.rotational).norm() < 1e-12);
+        // I_zz of more than I_xx + I_yy: no density gives that.
+        let diagonal = Vector3::new(1.0, 1.0, 2.1);
+        let turn = Matrix3::from_diagonal(&diagonal);
+        assert!(!LinkInertia::about_center_of_mass(1.0, Vector3::zeros(), turn).is_physical());
     }
 
     #[test]

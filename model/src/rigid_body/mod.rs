@@ -38,7 +38,7 @@ pub use chain::{Chain, ChainError, ChainJoint, JointKind, PositionLimits};
 pub use inertia::{LINK_PARAMETERS, LinkInertia};
 pub use jacobian::Jacobian;
 pub use mass_matrix::MassMatrix;
-pub use nalgebra::{Matrix3, Vector3, Vector6};
+pub use nalgebra::{Matrix3, Matrix4, Vector3, Vector6};
 pub use placement::Placement;
 pub use posture::Posture;
 pub use regressor::{REGRESSOR_COLUMNS, Regressor};

@@ -36,18 +36,22 @@ ACCEPTED = {
 OF_THE_ARM = ("payload", "base_tilt")
 
 
-def model_of(urdf):
-    """The model without what can be seen or touched."""
+def readable(urdf):
+    """The URDF's text for MuJoCo, without what can be seen or touched."""
     text = open(urdf, encoding="utf-8").read()
     text = re.sub(r"<(visual|collision)\b.*?</\1>", "", text, flags=re.S)
     text = re.sub(r"<(visual|collision)\b[^>]*/>", "", text)
-    text = re.sub(
+    return re.sub(
         r"(<robot\b[^>]*>)",
         r'\1<mujoco><compiler discardvisual="true" fusestatic="false" balanceinertia="false"/></mujoco>',
         text,
         count=1,
     )
-    model = mujoco.MjModel.from_xml_string(text)
+
+
+def model_of(urdf):
+    """The model, free of contacts and ends."""
+    model = mujoco.MjModel.from_xml_string(readable(urdf))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
     return model
 

@@ -3,6 +3,7 @@
 //! No bound here hangs on milliseconds: a hold that a busy machine causes is
 //! left again. Bounds in time are in `timing`.
 
+mod arm_export;
 mod arm_lab;
 mod bad_frames;
 mod console;

@@ -1,0 +1,126 @@
+//! What the lab identified of an arm, exported and held against its recording in MuJoCo.
+
+use std::fs;
+
+use ferntast_tests::{Session, ask_python, number, peer, root, run};
+use serde_json::{Value, json};
+
+/// A recording by MuJoCo with an effect hidden: the experiment's name without `.toml`.
+fn recorded(session: &Session, robot: &str, effect: &str) -> String {
+    let listed = ask_python(&peer("rigid_body.py"), &json!({}));
+    let files = listed["files"].as_array().expect("files");
+    let ending = format!("/{robot}.urdf");
+    let mut paths = files.iter().filter_map(Value::as_str);
+    let urdf = paths.find(|path| path.ends_with(&ending)).expect("a URDF");
+    let mut made = session.peer("arm_recordings.py", &[urdf, ".", effect, "1", "1"]);
+    assert!(made.status().expect("python starts").success());
+    let arm = robot.split('_').next().unwrap_or(robot);
+    format!("{arm}-{effect}-1-100")
+}
+
+/// The experiment with these effects more.
+fn with(session: &Session, name: &str, effects: &[&str]) -> String {
+    let text = fs::read_to_string(session.folder().join(format!("{name}.toml")));
+    let more: String = effects.iter().map(|own| format!(", \"{own}\"")).collect();
+    let text = text.expect("an experiment").replace(
+        "\"coulomb\", \"viscous\"",
+        &format!("\"coulomb\", \"viscous\"{more}"),
+    );
+    let file = format!("{name}-with.toml");
+    fs::write(session.folder().join(&file), text).expect("scratch folder");
+    file
+}
+
+fn export(session: &Session, experiment: &str, to: &str, output: &str, more: &[&str]) -> Value {
+    let mut arguments = vec!["lab", "export", experiment, "--to", to, "-o", output, "--json"];
+    arguments.extend(more);
+    run(session, &arguments).success().json()
+}
+
+fn held_against(session: &Session, name: &str, files: &[&str]) -> Value {
+    let at = |file: &str| session.folder().join(file).to_str().map(str::to_owned);
+    let text = fs::read_to_string(session.folder().join(format!("{name}.toml")));
+    let given: toml::Table = text.expect("an experiment").parse().expect("TOML");
+    let arm = &given["arm"];
+    ask_python(
+        &root().join("tests/python/arm_in_mujoco.py"),
+        &json!({
+            "recording": at(&format!("{name}.csv")),
+            "urdf": at(arm["urdf"].as_str().expect("a path")),
+            "armature": arm["armature"],
+            "exported": files.iter().map(|file| at(file)).collect::<Vec<_>>(),
+        }),
+    )
+}
+
+fn is_a_body(exported: &Value, joints: usize) {
+    let least = exported["least_eigenvalues"].as_object().expect("bodies");
+    assert_eq!(least.len(), joints);
+    for (body, value) in least {
+        assert!(value.as_f64().is_some_and(|own| own > 0.0), "{body}: {value}");
+    }
+}
+
+/// Friction of every joint; Stribeck, which MuJoCo has no words for, is told and weighed.
+#[test]
+fn an_arm_in_mujoco_moves_as_it_was_recorded() {
+    let session = Session::new();
+    let name = recorded(&session, "panda", "stribeck");
+    let hidden = fs::read_to_string(session.folder().join(format!("{name}.json")));
+    let hidden: Value = serde_json::from_str(&hidden.expect("a file")).expect("JSON");
+    let joint = hidden["joint"].as_str().expect("a joint");
+    let experiment = with(&session, &name, &[&format!("stribeck@{joint}")]);
+    let whole = export(&session, &experiment, "mujoco", "whole.xml", &[]);
+    export(&session, &experiment, "mujoco", "approximate.xml", &["--approximate"]);
+    let lost = whole["unsaid"].as_array().expect("a list");
+    assert_eq!(lost.len(), 1, "{whole:#}");
+    assert_eq!((&lost[0]["joint"], &lost[0]["effect"]), (&hidden["joint"], &json!("stribeck")));
+    let errors = &whole["joints"][joint];
+    let [held_out, alone, anew] = ["held_out", "said_alone", "said_refitted"].map(|key| number(errors, key));
+    assert!(held_out < anew && anew < 1.05 * alone, "{errors:#}");
+    let rms = number(&lost[0], "rms");
+    assert!(rms > 0.3 * alone && rms < 1.5 * alone, "{rms} {errors:#}");
+
+    let told = held_against(&session, &name, &["whole.xml", "approximate.xml"]);
+    let before = &told["before"];
+    for exported in told["exported"].as_array().expect("a list") {
+        is_a_body(exported, 7);
+        // The same links as MuJoCo reads out of the URDF.
+        assert!(number(exported, "apart") < 1e-5, "{exported:#}");
+        let torque = number(exported, "all_torque_Nm") / number(before, "all_torque_Nm");
+        assert!(torque > 0.02 && torque < 0.2, "{torque}: {told:#}");
+        let position = number(exported, "all_position_mrad") / number(before, "all_position_mrad");
+        assert!(position > 0.005 && position < 0.2, "{position}: {told:#}");
+    }
+    // The judge finds of the joint what the lab says of it.
+    let judged = number(&told["exported"][0]["torque_Nm"], joint);
+    assert!((judged / alone - 1.0).abs() < 0.25, "{judged} {errors:#}");
+}
+
+/// A payload goes into the masses, of whatever form; MuJoCo reads the URDF, too.
+#[test]
+fn a_payload_is_in_the_masses_that_are_written() {
+    let session = Session::new();
+    let name = recorded(&session, "ur5_robot", "payload");
+    let experiment = with(&session, &name, &["payload"]);
+    for (to, file) in [("mujoco", "arm.xml"), ("urdf", "arm.urdf"), ("sdf", "arm.sdf"), ("ferntast", "own.arm.toml")] {
+        let told = export(&session, &experiment, to, file, &[]);
+        assert_eq!(told["unsaid"], json!([]), "{told:#}");
+    }
+    let told = held_against(&session, &name, &["arm.xml", "arm.urdf"]);
+    is_a_body(&told["exported"][0], 6);
+    for exported in told["exported"].as_array().expect("a list") {
+        let torque = number(exported, "all_torque_Nm") / number(&told["before"], "all_torque_Nm");
+        assert!(torque > 0.01 && torque < 0.1, "{torque}: {told:#}");
+    }
+    // The arm's file is one that a session takes.
+    let lockstep = ["lockstep", "--arm", "own.arm.toml", "--duration", "1", "--json"];
+    run(&session, &lockstep).success();
+    let text = fs::read_to_string(session.folder().join("arm.sdf")).expect("a file");
+    assert_eq!(text.matches("<link name").count(), 7);
+    let told = export(&session, &experiment, "ur", "ur.yaml", &[]);
+    let notes = told["notes"].as_array().expect("a list");
+    assert!(notes.iter().any(|own| own.as_str().is_some_and(|own| own.contains("--compensated"))));
+    let text = fs::read_to_string(session.folder().join("ur.yaml")).expect("a file");
+    assert!(text.contains("viscous_scale: [0.900, 0.900, 0.800, 0.900, 0.900, 0.900]"), "{text}");
+}
