@@ -7,4 +7,5 @@ pub mod experiment;
 pub mod faults;
 pub mod lockstep;
 pub mod paper;
+pub mod parallel;
 pub mod sweep;

@@ -15,8 +15,9 @@ use serde::Serialize;
 use super::{
     Conditions, ExperimentError, IdentifyError, Plan,
     identify::{self, CUBIC, Contact, Friction, JointData},
-    parallel, run,
+    run,
 };
+use crate::parallel;
 
 /// Ranges of speed of Figs. 12, 13 (and 10), 14 (and 11) \[deg/s\].
 pub const RANGES: [[f64; 2]; 3] = [[0.5, 1.5], [4.0, 6.0], [27.0, 35.0]];

@@ -19,7 +19,6 @@ mod conditions;
 mod error;
 pub mod flexible_joint;
 pub mod identify;
-pub mod parallel;
 mod plan;
 pub mod program;
 

@@ -18,8 +18,9 @@ use crate::experiment::{
     Conditions, ExperimentError, IdentifyError, Plan, campaign,
     campaign::{CampaignError, Mission, Run, RunResult},
     identify::{self, CUBIC, CUBIC_UNLOADED, Contact, Friction, JointData, LINEAR},
-    parallel, run,
+    run,
 };
+use crate::parallel;
 
 /// A set of Table 1: b_0 \[Nm\], b_0T \[-\], b_1 \[Nm·s/rad\], b_2 \[Nm·s²/rad²\],
 /// b_3 \[Nm·s³/rad³\].
