@@ -1,5 +1,5 @@
-//! How much faster than time the shipped scenario runs in lockstep, with all
-//! nodes on one core: alone, and with every message recorded.
+//! How much faster than time shipped scenarios run in lockstep, with all nodes on one core:
+//! two joints alone, with every message recorded, and seven joints.
 
 use std::{path::Path, time::Instant};
 
@@ -13,12 +13,13 @@ const RUNS: usize = 9;
 fn main() {
     println!(
         "{:<28} {:>8} {:>8} {:>8}   times real time, {RUNS} runs of {SECONDS} s",
-        "scenario rokviss", "min", "median", "max"
+        "scenario", "min", "median", "max"
     );
     let folder = std::env::temp_dir().join(format!("ferntast-bench-{}", std::process::id()));
-    report("all nodes", || run(None));
-    report("all nodes, recorded", || {
-        let factor = run(Some(&folder));
+    report("rokviss", || run("rokviss", None));
+    report("panda", || run("panda", None));
+    report("rokviss, recorded", || {
+        let factor = run("rokviss", Some(&folder));
         // Made again by the next run.
         let _ = std::fs::remove_dir_all(&folder);
         factor
@@ -38,9 +39,9 @@ fn report(name: &str, mut run: impl FnMut() -> Result<f64, String>) {
 }
 
 /// Virtual seconds per second.
-fn run(record: Option<&Path>) -> Result<f64, String> {
+fn run(scenario: &str, record: Option<&Path>) -> Result<f64, String> {
     let mut loaded =
-        config::load_scenario("rokviss", simulated::load_arm).map_err(|error| error.to_string())?;
+        config::load_scenario(scenario, simulated::load_arm).map_err(|error| error.to_string())?;
     loaded.complete().map_err(|error| error.to_string())?;
     let mut context = SessionContext::in_virtual_time(loaded);
     context.bag = record.map(Path::to_owned);

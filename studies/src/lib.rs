@@ -8,6 +8,6 @@ pub mod faults;
 pub mod lab_folder;
 pub mod lockstep;
 pub mod paper;
-mod parallel;
+pub mod parallel;
 pub mod shard;
 pub mod sweep;

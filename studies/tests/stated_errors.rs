@@ -7,10 +7,13 @@ use ferntast_drivers::simulated;
 use ferntast_emulation::random::Random;
 use ferntast_model::{Vector2, contour::Surface};
 use ferntast_sim::arm::{ArmConfig, TorqueSensorErrors};
-use ferntast_studies::experiment::{
-    Conditions, Plan,
-    identify::{self, CUBIC, Contact, JointData},
-    parallel, run,
+use ferntast_studies::{
+    experiment::{
+        Conditions, Plan,
+        identify::{self, CUBIC, Contact, JointData},
+        run,
+    },
+    parallel,
 };
 
 /// Arms that are drawn.

@@ -1,18 +1,23 @@
-//! Inverse dynamics of an arm of seven joints (panda) beside Pinocchio's, in one run:
+//! Dynamics of an arm of seven joints (panda) beside Pinocchio's and MuJoCo's, in one run:
+//! inverse dynamics, and a step of the simulated arm beside Pinocchio's forward dynamics (ABA,
+//! without integration) and MuJoCo's `mj_step`, all without friction and contact:
 //! `cargo bench --workspace --bench rigid_body`. Needs `.venv`, which `./tests/run` makes,
 //! or a Python with `pin` and `example-robot-data` by FERNTAST_PYTHON.
 //!
-//! Pinocchio goes through a batch of states in a loop of its own, so that Python does not
-//! count. Both take the best of five batches, one after the other.
+//! Pinocchio and MuJoCo go through a batch in loops of their own, so that Python does not
+//! count. Each takes the best of five batches, one after the other.
 
 use std::{hint::black_box, time::Instant};
 
 use ferntast_model::{Joints, rigid_body::Vector3};
+use ferntast_sim::serial_arm::{SerialArm, SerialArmParameters};
 use ferntast_urdf::Robot;
 use serde_json::{Value, json};
 
 const STATES: usize = 1000;
 const REPEAT: usize = 200_000;
+/// Of the simulated arm [s].
+const STEP: f64 = 1e-4;
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 fn main() {
@@ -37,14 +42,25 @@ fn main() {
         })
         .collect();
     let gravity = Vector3::from(GRAVITY);
-    let batch = || {
-        let begin = Instant::now();
+    let inverse = best_of_five(|| {
         for [q, qd, qdd] in states.iter().cycle().take(REPEAT) {
             black_box(arm.chain.inverse_dynamics(black_box(q), qd, qdd, &gravity));
         }
-        begin.elapsed().as_secs_f64() / REPEAT as f64 * 1e9
+    });
+    let count = arm.chain.count();
+    let parameters = SerialArmParameters {
+        substep: Some(STEP),
+        gravity: GRAVITY,
+        ..SerialArmParameters::default()
     };
-    let ours = (0..5).map(|_| batch()).fold(f64::INFINITY, f64::min);
+    let limits = Joints::filled(count, 100.0);
+    let mut falling = SerialArm::new(&arm.chain, &limits, &parameters, 1).expect("an arm");
+    let torque = Joints::filled(count, 0.0);
+    let step = best_of_five(|| {
+        for _ in 0..REPEAT {
+            falling.advance(black_box(&torque), STEP);
+        }
+    });
 
     let list = |values: &Joints<f64>| values.to_vec();
     let asked: Vec<Value> = states
@@ -59,13 +75,31 @@ fn main() {
             "repeat": REPEAT,
         }),
     );
-    let theirs = told["nanoseconds"].as_f64().expect("a number");
-    println!(
-        "inverse dynamics of 7 joints: {ours:.0} ns, {:.2} million a second",
-        1e3 / ours
+    let theirs = |what: &str| told["nanoseconds"][what].as_f64().expect("a number");
+    println!("7 joints, nanoseconds; how many times as long ours takes");
+    let tell = |what: &str, ours: f64, whose: &str, theirs: f64| {
+        println!(
+            "{what:<18} {ours:>6.0}   {whose:<18} {theirs:>6.0}   {:.2}",
+            ours / theirs
+        );
+    };
+    let (aba, mj_step) = (theirs("forward"), theirs("step"));
+    tell(
+        "inverse dynamics",
+        inverse,
+        "Pinocchio, RNEA",
+        theirs("inverse"),
     );
-    println!(
-        "Pinocchio: {theirs:.0} ns; ours takes {:.2} times as long",
-        ours / theirs
-    );
+    tell("step", step, "Pinocchio, ABA", aba);
+    tell("step", step, "MuJoCo, mj_step", mj_step);
+}
+
+/// Of a batch of `REPEAT`, what one takes [ns].
+fn best_of_five(mut batch: impl FnMut()) -> f64 {
+    let mut time = || {
+        let begin = Instant::now();
+        batch();
+        begin.elapsed().as_secs_f64() / REPEAT as f64 * 1e9
+    };
+    (0..5).map(|_| time()).fold(f64::INFINITY, f64::min)
 }

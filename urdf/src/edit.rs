@@ -187,15 +187,31 @@ mod tests {
         let (before, after) = (before.expect("a URDF"), after.expect("a URDF"));
         for link in &after.links {
             let found = link.inertia.expect("masses");
-            assert!((found.rotational - inertia.rotational).norm() < 1e-9, "{text}");
+            assert!(
+                (found.rotational - inertia.rotational).norm() < 1e-9,
+                "{text}"
+            );
             assert!((found.first_moment - inertia.first_moment).norm() < 1e-9);
         }
         for (one, other) in before.joints.iter().zip(&after.joints) {
-            assert_eq!((&one.name, one.limit, one.axis), (&other.name, other.limit, other.axis));
+            assert_eq!(
+                (&one.name, one.limit, one.axis),
+                (&other.name, other.limit, other.axis)
+            );
         }
-        assert_eq!(text.matches("damping=\"1.25\" friction=\"0.3\"").count(), 2, "{text}");
-        assert!(text.contains("spring=\"7\"") && text.contains("upper.dae"), "{text}");
-        assert!(text.contains("<!-- kept -->") && !text.contains("0.5"), "{text}");
+        assert_eq!(
+            text.matches("damping=\"1.25\" friction=\"0.3\"").count(),
+            2,
+            "{text}"
+        );
+        assert!(
+            text.contains("spring=\"7\"") && text.contains("upper.dae"),
+            "{text}"
+        );
+        assert!(
+            text.contains("<!-- kept -->") && !text.contains("0.5"),
+            "{text}"
+        );
         // Once more changes nothing but the comments.
         let twice = with(&text, &joints, &inertials).expect("a URDF");
         assert_eq!(twice.matches("<inertial>").count(), 3);

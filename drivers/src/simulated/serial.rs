@@ -57,7 +57,11 @@ pub fn truth(arm: &ArmFile) -> Result<SerialArmParameters, ConfigError> {
 
 /// The simulated arm of `file`; joints whose torques are to be found from the motors' currents
 /// have no torque sensors.
-pub(super) fn simulated(
+///
+/// # Errors
+///
+/// What is wrong with the file's section `[truth]`.
+pub fn simulated(
     file: &ArmFile,
     serial: &Serial,
     seed: u64,

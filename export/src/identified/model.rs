@@ -4,10 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use ferntast_identification::{
-    Inertia, JointType,
-    arm::Body,
-    comparison::parts::Parts,
-    fit::Parameter,
+    Inertia, JointType, arm::Body, comparison::parts::Parts, fit::Parameter,
 };
 use ferntast_lab::{
     experiment::ArmTable,
@@ -285,7 +282,10 @@ impl Joint {
 
     /// Coulomb and viscous friction, for people.
     pub fn friction_text(&self) -> String {
-        let text = |name| self.get(name).map_or("none".to_owned(), |own: Measured| own.text());
+        let text = |name| {
+            self.get(name)
+                .map_or("none".to_owned(), |own: Measured| own.text())
+        };
         format!("friction {}, damping {}", text("b0"), text("b1"))
     }
 

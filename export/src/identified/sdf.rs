@@ -21,8 +21,14 @@ pub fn text(model: &Model, notes: &mut Vec<String>) -> String {
     );
     if let Some(arm) = &model.arm {
         // The world's gravity is straight down; the base stands as it was found to.
-        let tilt = arm.tilted().map_or(Placement::identity(), |own| upright(&own));
-        let _ = writeln!(text, "    {}", pose(&tilt, "__model__").replace(" relative_to=\"__model__\"", ""));
+        let tilt = arm
+            .tilted()
+            .map_or(Placement::identity(), |own| upright(&own));
+        let _ = writeln!(
+            text,
+            "    {}",
+            pose(&tilt, "__model__").replace(" relative_to=\"__model__\"", "")
+        );
         for own in arm.effects_text() {
             let _ = writeln!(text, "    <!-- {} -->", commented(&own));
         }

@@ -38,11 +38,7 @@ pub fn text(
     }
 }
 
-fn edited(
-    model: &Model,
-    path: &Path,
-    notes: &mut Vec<String>,
-) -> Result<String, IdentifiedError> {
+fn edited(model: &Model, path: &Path, notes: &mut Vec<String>) -> Result<String, IdentifiedError> {
     let file = |source| IdentifiedError::File {
         path: path.to_owned(),
         source,
@@ -134,7 +130,9 @@ fn of_joints(model: &Model) -> String {
             _ => ("prismatic", inertia),
         };
         let end = match kind {
-            "prismatic" => "    <limit lower=\"-1e3\" upper=\"1e3\" effort=\"1e9\" velocity=\"1e3\"/>\n",
+            "prismatic" => {
+                "    <limit lower=\"-1e3\" upper=\"1e3\" effort=\"1e9\" velocity=\"1e3\"/>\n"
+            }
             _ => "",
         };
         let moment = number(inertia);

@@ -57,6 +57,15 @@ pub enum ConfigError {
         /// What is wrong, and how to correct it.
         source: Box<SerialError>,
     },
+    /// An arm that comes along without its URDF.
+    #[error(
+        "cannot read {path}: this arm comes without its URDF, for its licence; put the file there (its arm's file \
+         says whence, `ferntast config show`), or give a TOML file beside it by its path"
+    )]
+    NoUrdf {
+        /// Where it is looked for.
+        path: PathBuf,
+    },
     /// A recorded hand motion cannot be used.
     #[error("{path}: {source}")]
     Hand {

@@ -16,6 +16,43 @@ pub const FILES: &[(&str, &str)] = &[
         include_str!("../../../config/arms/panda.urdf"),
     ),
     (
+        "arms/ur5.toml",
+        include_str!("../../../config/arms/ur5.toml"),
+    ),
+    (
+        "arms/ur5.urdf",
+        include_str!("../../../config/arms/ur5.urdf"),
+    ),
+    (
+        "arms/xarm7.toml",
+        include_str!("../../../config/arms/xarm7.toml"),
+    ),
+    (
+        "arms/xarm7.urdf",
+        include_str!("../../../config/arms/xarm7.urdf"),
+    ),
+    (
+        "arms/so101.toml",
+        include_str!("../../../config/arms/so101.toml"),
+    ),
+    (
+        "arms/so101.urdf",
+        include_str!("../../../config/arms/so101.urdf"),
+    ),
+    (
+        "arms/kinova.toml",
+        include_str!("../../../config/arms/kinova.toml"),
+    ),
+    (
+        "arms/kinova.urdf",
+        include_str!("../../../config/arms/kinova.urdf"),
+    ),
+    ("arms/z1.toml", include_str!("../../../config/arms/z1.toml")),
+    (
+        "arms/LICENSE-BSD-3-Clause",
+        include_str!("../../../config/arms/LICENSE-BSD-3-Clause"),
+    ),
+    (
         "experiments/mission.toml",
         include_str!("../../../config/experiments/mission.toml"),
     ),
@@ -58,6 +95,18 @@ pub const FILES: &[(&str, &str)] = &[
     (
         "scenarios/ku_band.toml",
         include_str!("../../../config/scenarios/ku_band.toml"),
+    ),
+    (
+        "scenarios/panda.toml",
+        include_str!("../../../config/scenarios/panda.toml"),
+    ),
+    (
+        "scenarios/ur5.toml",
+        include_str!("../../../config/scenarios/ur5.toml"),
+    ),
+    (
+        "scenarios/xarm7.toml",
+        include_str!("../../../config/scenarios/xarm7.toml"),
     ),
     (
         "scenarios/delay_sweep.toml",

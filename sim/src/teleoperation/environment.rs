@@ -13,6 +13,10 @@ pub enum Environment {
     Free,
     /// 100 N/m.
     SoftSpring,
+    /// 200 N/m, 5 N·s/m.
+    SoftWall,
+    /// 2 kN/m, 10 N·s/m.
+    FirmWall,
     /// 20 kN/m, 50 N·s/m.
     HardWall,
     /// The hard wall with Coulomb friction, μ = 0.3.
@@ -22,7 +26,7 @@ pub enum Environment {
 }
 
 impl Environment {
-    /// All of them.
+    /// Those that trials are drawn from.
     pub const ALL: [Environment; 5] = [
         Environment::Free,
         Environment::SoftSpring,
@@ -31,11 +35,20 @@ impl Environment {
         Environment::MovingWall,
     ];
 
+    /// Walls that stand still, the softest first.
+    pub const WALLS: [Environment; 3] = [
+        Environment::SoftWall,
+        Environment::FirmWall,
+        Environment::HardWall,
+    ];
+
     /// As in configurations.
     pub const fn name(self) -> &'static str {
         match self {
             Environment::Free => "free",
             Environment::SoftSpring => "soft_spring",
+            Environment::SoftWall => "soft_wall",
+            Environment::FirmWall => "firm_wall",
             Environment::HardWall => "hard_wall",
             Environment::WallWithFriction => "wall_with_friction",
             Environment::MovingWall => "moving_wall",
@@ -47,6 +60,8 @@ impl Environment {
         match self {
             Environment::Free => (0.0, 0.0),
             Environment::SoftSpring => (100.0, 0.0),
+            Environment::SoftWall => (200.0, 5.0),
+            Environment::FirmWall => (2000.0, 10.0),
             Environment::HardWall | Environment::WallWithFriction => (20_000.0, 50.0),
             Environment::MovingWall => (2000.0, 10.0),
         }
@@ -151,7 +166,7 @@ mod tests {
 
     #[test]
     fn names_are_those_of_configurations() {
-        for environment in Environment::ALL {
+        for environment in Environment::ALL.into_iter().chain(Environment::WALLS) {
             let value = toml::Value::try_from(environment).unwrap();
             assert_eq!(value.as_str(), Some(environment.name()));
         }

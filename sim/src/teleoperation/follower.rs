@@ -49,9 +49,13 @@ impl FollowerModel {
     ) -> Result<Box<dyn Follower>, ParameterError> {
         Ok(match self {
             FollowerModel::Light(tip) => Box::new(Tip::new(*tip, environment, origin, start)),
-            FollowerModel::Arm(own) => {
-                Box::new(WholeArm::new(own, environment, origin, start, seed)?)
-            }
+            FollowerModel::Arm(own) => Box::new(WholeArm::behind_servo(
+                own,
+                environment,
+                origin,
+                start,
+                seed,
+            )?),
         })
     }
 }
@@ -65,14 +69,14 @@ pub(super) struct TipCommand {
     pub position: [f64; 3],
 }
 
-/// What is true of the tip, from the surface's origin on.
+/// What is true of the tip, from the surface's origin on: along x and y.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TrueTip {
-    /// [m]
+pub struct TrueTip {
+    /// \[m\]
     pub position: [f64; 2],
-    /// Of the contact on it [N].
+    /// Of the contact on it \[N\].
     pub force: [f64; 2],
-    /// Of the contact on it since the start [J].
+    /// Of the contact on it since the start, in all directions \[J\].
     pub work: f64,
 }
 

@@ -14,6 +14,7 @@
 mod draw;
 mod environment;
 mod follower;
+mod servoed;
 mod task;
 mod tip;
 mod watch;
@@ -21,7 +22,8 @@ mod whole_arm;
 
 pub use draw::Draw;
 pub use environment::Environment;
-pub use follower::FollowerModel;
+pub use follower::{FollowerModel, TrueTip};
+pub use servoed::{Estimated, TrialArm};
 pub use task::Task;
 pub use tip::TipParameters;
 pub use whole_arm::ArmUnderTrial;
@@ -35,11 +37,13 @@ use ferntast_control::link::{
     StampedPosition,
 };
 use ferntast_control::operating::OperatingState;
+use ferntast_control::servo::Servo;
 use ferntast_control::switching::Laws;
 use ferntast_emulation::channel::{Channel, LinkConfig};
 use ferntast_emulation::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_model::ParameterError;
 use follower::{Follower, TipCommand};
+use servoed::Servoed;
 use task::Schedule;
 use watch::{Tick, Watch};
 
@@ -101,24 +105,56 @@ impl Trial {
     ///
     /// The first value of law, link, hand or tip that is out of bounds.
     pub fn run(&self) -> Result<Outcome, ParameterError> {
+        self.follower.validate()?;
+        let [x, y, _] = self.law.mapping().workspace_offset;
+        let arm = self
+            .follower
+            .make(self.environment, [x, y], self.start(), self.seed)?;
+        self.run_with(arm)
+    }
+
+    /// Runs it with `arm` behind `servo` in place of its follower: at rest with its tip at
+    /// [`start`](Self::start) before the surface, which goes through the law's offset.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn run_on(&self, arm: &mut dyn TrialArm, servo: Servo) -> Result<Outcome, ParameterError> {
+        self.run_with(Box::new(Servoed::new(arm, servo)))
+    }
+
+    /// Where the tip begins, from the surface's origin on \[m\].
+    pub fn start(&self) -> [f64; 2] {
+        let scale = self.law.mapping().position_scale;
+        Schedule::START.map(|own| scale * own)
+    }
+
+    /// How long it takes \[s\].
+    pub fn duration(&self) -> f64 {
+        let [forth, back] = self.delays();
+        Schedule::new(self.task, forth + back).end
+    }
+
+    /// Delays of both ways, with the buffers \[s\].
+    fn delays(&self) -> [f64; 2] {
+        [&self.link.up, &self.link.down].map(|way| way.nominal_delay(WIRE_LENGTH) + self.buffer)
+    }
+
+    fn run_with<'a>(&'a self, arm: Box<dyn Follower + 'a>) -> Result<Outcome, ParameterError> {
         self.law.validate()?;
         self.link.validate()?;
         self.hand.validate()?;
-        self.follower.validate()?;
         if let Some(master) = &self.master {
             master.validate()?;
         }
         if let Some(deadband) = &self.deadband {
             deadband.validate()?;
         }
-        let (forth, back) = (
-            self.link.up.nominal_delay(WIRE_LENGTH) + self.buffer,
-            self.link.down.nominal_delay(WIRE_LENGTH) + self.buffer,
-        );
+        let [forth, back] = self.delays();
         let schedule = Schedule::new(self.task, forth + back);
         let ticks = |delay: f64| (delay / TICK).round() as usize;
         let mut watch = Watch::new(schedule, ticks(forth), ticks(back), self.environment);
-        let mut run = Run::new(self, schedule)?;
+        let mut run = Run::new(self, schedule, arm)?;
         for k in 0..ticks(schedule.end) {
             watch.add(&run.step(k as i64));
         }
@@ -183,7 +219,7 @@ struct Run<'a> {
     hand: HandImpedance,
     grip: ImpedanceParameters,
     limiter: Option<ForceLimiter>,
-    arm: Box<dyn Follower>,
+    arm: Box<dyn Follower + 'a>,
     /// By the hand since the start [J].
     hand_work: f64,
     /// On the hand since the last tick [N].
@@ -193,11 +229,12 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(trial: &'a Trial, schedule: Schedule) -> Result<Self, ParameterError> {
+    fn new(
+        trial: &'a Trial,
+        schedule: Schedule,
+        arm: Box<dyn Follower + 'a>,
+    ) -> Result<Self, ParameterError> {
         let start = schedule.start();
-        let mapping = trial.law.mapping();
-        let tip = start.map(|own| mapping.position_scale * own);
-        let [x, y, _] = mapping.workspace_offset;
         let laws = || Laws::new(trial.law.clone());
         let limiter = |own: &MasterConfig| ForceLimiter::new(own.force_limit, own.force_rate_limit);
         Ok(Run {
@@ -211,9 +248,7 @@ impl<'a> Run<'a> {
             hand: HandImpedance::new(trial.hand, start),
             grip: trial.hand,
             limiter: trial.master.as_ref().map(limiter),
-            arm: trial
-                .follower
-                .make(trial.environment, [x, y], tip, trial.seed)?,
+            arm,
             hand_work: 0.0,
             felt: [0.0; 2],
             command: None,

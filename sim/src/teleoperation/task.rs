@@ -146,9 +146,12 @@ impl Schedule {
         }
     }
 
+    /// Where every task begins and ends \[m\].
+    pub(super) const START: [f64; 2] = [START, 0.0];
+
     /// Where the task begins and ends \[m\].
     pub(super) const fn start(&self) -> [f64; 2] {
-        [START, 0.0]
+        Self::START
     }
 }
 

@@ -43,8 +43,7 @@ impl SweepConfig {
                                 law: law.clone(),
                                 rtt_ms,
                                 jitter_ms,
-                                buffer_ms:
-                                    (self.buffer_per_jitter * jitter_ms).min(1e3 * LONGEST_BUFFER),
+                                buffer_ms: self.buffer(jitter_ms),
                                 loss,
                                 environment,
                                 task,
@@ -56,6 +55,11 @@ impl SweepConfig {
             }
         }
         all
+    }
+
+    /// Jitter buffer of both ends for that standard deviation of the delay \[ms\].
+    pub(super) fn buffer(&self, jitter_ms: f64) -> f64 {
+        (self.buffer_per_jitter * jitter_ms).min(1e3 * LONGEST_BUFFER)
     }
 }
 

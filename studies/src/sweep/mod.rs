@@ -3,8 +3,10 @@
 //!
 //! A row is one trial of [`ferntast_sim::teleoperation`]: laws and frames as in a session, a
 //! hand with impedance, an arm behind its servo, something to touch. The same file gives the
-//! same rows, whatever the number of processors. [`RandomSweep`] draws the conditions instead.
+//! same rows, whatever the number of processors. [`RandomSweep`] draws the conditions instead; [`arms`]
+//! holds arms out of URDFs against each other.
 
+pub mod arms;
 mod bench;
 mod config;
 mod grid;

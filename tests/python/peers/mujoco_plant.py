@@ -2,7 +2,8 @@
 
 What goes over stdin and stdout is described in docs/process_driver.md. The greeting has the arm's file:
 {urdf (text), base, tip, gravity [m/s²], home [rad] or [m], joint: list of {motor_inertia}, surface: list of
-{point, normal, stiffness, damping, friction}}. Options take the place of what it says. Gears are rigid.
+{point, normal, stiffness, damping, friction}}. Options take the place of what it says. Gears are rigid;
+with --friction they have MuJoCo's own dry friction and damping, on the motors' side of the torque sensors.
 
 Surfaces are springs that MuJoCo knows nothing of, so that the force on the tip is known exactly.
 """
@@ -68,6 +69,9 @@ class Plant:
         self.model.opt.timestep = STEP
         self.model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self.model.dof_armature[self.rates] = self.armature
+        coulomb, viscous = options.friction
+        self.model.dof_frictionloss[self.rates] = coulomb * self.armature
+        self.model.dof_damping[self.rates] = viscous * self.armature
         self.data = mujoco.MjData(self.model)
         start = options.start or arm.get("home") or [0.0] * len(joints)
         self.data.qpos[self.positions] = start
@@ -77,7 +81,7 @@ class Plant:
         self.pushes = [Push(text) for text in options.push]
         self.force, self.work = np.zeros(3), 0.0
         self.jacobian, self.turning = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
-        self.left = 0.0
+        self.left, self.time = 0.0, 0.0
         mujoco.mj_forward(self.model, self.data)
         # MuJoCo's world is the file's first link; the arm's base may be another one.
         base = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, arm.get("base") or "world")
@@ -93,6 +97,7 @@ class Plant:
         """Steps of MuJoCo are of one length; what is left over is made up for later."""
         data = self.data
         self.left += elapsed
+        self.time += elapsed
         while self.left > 0.5 * STEP:
             self.left -= STEP
             mujoco.mj_step1(self.model, data)
@@ -112,9 +117,10 @@ class Plant:
             self.work += float(self.force @ (motion @ data.qvel)) * STEP
 
     def reading(self, torque: np.ndarray) -> list[float]:
-        """A rigid gear: behind it is what the motor gives less what its own inertia takes."""
+        """A rigid gear: behind it is what the motor gives less what its own inertia and friction take."""
         data = self.data
-        behind = torque - self.armature * data.qacc[self.rates]
+        friction = data.qfrc_constraint[self.rates] + data.qfrc_passive[self.rates]
+        behind = torque + friction - self.armature * data.qacc[self.rates]
         mujoco.mj_kinematics(self.model, data)
         return [
             *data.qpos[self.positions],
@@ -144,6 +150,14 @@ def main() -> None:
         default=[],
         help="from,to,fx,fy,fz,mx,my,mz: for that time [s] a force [N] and a torque [Nm] on the tip",
     )
+        "--friction",
+        type=float,
+        nargs=2,
+        default=(0.0, 0.0),
+        metavar=("COULOMB", "VISCOUS"),
+        help="of each gear, by its motor's inertia: Nm and Nm s/rad for each kg m²",
+    )
+    parser.add_argument("--truth", help="file for what is true, a line a step: t_s, force_N and tip_m in x, y, z")
     options = parser.parse_args()
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     greeting = json.loads(source.readline())
@@ -160,6 +174,7 @@ def main() -> None:
     sink.write(json.dumps(answer).encode() + b"\n")
     sink.flush()
     command = struct.Struct(f"<{1 + len(joints)}d")
+    truth = open(options.truth, "w", encoding="utf-8") if options.truth else None
     while record := source.read(command.size):
         elapsed, *torque = command.unpack(record)
         torque = np.array(torque)
@@ -167,6 +182,8 @@ def main() -> None:
         reading = plant.reading(torque)
         sink.write(struct.pack(f"<{len(reading)}d", *reading))
         sink.flush()
+        if truth:
+            print(plant.time, *plant.force, *plant.place(), sep=",", file=truth)
 
 
 if __name__ == "__main__":

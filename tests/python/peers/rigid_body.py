@@ -7,7 +7,8 @@ gravity [m/s²], states: list of {q, qd, qdd} in [rad] or [m]}. All other joints
 Prints JSON: `arms`, for each one {pinocchio, mujoco}, each with `states`, for each one {torque,
 mass_matrix, jacobian (6 rows: velocity, angular velocity, in axes of the base), rotation,
 translation of the tip, regressor (Pinocchio only)}, or {refused: why}. With `repeat` and one arm
-also `nanoseconds`, what one inverse dynamics takes, in Pinocchio's own loop.
+also `nanoseconds`: what one `inverse` and one `forward` dynamics take in Pinocchio's own loop, and
+one `step` in MuJoCo's.
 """
 
 import importlib.metadata
@@ -18,6 +19,8 @@ import tempfile
 import time
 import xml.etree.ElementTree
 
+import mujoco
+import mujoco.rollout
 import numpy as np
 import pinocchio
 
@@ -81,9 +84,7 @@ def with_pinocchio(arm: dict) -> dict:
     return {"states": states}
 
 
-def with_mujoco(arm: dict) -> dict:
-    import mujoco
-
+def mujoco_model(arm: dict) -> mujoco.MjModel:
     robot = xml.etree.ElementTree.parse(arm["file"]).getroot()
     for link in robot.iter("link"):
         for shape in link.findall("visual") + link.findall("collision"):
@@ -91,19 +92,24 @@ def with_mujoco(arm: dict) -> dict:
     options = xml.etree.ElementTree.SubElement(robot, "mujoco")
     # Every link stays a body of its own, so that the tip can be asked for.
     xml.etree.ElementTree.SubElement(options, "compiler", fusestatic="false")
-    try:
-        spec = mujoco.MjSpec.from_string(xml.etree.ElementTree.tostring(robot, "unicode"))
-        for equality in list(spec.equalities):
-            spec.delete(equality)
-        for joint in list(spec.joints):
-            if joint.name not in arm["joints"]:
-                spec.delete(joint)
-        model = spec.compile()
-    except ValueError as error:
-        return {"refused": str(error)}
+    spec = mujoco.MjSpec.from_string(xml.etree.ElementTree.tostring(robot, "unicode"))
+    for equality in list(spec.equalities):
+        spec.delete(equality)
+    for joint in list(spec.joints):
+        if joint.name not in arm["joints"]:
+            spec.delete(joint)
+    model = spec.compile()
     flags = mujoco.mjtDisableBit
     model.opt.disableflags = flags.mjDSBL_CONSTRAINT | flags.mjDSBL_SPRING | flags.mjDSBL_DAMPER
     model.opt.gravity = arm["gravity"]
+    return model
+
+
+def with_mujoco(arm: dict) -> dict:
+    try:
+        model = mujoco_model(arm)
+    except ValueError as error:
+        return {"refused": str(error)}
     data = mujoco.MjData(model)
     tip = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, arm["tip"])
     ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in arm["joints"]]
@@ -129,20 +135,38 @@ def with_mujoco(arm: dict) -> dict:
     return {"states": states}
 
 
-def nanoseconds(arm: dict, repeat: int) -> float:
-    """One thread goes through a batch of states within Pinocchio, without Python; the best of five."""
+def nanoseconds(arm: dict, repeat: int) -> dict:
+    """One thread goes through a batch of states within each library, without Python; the best of five."""
     model = pinocchio_model(arm)
     pool = pinocchio.ModelPool(model, 1)
     chosen = [arm["states"][index % len(arm["states"])] for index in range(repeat)]
     q = np.column_stack([configuration(model, state["q"]) for state in chosen])
     qd, qdd = (np.array([state[key] for state in chosen]).T.copy() for key in ("qd", "qdd"))
-    torques = np.zeros_like(qd)
-    best = np.inf
+    result = np.zeros_like(qd)
+    steps, data, start = mujoco_steps(arm)
+    work = {
+        "inverse": lambda: pinocchio.rneaInParallel(1, pool, q, qd, qdd, result),
+        # Torques in place of accelerations: what is computed is the same for any.
+        "forward": lambda: pinocchio.abaInParallel(1, pool, q, qd, qdd, result),
+        "step": lambda: mujoco.rollout.rollout(steps, data, start, nstep=repeat),
+    }
+    best = dict.fromkeys(work, np.inf)
     for _ in range(5):
-        begin = time.perf_counter()
-        pinocchio.rneaInParallel(1, pool, q, qd, qdd, torques)
-        best = min(best, time.perf_counter() - begin)
-    return best / repeat * 1e9
+        for name, run in work.items():
+            begin = time.perf_counter()
+            run()
+            best[name] = min(best[name], time.perf_counter() - begin)
+    return {name: seconds / repeat * 1e9 for name, seconds in best.items()}
+
+
+def mujoco_steps(arm: dict) -> tuple:
+    """A model that falls without friction or contact, its data, and the state that it begins in."""
+    model = mujoco_model(arm)
+    model.opt.timestep = 1e-4
+    data = mujoco.MjData(model)
+    state = np.zeros((1, mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
+    mujoco.mj_getState(model, data, state[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    return model, data, state
 
 
 def main() -> None:

@@ -32,7 +32,9 @@ fn with(session: &Session, name: &str, effects: &[&str]) -> String {
 }
 
 fn export(session: &Session, experiment: &str, to: &str, output: &str, more: &[&str]) -> Value {
-    let mut arguments = vec!["lab", "export", experiment, "--to", to, "-o", output, "--json"];
+    let mut arguments = vec![
+        "lab", "export", experiment, "--to", to, "-o", output, "--json",
+    ];
     arguments.extend(more);
     run(session, &arguments).success().json()
 }
@@ -57,7 +59,10 @@ fn is_a_body(exported: &Value, joints: usize) {
     let least = exported["least_eigenvalues"].as_object().expect("bodies");
     assert_eq!(least.len(), joints);
     for (body, value) in least {
-        assert!(value.as_f64().is_some_and(|own| own > 0.0), "{body}: {value}");
+        assert!(
+            value.as_f64().is_some_and(|own| own > 0.0),
+            "{body}: {value}"
+        );
     }
 }
 
@@ -71,12 +76,22 @@ fn an_arm_in_mujoco_moves_as_it_was_recorded() {
     let joint = hidden["joint"].as_str().expect("a joint");
     let experiment = with(&session, &name, &[&format!("stribeck@{joint}")]);
     let whole = export(&session, &experiment, "mujoco", "whole.xml", &[]);
-    export(&session, &experiment, "mujoco", "approximate.xml", &["--approximate"]);
+    export(
+        &session,
+        &experiment,
+        "mujoco",
+        "approximate.xml",
+        &["--approximate"],
+    );
     let lost = whole["unsaid"].as_array().expect("a list");
     assert_eq!(lost.len(), 1, "{whole:#}");
-    assert_eq!((&lost[0]["joint"], &lost[0]["effect"]), (&hidden["joint"], &json!("stribeck")));
+    assert_eq!(
+        (&lost[0]["joint"], &lost[0]["effect"]),
+        (&hidden["joint"], &json!("stribeck"))
+    );
     let errors = &whole["joints"][joint];
-    let [held_out, alone, anew] = ["held_out", "said_alone", "said_refitted"].map(|key| number(errors, key));
+    let [held_out, alone, anew] =
+        ["held_out", "said_alone", "said_refitted"].map(|key| number(errors, key));
     assert!(held_out < anew && anew < 1.05 * alone, "{errors:#}");
     let rms = number(&lost[0], "rms");
     assert!(rms > 0.3 * alone && rms < 1.5 * alone, "{rms} {errors:#}");
@@ -103,7 +118,12 @@ fn a_payload_is_in_the_masses_that_are_written() {
     let session = Session::new();
     let name = recorded(&session, "ur5_robot", "payload");
     let experiment = with(&session, &name, &["payload"]);
-    for (to, file) in [("mujoco", "arm.xml"), ("urdf", "arm.urdf"), ("sdf", "arm.sdf"), ("ferntast", "own.arm.toml")] {
+    for (to, file) in [
+        ("mujoco", "arm.xml"),
+        ("urdf", "arm.urdf"),
+        ("sdf", "arm.sdf"),
+        ("ferntast", "own.arm.toml"),
+    ] {
         let told = export(&session, &experiment, to, file, &[]);
         assert_eq!(told["unsaid"], json!([]), "{told:#}");
     }
@@ -114,13 +134,26 @@ fn a_payload_is_in_the_masses_that_are_written() {
         assert!(torque > 0.01 && torque < 0.1, "{torque}: {told:#}");
     }
     // The arm's file is one that a session takes.
-    let lockstep = ["lockstep", "--arm", "own.arm.toml", "--duration", "1", "--json"];
+    let lockstep = [
+        "lockstep",
+        "--arm",
+        "own.arm.toml",
+        "--duration",
+        "1",
+        "--json",
+    ];
     run(&session, &lockstep).success();
     let text = fs::read_to_string(session.folder().join("arm.sdf")).expect("a file");
     assert_eq!(text.matches("<link name").count(), 7);
     let told = export(&session, &experiment, "ur", "ur.yaml", &[]);
     let notes = told["notes"].as_array().expect("a list");
-    assert!(notes.iter().any(|own| own.as_str().is_some_and(|own| own.contains("--compensated"))));
+    assert!(notes.iter().any(|own| {
+        own.as_str()
+            .is_some_and(|own| own.contains("--compensated"))
+    }));
     let text = fs::read_to_string(session.folder().join("ur.yaml")).expect("a file");
-    assert!(text.contains("viscous_scale: [0.900, 0.900, 0.800, 0.900, 0.900, 0.900]"), "{text}");
+    assert!(
+        text.contains("viscous_scale: [0.900, 0.900, 0.800, 0.900, 0.900, 0.900]"),
+        "{text}"
+    );
 }

@@ -117,14 +117,16 @@ fn read(path: &Path) -> Result<String, ConfigError> {
     Ok(String::from_utf8_lossy(&read).into_owned())
 }
 
+/// The URDF of an arm that comes along; what is below `config/` on disk comes first.
 fn find_shipped_urdf(name: &str) -> Result<String, ConfigError> {
     let path = format!("{}/{name}", ARM.folder);
+    let on_disk = Path::new("config").join(&path);
+    if on_disk.is_file() {
+        return read(&on_disk);
+    }
     let text = crate::config::shipped::text(&path);
-    text.map(str::to_owned).ok_or_else(|| ConfigError::Unknown {
-        kind: "URDF",
-        name: name.to_owned(),
-        shipped: crate::config::shipped::names(ARM.folder).join(", "),
-    })
+    text.map(str::to_owned)
+        .ok_or_else(|| ConfigError::NoUrdf { path: on_disk })
 }
 
 /// The file with all that was left out.

@@ -2,7 +2,7 @@
 
 use ferntast_control::{delay::Mapping, servo::ServoConfig};
 use ferntast_emulation::hand::{Motion, Phase, Point, Script};
-use ferntast_model::rigid_body::Vector3;
+use ferntast_model::{rigid_body::Vector3, serial_arm::Plane};
 
 use super::{Serial, written};
 use crate::config::Scenario;
@@ -16,7 +16,7 @@ const DEEP: f64 = 0.003;
 const ALONG: f64 = 0.02;
 
 /// Takes the servo's tuning and the tip's place from the arm, where the scenario gives none;
-/// with `hand` also what the scripted hand does.
+/// with `hand`, or where the script is empty, also what the scripted hand does.
 pub(in crate::config) fn fit(scenario: &mut Scenario, serial: &Serial, hand: bool) {
     if scenario.servo == ServoConfig::default() {
         scenario.servo = serial.servo.clone();
@@ -34,21 +34,36 @@ pub(in crate::config) fn fit(scenario: &mut Scenario, serial: &Serial, hand: boo
             ..mapping
         });
     }
-    if hand && let Some(scripted) = &mut scenario.hand.scripted {
-        scripted.script = script(serial, scenario.law.mapping().position_scale);
+    let scripted = scenario.hand.scripted.as_mut();
+    if let Some(own) = scripted.filter(|own| hand || own.script.phase.is_empty()) {
+        own.script = script(serial, scenario.law.mapping().position_scale);
     }
 }
 
-/// The scripted hand touches the first surface, presses and slides, again and again.
+/// The scripted hand touches one surface after the other, presses and slides, again and again.
 fn script(serial: &Serial, scale: f64) -> Script {
     let home = serial.arm.home_tip().translation;
-    let Some(plane) = serial.arm.surfaces().first() else {
+    let surfaces = serial.arm.surfaces();
+    if surfaces.is_empty() {
         return wander(scale);
-    };
+    }
+    let touch = |plane: &Plane| touch(plane, &home, scale);
+    Script {
+        start: Point::default(),
+        repeat: true,
+        phase: [wait()]
+            .into_iter()
+            .chain(surfaces.iter().flat_map(touch))
+            .collect(),
+    }
+}
+
+/// From `home` \[m\] to `plane` and back.
+fn touch(plane: &Plane, home: &Vector3<f64>, scale: f64) -> [Phase; 5] {
     let normal = plane.direction();
-    let apart = plane.distance(&home);
+    let apart = plane.distance(home);
     // Along the surface, away from and towards the base as far as that goes.
-    let out = home - normal * normal.dot(&home);
+    let out = home - normal * normal.dot(home);
     let along = out.try_normalize(1e-3).unwrap_or_else(|| {
         let axis = match normal.x.abs() < 0.9 {
             true => Vector3::x(),
@@ -66,18 +81,13 @@ fn script(serial: &Serial, scale: f64) -> Script {
         motion: Motion::Reach { to },
     };
     let name = &plane.name;
-    Script {
-        start: Point::default(),
-        repeat: true,
-        phase: vec![
-            wait(),
-            reach(&format!("reach the {name}"), at(-DEEP, 0.0), 1.2),
-            reach("press", at(DEEP, 0.0), 0.8),
-            reach("slide", at(DEEP, ALONG), 2.0),
-            reach("slide back", at(DEEP, -ALONG), 3.0),
-            reach("retreat", Point::default(), 1.5),
-        ],
-    }
+    [
+        reach(&format!("reach the {name}"), at(-DEEP, 0.0), 1.2),
+        reach("press", at(DEEP, 0.0), 0.8),
+        reach("slide", at(DEEP, ALONG), 2.0),
+        reach("slide back", at(DEEP, -ALONG), 3.0),
+        reach("retreat", Point::default(), 1.5),
+    ]
 }
 
 fn wait() -> Phase {
