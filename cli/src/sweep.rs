@@ -64,7 +64,7 @@ pub struct Arguments {
     seed: u64,
 
     /// Hold these arms against each other, ones that come along or files.
-    #[arg(long, value_name = "ARM,…", value_delimiter = ',', conflicts_with_all = ["output", "random"])]
+    #[arg(long, value_name = "ARM,…", value_delimiter = ',', conflicts_with_all = ["output", "random", "shard"])]
     arms: Vec<String>,
 
     /// What moves in place of the arms: the simulated ones, or a program of yours, stepped over a pipe (process:COMMAND).
