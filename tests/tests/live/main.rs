@@ -7,6 +7,7 @@ mod arm_lab;
 mod bad_frames;
 mod console;
 mod console_trouble;
+mod contact_force;
 mod crashes;
 mod dynamics;
 mod lab_page;
