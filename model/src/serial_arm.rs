@@ -4,7 +4,7 @@
 //! a [`Chain`] with joints, gravity and planes.
 
 use crate::joint::JointParameters;
-use crate::rigid_body::{Chain, MassMatrix, Placement, PositionLimits, Vector3};
+use crate::rigid_body::{Chain, MassMatrix, Placement, PositionLimits, Posture, Vector3};
 use crate::{JointCount, Joints, ParameterError, check, parameters};
 
 parameters! {
@@ -177,8 +177,12 @@ impl SerialArm {
     ///
     /// `q` has not one value for each joint.
     pub fn weight(&self, q: &Joints<f64>) -> Joints<f64> {
-        let rest = Joints::filled(self.count(), 0.0);
-        self.chain.inverse_dynamics(q, &rest, &rest, &self.gravity)
+        self.weight_in(&self.chain.posture(q))
+    }
+
+    /// [`weight`](Self::weight) in a posture of its links.
+    pub fn weight_in(&self, posture: &Posture) -> Joints<f64> {
+        self.chain.weight_in(posture, &self.gravity)
     }
 
     /// Joint torques that the links' motion q, q̇, q̈ takes without contact.
@@ -192,7 +196,22 @@ impl SerialArm {
         qd: &Joints<f64>,
         qdd: &Joints<f64>,
     ) -> Joints<f64> {
-        self.chain.inverse_dynamics(q, qd, qdd, &self.gravity)
+        self.inverse_dynamics_in(&self.chain.posture(q), qd, qdd)
+    }
+
+    /// [`inverse_dynamics`](Self::inverse_dynamics) in a posture of its links.
+    ///
+    /// # Panics
+    ///
+    /// A list has not one value for each joint.
+    pub fn inverse_dynamics_in(
+        &self,
+        posture: &Posture,
+        qd: &Joints<f64>,
+        qdd: &Joints<f64>,
+    ) -> Joints<f64> {
+        self.chain
+            .inverse_dynamics_in(posture, qd, qdd, &self.gravity)
     }
 
     /// Momentum M(q) q̇ of the links \[kg m²/s\] or \[kg m/s\].

@@ -356,14 +356,13 @@ impl Servo {
         };
         match measurement {
             Ok(measured) => {
-                let weight = self
-                    .carried
-                    .as_ref()
-                    .map(|own| own.weight(&measured.position));
-                self.drive(&measured, weight.or(input.weight), &mut output);
-                if let (Some(carried), Some(weight)) = (&self.carried, weight) {
+                let carried = self.carried.as_ref();
+                let posture = carried.map(|own| own.posture(&measured.position));
+                let weight = posture.map_or(input.weight, |(_, weight)| Some(weight));
+                self.drive(&measured, weight, &mut output);
+                if let (Some(carried), Some(posture)) = (&self.carried, posture) {
                     let setpoint = self.setpoint();
-                    carried.add(&measured, &weight, &setpoint, &mut output);
+                    carried.add(&measured, &posture, &setpoint, &mut output);
                 }
             }
             Err(_) => self.joints.iter_mut().for_each(JointServo::let_go),

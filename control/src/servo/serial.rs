@@ -14,6 +14,7 @@
 use super::{JointTuning, Measurement, ServoOutput, Setpoint};
 use crate::operating::OperatingState;
 use ferntast_model::Joints;
+use ferntast_model::rigid_body::Posture;
 use ferntast_model::serial_arm::SerialArm;
 
 /// The links with how the joints hold them.
@@ -31,31 +32,34 @@ impl Carried {
         }
     }
 
-    /// What the joints carry of the links' weight at `position` \[rad\]: \[Nm\].
-    pub(super) fn weight(&self, position: &Joints<f64>) -> Joints<f64> {
-        self.arm.weight(position)
+    /// The links at `position` \[rad\], and what the joints carry of their weight there \[Nm\].
+    pub(super) fn posture(&self, position: &Joints<f64>) -> (Posture, Joints<f64>) {
+        let posture = self.arm.chain().posture(position);
+        let weight = self.arm.weight_in(&posture);
+        (posture, weight)
     }
 
     /// Where the motors are when the links are at `position` \[rad\], at rest and free: the
     /// gears give way under the weight.
     pub(super) fn motor_positions(&self, position: &Joints<f64>) -> Joints<f64> {
-        let (weight, joints) = (self.weight(position), self.arm.joints());
+        let (weight, joints) = (self.arm.weight(position), self.arm.joints());
         Joints::from_fn(position.count(), |joint| {
             joints[joint].motor_position(position[joint], weight[joint])
         })
     }
 
-    /// Adds it to the torques of `output`, within the drives' limits.
+    /// Adds it to the torques of `output`, within the drives' limits, in the posture that is
+    /// measured.
     pub(super) fn add(
         &self,
         measured: &Measurement,
-        weight: &Joints<f64>,
+        (posture, weight): &(Posture, Joints<f64>),
         setpoint: &Joints<Setpoint>,
         output: &mut ServoOutput,
     ) {
         let driven = match output.state {
-            OperatingState::Enabled => self.arm.inverse_dynamics(
-                &measured.position,
+            OperatingState::Enabled => self.arm.inverse_dynamics_in(
+                posture,
                 &setpoint.map(|own| own.velocity),
                 &setpoint.map(|own| own.acceleration),
             ),

@@ -56,18 +56,12 @@ impl Chain {
                 + lever.cross(&acceleration);
         }
 
-        // Forces, from the tip on: each joint carries what all links behind it need.
-        let mut torques = self.armature().map(|armature| armature);
-        for (joint, link) in self.links.iter().enumerate().rev() {
-            torques[joint] =
-                torques[joint] * qdd[joint] + link.along(&moments[joint], &forces[joint]);
-            if joint > 0 {
-                let placement = &placements[joint];
-                let force = placement.rotation * forces[joint];
-                moments[joint - 1] +=
-                    placement.rotation * moments[joint] + placement.translation.cross(&force);
-                forces[joint - 1] += force;
-            }
+        let mut torques = self.carried(posture, &mut moments, &mut forces);
+        for (torque, (armature, qdd)) in torques
+            .iter_mut()
+            .zip(self.armature().iter().zip(qdd.iter()))
+        {
+            *torque += armature * qdd;
         }
         torques
     }

@@ -33,6 +33,7 @@ mod posture;
 mod regressor;
 #[cfg(test)]
 mod tests;
+mod weight;
 
 pub use chain::{Chain, ChainError, ChainJoint, JointKind, PositionLimits};
 pub use inertia::{LINK_PARAMETERS, LinkInertia};

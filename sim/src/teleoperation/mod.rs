@@ -105,12 +105,8 @@ impl Trial {
     ///
     /// The first value of law, link, hand or tip that is out of bounds.
     pub fn run(&self) -> Result<Outcome, ParameterError> {
-        self.follower.validate()?;
-        let [x, y, _] = self.law.mapping().workspace_offset;
-        let arm = self
-            .follower
-            .make(self.environment, [x, y], self.start(), self.seed)?;
-        self.run_with(arm)
+        self.validate()?;
+        self.run_with(self.own_arm()?)
     }
 
     /// Runs it with `arm` behind `servo` in place of its follower: at rest with its tip at
@@ -120,6 +116,7 @@ impl Trial {
     ///
     /// As [`run`](Self::run).
     pub fn run_on(&self, arm: &mut dyn TrialArm, servo: Servo) -> Result<Outcome, ParameterError> {
+        self.validate()?;
         self.run_with(Box::new(Servoed::new(arm, servo)))
     }
 
@@ -135,21 +132,32 @@ impl Trial {
         Schedule::new(self.task, forth + back).end
     }
 
+    fn own_arm(&self) -> Result<Box<dyn Follower>, ParameterError> {
+        let [x, y, _] = self.law.mapping().workspace_offset;
+        self.follower
+            .make(self.environment, [x, y], self.start(), self.seed)
+    }
+
     /// Delays of both ways, with the buffers \[s\].
     fn delays(&self) -> [f64; 2] {
         [&self.link.up, &self.link.down].map(|way| way.nominal_delay(WIRE_LENGTH) + self.buffer)
     }
 
-    fn run_with<'a>(&'a self, arm: Box<dyn Follower + 'a>) -> Result<Outcome, ParameterError> {
+    fn validate(&self) -> Result<(), ParameterError> {
         self.law.validate()?;
         self.link.validate()?;
         self.hand.validate()?;
+        self.follower.validate()?;
         if let Some(master) = &self.master {
             master.validate()?;
         }
         if let Some(deadband) = &self.deadband {
             deadband.validate()?;
         }
+        Ok(())
+    }
+
+    fn run_with<'a>(&'a self, arm: Box<dyn Follower + 'a>) -> Result<Outcome, ParameterError> {
         let [forth, back] = self.delays();
         let schedule = Schedule::new(self.task, forth + back);
         let ticks = |delay: f64| (delay / TICK).round() as usize;

@@ -96,8 +96,8 @@ fn error_of_the_meter(law: Law, rate: f64) -> (f64, f64) {
         ..trial.clone()
     };
     let schedule = Schedule::new(Task::PressAndSlide, 0.1);
-    let mut run = Run::new(&trial, schedule).expect(name);
-    let mut unlimited = Run::new(&free, schedule).expect(name);
+    let mut run = Run::new(&trial, schedule, trial.own_arm().expect(name)).expect(name);
+    let mut unlimited = Run::new(&free, schedule, free.own_arm().expect(name)).expect(name);
     let (mut worst, mut bit) = (0.0_f64, 0.0_f64);
     for k in 0..5000 {
         let (own, other) = (run.step(k), unlimited.step(k));
@@ -139,7 +139,7 @@ fn felt(law: &Law, environment: Environment, deadband: Option<Deadband>) -> (Vec
         ..Trial::new(law.clone(), link(0.02), environment, 1)
     };
     let schedule = Schedule::new(trial.task, 0.02);
-    let mut run = Run::new(&trial, schedule).unwrap();
+    let mut run = Run::new(&trial, schedule, trial.own_arm().unwrap()).unwrap();
     let ticks = (schedule.end / TICK) as i64;
     let felt = (0..ticks).map(|k| {
         let [x, y] = run.step(k).felt;

@@ -43,7 +43,8 @@ impl SweepConfig {
                                 law: law.clone(),
                                 rtt_ms,
                                 jitter_ms,
-                                buffer_ms: self.buffer(jitter_ms),
+                                buffer_ms:
+                                    (self.buffer_per_jitter * jitter_ms).min(1e3 * LONGEST_BUFFER),
                                 loss,
                                 environment,
                                 task,
@@ -55,11 +56,6 @@ impl SweepConfig {
             }
         }
         all
-    }
-
-    /// Jitter buffer of both ends for that standard deviation of the delay \[ms\].
-    pub(super) fn buffer(&self, jitter_ms: f64) -> f64 {
-        (self.buffer_per_jitter * jitter_ms).min(1e3 * LONGEST_BUFFER)
     }
 }
 

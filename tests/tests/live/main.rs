@@ -9,6 +9,7 @@ mod bad_frames;
 mod console;
 mod console_space;
 mod console_trouble;
+mod contact_force;
 mod crashes;
 mod dynamics;
 mod lab_page;

@@ -114,3 +114,61 @@ fn draws_cases_at_random_and_tells_what_each_law_made_of_them() {
         "{told:#?}"
     );
 }
+
+/// Five joints before walls, behind a relay satellite: the law with two layers gives nothing out,
+/// and what a spring between hand and tip makes of such a link is told as well.
+#[test]
+fn arms_are_judged_on_walls_by_what_is_true_of_them() {
+    let session = Session::new();
+    let laws = ["--law", "two_layer", "--law", "position_force"];
+    let arguments = [&["sweep", "--arms", "so101", "--json"][..], &laws].concat();
+    let ended = run(&session, &arguments);
+    assert_eq!(ended.status.code(), Some(1), "{ended:#?}");
+    let rows: serde_json::Value = serde_json::from_str(&ended.stdout).expect("JSON");
+    let rows = rows.as_array().expect("a list");
+    // 2 laws, 3 walls, 2 tasks.
+    assert_eq!(rows.len(), 2 * 3 * 2);
+    let misses = |row: &serde_json::Value, what: &str| {
+        let all = row["misses"].as_array().expect("a list");
+        all.iter().any(|own| own == what)
+    };
+    for row in rows {
+        assert_eq!((&row["arm"], &row["joints"]), (&"so101".into(), &5.into()));
+        assert_eq!(row["driver"], "simulated");
+        assert!((25.0..35.0).contains(&number(row, "duration_s")), "{row:#}");
+        let told = [
+            ("energy", number(row, "true_energy_J") < -0.02),
+            ("drift", number(row, "drift_mm") > 1.0),
+            ("peak", number(row, "peak_ratio") > 1.5),
+        ];
+        for (what, broken) in told {
+            assert_eq!(misses(row, what), broken, "{what}: {row:#}");
+        }
+        if row["law"] == "two_layer" {
+            assert!(!misses(row, "energy") && !misses(row, "drift"), "{row:#}");
+            let wall = number(row, "true_stiffness_N_per_m").min(3300.0);
+            let felt = row["without_delay"]["felt_stiffness_N_per_m"].as_f64();
+            assert!(
+                felt.is_none_or(|felt| (0.7..1.3).contains(&(felt / wall))),
+                "{row:#}"
+            );
+        }
+    }
+    let springs = rows.iter().filter(|row| row["law"] == "position_force");
+    assert!(springs.clone().any(|row| misses(row, "energy")));
+    refused(
+        &session,
+        &["sweep", "--arms", "rokviss"],
+        &["rokviss", "URDF"],
+    );
+    refused(
+        &session,
+        &["sweep", "--arms", "z1"],
+        &["config/arms/z1.urdf", "licence"],
+    );
+    refused(
+        &session,
+        &["sweep", "--driver", "process:true"],
+        &["--arms"],
+    );
+}

@@ -39,6 +39,14 @@ proptest! {
     }
 
     #[test]
+    fn an_arm_at_rest_carries_its_weight((chain, (q, _, _, gravity)) in any_chain_and_state()) {
+        let none = Joints::filled(q.count(), 0.0);
+        let held = column(&chain.inverse_dynamics(&q, &none, &none, &gravity));
+        let weight = column(&chain.weight_in(&chain.posture(&q), &gravity));
+        prop_assert!((held - weight).norm() <= 1e-12 * (1.0 + held.norm()));
+    }
+
+    #[test]
     fn kinetic_energy_is_half_the_mass_matrix_between_velocities((chain, (q, qd, _, _)) in any_chain_and_state()) {
         let direct = chain.kinetic_energy(&q, &qd);
         let rate = column(&qd);
