@@ -124,6 +124,11 @@ fn inertial_text(own: &Inertial) -> String {
 /// Nine digits: more than any of it is worth, fewer than noise.
 #[must_use]
 pub fn number(value: f64) -> String {
+    /// What is left of zero after a few turns.
+    const ZERO: f64 = 1e-15;
+    if value.abs() < ZERO {
+        return "0".to_owned();
+    }
     let short: f64 = format!("{value:.8e}").parse().unwrap_or(value);
     format!("{short}")
 }
@@ -187,15 +192,31 @@ mod tests {
         let (before, after) = (before.expect("a URDF"), after.expect("a URDF"));
         for link in &after.links {
             let found = link.inertia.expect("masses");
-            assert!((found.rotational - inertia.rotational).norm() < 1e-9, "{text}");
+            assert!(
+                (found.rotational - inertia.rotational).norm() < 1e-9,
+                "{text}"
+            );
             assert!((found.first_moment - inertia.first_moment).norm() < 1e-9);
         }
         for (one, other) in before.joints.iter().zip(&after.joints) {
-            assert_eq!((&one.name, one.limit, one.axis), (&other.name, other.limit, other.axis));
+            assert_eq!(
+                (&one.name, one.limit, one.axis),
+                (&other.name, other.limit, other.axis)
+            );
         }
-        assert_eq!(text.matches("damping=\"1.25\" friction=\"0.3\"").count(), 2, "{text}");
-        assert!(text.contains("spring=\"7\"") && text.contains("upper.dae"), "{text}");
-        assert!(text.contains("<!-- kept -->") && !text.contains("0.5"), "{text}");
+        assert_eq!(
+            text.matches("damping=\"1.25\" friction=\"0.3\"").count(),
+            2,
+            "{text}"
+        );
+        assert!(
+            text.contains("spring=\"7\"") && text.contains("upper.dae"),
+            "{text}"
+        );
+        assert!(
+            text.contains("<!-- kept -->") && !text.contains("0.5"),
+            "{text}"
+        );
         // Once more changes nothing but the comments.
         let twice = with(&text, &joints, &inertials).expect("a URDF");
         assert_eq!(twice.matches("<inertial>").count(), 3);

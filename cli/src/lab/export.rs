@@ -11,8 +11,7 @@ use super::{
 
 /// Write what was identified for a simulator, a driver, or this project's servo and estimator.
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "What is written:\n  \
+#[command(after_help = "What is written:\n  \
     urdf      <dynamics> of each joint and <inertial> of links that were corrected, in the arm's URDF, all else as it was\n  \
     sdf       a model for Gazebo: damping, friction, springs, links\n  \
     mujoco    a model: frictionloss, damping (with quadratic and cubic viscous friction as MuJoCo's polynomial), armature,\n            \
@@ -25,8 +24,7 @@ use super::{
     --approximate fits what can be said anew without the rest, which is better for a program that knows nothing else.\n\
     Payload, base tilt and corrected links go into masses and gravity; what is written is always a body that can exist.\n\n  \
     ferntast lab export arm.toml --to mujoco -o arm.xml\n  \
-    ferntast lab export joint.toml --to urdf --into robot.urdf --joint elbow -o identified.urdf"
-)]
+    ferntast lab export joint.toml --to urdf --into robot.urdf --joint elbow -o identified.urdf")]
 pub struct Arguments {
     /// Experiment file, of a joint or an arm.
     experiment: PathBuf,
@@ -81,13 +79,15 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
 fn print(told: &Told) {
     println!(
         "{:<26} {:>14} {:>14} {:>14}",
-        "error", "whole model", "what is said", "fitted anew"
+        "error on the rows fitted", "whole model", "what is said", "fitted anew"
     );
     for (name, own) in &told.joints {
-        let anew = own.said_refitted.map_or_else(|| "-".to_owned(), significant);
+        let anew = own
+            .said_refitted
+            .map_or_else(|| "-".to_owned(), significant);
         println!(
             "{name:<26} {:>14} {:>14} {anew:>14}",
-            significant(own.held_out),
+            significant(own.train),
             significant(own.said_alone)
         );
     }

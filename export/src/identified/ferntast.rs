@@ -1,7 +1,11 @@
 //! An arm's file of this project: what servo and estimator believe. The twin takes the
 //! experiment itself.
 
-use std::{collections::BTreeMap, fmt::Write, path::{Path, PathBuf}};
+use std::{
+    collections::BTreeMap,
+    fmt::Write,
+    path::{Path, PathBuf},
+};
 
 use ferntast_model::friction::{self, FrictionParameters};
 use ferntast_urdf::edit::number;
@@ -48,9 +52,8 @@ pub fn files(
                 float(gravity.z)
             );
         }
-        None => text.push_str(
-            "# Sections of an arm's file: put each in the place of the joint's own.\n",
-        ),
+        None => text
+            .push_str("# Sections of an arm's file: put each in the place of the joint's own.\n"),
     }
     for joint in &model.joints {
         section(joint, model.arm.is_some(), &mut text, notes);
@@ -90,7 +93,10 @@ fn section(joint: &Joint, named: bool, text: &mut String, notes: &mut Vec<String
             speed_range: [0.0, 1.0],
             effects: BTreeMap::from([(
                 id.to_owned(),
-                values.iter().map(|own| (own.key.to_owned(), own.value)).collect(),
+                values
+                    .iter()
+                    .map(|own| (own.key.to_owned(), own.value))
+                    .collect(),
             )]),
         };
         let pairs: Vec<String> = (values.iter())

@@ -34,8 +34,12 @@ pub fn text(model: &Model, servo_hz: Option<f64>, notes: &mut Vec<String>) -> St
         "<!-- {}. -->\n<mujoco model=\"{}\">\n  <compiler angle=\"radian\" autolimits=\"true\"{}/>\n  \
          <option timestep=\"0.001\" integrator=\"implicitfast\" gravity=\"{}\"/>\n  <worldbody>\n",
         commented(&model.heading()),
-        escaped(&model.title),
-        if unphysical { " balanceinertia=\"true\"" } else { "" },
+        escaped(model.name()),
+        if unphysical {
+            " balanceinertia=\"true\""
+        } else {
+            ""
+        },
         numbers(gravity.as_slice()),
     );
     match &model.arm {
@@ -46,7 +50,10 @@ pub fn text(model: &Model, servo_hz: Option<f64>, notes: &mut Vec<String>) -> St
     let gains = servo_hz.map(|hertz| gains(model, hertz));
     for (at, joint) in model.joints.iter().enumerate() {
         let name = escaped(&joint.name);
-        let effort = model.arm.as_ref().and_then(|arm| arm.table.arm.efforts.get(at).copied());
+        let effort = model
+            .arm
+            .as_ref()
+            .and_then(|arm| arm.table.arm.efforts.get(at).copied());
         let effort = effort.flatten().filter(|own| *own > 0.0 && *own < 1e6);
         let range = |key: &str| {
             effort.map_or_else(String::new, |own| {
@@ -76,7 +83,10 @@ pub fn text(model: &Model, servo_hz: Option<f64>, notes: &mut Vec<String>) -> St
     ] {
         for joint in &model.joints {
             let name = escaped(&joint.name);
-            let _ = writeln!(text, "    <{kind} name=\"{name}_{suffix}\" joint=\"{name}\"/>");
+            let _ = writeln!(
+                text,
+                "    <{kind} name=\"{name}_{suffix}\" joint=\"{name}\"/>"
+            );
         }
     }
     text.push_str("  </sensor>\n</mujoco>\n");
@@ -122,18 +132,24 @@ fn joint_text(joint: &Joint, kind: &str, axis: &Vector3<f64>, range: [f64; 2]) -
         true => numbers(&[joint.viscous(), b2, b3]),
         false => number(joint.viscous()),
     };
-    let spring = joint.spring().map_or_else(String::new, |(stiffness, rest)| {
-        format!(
-            " stiffness=\"{}\" springref=\"{}\"",
-            number(stiffness),
-            number(rest)
-        )
-    });
+    let spring = joint
+        .spring()
+        .map_or_else(String::new, |(stiffness, rest)| {
+            format!(
+                " stiffness=\"{}\" springref=\"{}\"",
+                number(stiffness),
+                number(rest)
+            )
+        });
     let limited = match range.iter().all(|own| own.is_finite()) && range[0] < range[1] {
         true => format!(" range=\"{}\"", numbers(&range)),
         false => String::new(),
     };
-    let mut comment = format!("{}; armature {}", joint.friction_text(), joint.armature.text());
+    let mut comment = format!(
+        "{}; armature {}",
+        joint.friction_text(),
+        joint.armature.text()
+    );
     for name in ["b2", "b3", "kc", "k0"] {
         if let Some(own) = joint.get(name) {
             let _ = write!(comment, "; {name} {}", own.text());
@@ -157,7 +173,9 @@ fn inertial_text(inertia: &LinkInertia) -> String {
         "<inertial pos=\"{}\" mass=\"{}\" fullinertia=\"{}\"/>",
         numbers(center.as_slice()),
         number(inertia.mass),
-        numbers(&[about.m11, about.m22, about.m33, about.m12, about.m13, about.m23]),
+        numbers(&[
+            about.m11, about.m22, about.m33, about.m12, about.m13, about.m23
+        ]),
     )
 }
 
@@ -251,7 +269,12 @@ fn bodies_of_joints(model: &Model, text: &mut String) {
             JointType::Revolute => "hinge",
             _ => "slide",
         };
-        let own = joint_text(joint, kind, &Vector3::z(), [f64::NEG_INFINITY, f64::INFINITY]);
+        let own = joint_text(
+            joint,
+            kind,
+            &Vector3::z(),
+            [f64::NEG_INFINITY, f64::INFINITY],
+        );
         let name = escaped(&joint.name);
         let _ = writeln!(text, "    <body name=\"{name}_link\">");
         text.push_str(

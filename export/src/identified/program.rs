@@ -100,7 +100,9 @@ fn is_of_the_servo(id: &str) -> bool {
     };
     let zeros = |id: &str| {
         let row = effect(id).map(|own| own.row);
-        let all = row.iter().flat_map(|row| row.coefficients.iter().chain(row.shape));
+        let all = row
+            .iter()
+            .flat_map(|row| row.coefficients.iter().chain(row.shape));
         let values = all.map(|own| (own.key.to_owned(), 0.0_f64.clamp(own.lower, own.upper)));
         (id.to_owned(), values.collect::<BTreeMap<_, _>>())
     };

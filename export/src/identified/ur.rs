@@ -86,9 +86,13 @@ fn shares(
     for (kind, (word, name)) in NAMES.iter().enumerate() {
         for (at, (joint, under)) in model.joints.iter().zip(&other.joints).enumerate() {
             let used = DEFAULTS[kind][at];
-            let of = |own: &super::model::Joint| own.get(name).map(|own| (own.value, own.std_error));
+            let of =
+                |own: &super::model::Joint| own.get(name).map(|own| (own.value, own.std_error));
             let (Some((whole, error)), Some((left, left_error))) = (of(joint), of(under)) else {
-                notes.push(format!("{}: no {word} friction in the models; the default stays", joint.name));
+                notes.push(format!(
+                    "{}: no {word} friction in the models; the default stays",
+                    joint.name
+                ));
                 continue;
             };
             let own_model = (whole - left) / used;

@@ -117,7 +117,10 @@ pub(super) fn nearest_payload(
     let at = |multiplier: f64| {
         let system = normal + &shape * multiplier;
         let side = normal * free - &mass * multiplier;
-        system.lu().solve(&side).unwrap_or_else(|| DVector::zeros(4))
+        system
+            .lu()
+            .solve(&side)
+            .unwrap_or_else(|| DVector::zeros(4))
     };
     // The multiplier at which the ellipsoid is reached, by halving its logarithm.
     let (mut low, mut high) = (-60.0, 60.0);

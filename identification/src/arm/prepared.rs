@@ -270,9 +270,8 @@ impl<'a> PreparedArm<'a> {
                 .collect();
             let along = of_the_others(normal, first, count, &others);
             let own = normal.view((first, first), (count, count)).into_owned();
-            let cross = DMatrix::from_fn(count, others.len(), |i, j| {
-                normal[(first + i, others[j])]
-            });
+            let cross =
+                DMatrix::from_fn(count, others.len(), |i, j| normal[(first + i, others[j])]);
             let own = own + &cross * &along;
             let free = DVector::from_column_slice(&self.corrections[number].value);
             let held = match effect {

@@ -73,7 +73,9 @@ impl LinkInertia {
         let second = Matrix3::identity() * (0.5 * self.rotational.trace()) - self.rotational;
         let mut matrix = Matrix4::zeros();
         matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&second);
-        matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.first_moment);
+        matrix
+            .fixed_view_mut::<3, 1>(0, 3)
+            .copy_from(&self.first_moment);
         let row = self.first_moment.transpose();
         matrix.fixed_view_mut::<1, 3>(3, 0).copy_from(&row);
         matrix[(3, 3)] = self.mass;
