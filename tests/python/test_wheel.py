@@ -259,6 +259,19 @@ def test_other_threads_run_meanwhile(package):
     assert took > 0.1 and counted > 10
 
 
+def test_what_was_identified_goes_on_to_mujoco(package, riddle, tmp_path):
+    mujoco = importlib.import_module("mujoco")
+    told = package.export(riddle, "mujoco", tmp_path / "joint.xml")
+    model = mujoco.MjModel.from_xml_path(told.files[0])
+    parameters = package.compare(riddle).parameters
+    assert model.dof_frictionloss[0] == pytest.approx(parameters["b0"].value, rel=1e-6)
+    assert model.dof_damping[0] == pytest.approx(parameters["b1"].value, rel=1e-6)
+    with pytest.raises(package.RefusedError, match="exists already"):
+        package.export(riddle, "mujoco", tmp_path / "joint.xml")
+    with pytest.raises(package.RefusedError, match="one of urdf"):
+        package.export(riddle, "webots")
+
+
 def test_what_is_annotated_is_there(package, riddle):
     results = importlib.import_module("ferntast.results")
     diagnosis = package.diagnose(riddle)

@@ -124,6 +124,11 @@ fn inertial_text(own: &Inertial) -> String {
 /// Nine digits: more than any of it is worth, fewer than noise.
 #[must_use]
 pub fn number(value: f64) -> String {
+    /// What is left of zero after a few turns.
+    const ZERO: f64 = 1e-15;
+    if value.abs() < ZERO {
+        return "0".to_owned();
+    }
     let short: f64 = format!("{value:.8e}").parse().unwrap_or(value);
     format!("{short}")
 }

@@ -79,7 +79,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
 fn print(told: &Told) {
     println!(
         "{:<26} {:>14} {:>14} {:>14}",
-        "error", "whole model", "what is said", "fitted anew"
+        "error on the rows fitted", "whole model", "what is said", "fitted anew"
     );
     for (name, own) in &told.joints {
         let anew = own
@@ -87,7 +87,7 @@ fn print(told: &Told) {
             .map_or_else(|| "-".to_owned(), significant);
         println!(
             "{name:<26} {:>14} {:>14} {anew:>14}",
-            significant(own.held_out),
+            significant(own.train),
             significant(own.said_alone)
         );
     }

@@ -44,7 +44,7 @@ pub enum IdentifiedError {
     Servo(f64),
     /// The driver of Universal Robots is told of six joints.
     #[error(
-        "{title}: {joints} joints, and the driver of Universal Robots takes six; give the experiment of the whole arm ([arm])"
+        "{title}: number of joints {joints}, and the driver of Universal Robots takes six; give the experiment of the whole arm ([arm])"
     )]
     NotSix {
         /// The experiment.

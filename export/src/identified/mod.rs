@@ -83,7 +83,7 @@ pub struct Errors {
     pub train: f64,
     /// On the rows fitted, with only what is said, its values as the whole model has them.
     pub said_alone: f64,
-    /// On the rows left out, with only what is said, fitted anew; none where all is said.
+    /// The same fitted anew; none where all is said.
     pub said_refitted: Option<f64>,
 }
 

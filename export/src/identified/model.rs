@@ -159,7 +159,7 @@ impl Model {
                 held_out: parts.rms.held_out,
                 train: parts.rms.train,
                 said_alone: parts.without,
-                said_refitted: parts.refitted.as_ref().map(|own| own.rms.held_out),
+                said_refitted: parts.refitted.as_ref().map(|own| own.rms.train),
             };
             (joint.name.clone(), errors)
         });
@@ -186,6 +186,24 @@ impl Model {
             }
         }
         notes
+    }
+
+    /// What is told where a form has no place for the inertia of motors and gears.
+    pub fn armatures_unsaid(&self) -> String {
+        let each = self.joints.iter();
+        let each: Vec<String> = each
+            .map(|joint| format!("{} {}", joint.name, joint.armature.text()))
+            .collect();
+        format!(
+            "{} has no place for the inertia of motor and gear, which stands in comments: {}",
+            self.to.title(),
+            each.join(", ")
+        )
+    }
+
+    /// The experiment's name.
+    pub fn name(&self) -> &str {
+        self.title.trim_end_matches(".toml")
     }
 
     /// First lines for people: what it is, and from where.

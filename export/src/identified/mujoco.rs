@@ -34,7 +34,7 @@ pub fn text(model: &Model, servo_hz: Option<f64>, notes: &mut Vec<String>) -> St
         "<!-- {}. -->\n<mujoco model=\"{}\">\n  <compiler angle=\"radian\" autolimits=\"true\"{}/>\n  \
          <option timestep=\"0.001\" integrator=\"implicitfast\" gravity=\"{}\"/>\n  <worldbody>\n",
         commented(&model.heading()),
-        escaped(&model.title),
+        escaped(model.name()),
         if unphysical {
             " balanceinertia=\"true\""
         } else {

@@ -17,28 +17,18 @@ pub fn text(model: &Model, notes: &mut Vec<String>) -> String {
     let mut text = format!(
         "<?xml version=\"1.0\"?>\n<!-- {}. -->\n<sdf version=\"1.9\">\n  <model name=\"{}\" canonical_link=\"base\">\n",
         commented(&model.heading()),
-        escaped(model.title.trim_end_matches(".toml"))
+        escaped(model.name())
     );
     if let Some(arm) = &model.arm {
         // The world's gravity is straight down; the base stands as it was found to.
         let tilt = arm
             .tilted()
             .map_or(Placement::identity(), |own| upright(&own));
-        let _ = writeln!(
-            text,
-            "    {}",
-            pose(&tilt, "__model__").replace(" relative_to=\"__model__\"", "")
-        );
+        let _ = writeln!(text, "    {}", pose(&tilt, None));
         for own in arm.effects_text() {
             let _ = writeln!(text, "    <!-- {} -->", commented(&own));
         }
-        for joint in &model.joints {
-            notes.push(format!(
-                "{}: SDFormat has no place for the inertia of motor and gear, {}; it stands in a comment",
-                joint.name,
-                joint.armature.text()
-            ));
-        }
+        notes.push(model.armatures_unsaid());
     }
     text.push_str("    <link name=\"base\"/>\n    <joint name=\"base_to_world\" type=\"fixed\"><parent>world</parent><child>base</child></joint>\n");
     let placements = model.arm.as_ref().map(frames);
@@ -114,7 +104,7 @@ fn joint_text(
          <axis>\n        <xyz>{} {} {}</xyz>\n        <limit>\n{}{}{}{}        </limit>\n        <!-- {}; armature {} -->\n        \
          <dynamics>\n{}{}{}{}        </dynamics>\n      </axis>\n    </joint>\n",
         escaped(&joint.name),
-        pose(placement, parent),
+        pose(placement, Some(parent)),
         escaped(parent),
         escaped(child),
         number(axis.x),
@@ -158,7 +148,10 @@ fn link_text(joint: &Joint, name: &str, inertia: &LinkInertia, text: &mut String
     );
 }
 
-fn pose(placement: &Placement, relative_to: &str) -> String {
+fn pose(placement: &Placement, relative_to: Option<&str>) -> String {
+    let relative_to = relative_to.map_or_else(String::new, |own| {
+        format!(" relative_to=\"{}\"", escaped(own))
+    });
     let [x, y, z, w] = placement.quaternion();
     let place = placement.translation;
     let numbers: Vec<String> = [place.x, place.y, place.z, x, y, z, w]
@@ -166,8 +159,7 @@ fn pose(placement: &Placement, relative_to: &str) -> String {
         .map(number)
         .collect();
     format!(
-        "<pose relative_to=\"{}\" rotation_format=\"quat_xyzw\">{}</pose>",
-        escaped(relative_to),
+        "<pose{relative_to} rotation_format=\"quat_xyzw\">{}</pose>",
         numbers.join(" ")
     )
 }

@@ -59,18 +59,16 @@ pub fn all(model: &Model) -> Vec<Unsaid> {
 /// What the joint's model errs by with what is written.
 fn consequence(model: &Model, joint: &Joint, unit: &str) -> String {
     let parts = &joint.parts;
-    let whole = significant(parts.rms.held_out);
+    let whole = significant(parts.rms.train);
     let refitted = parts.refitted.as_ref();
-    let refitted = refitted.map_or(f64::NAN, |own| own.rms.held_out);
+    let refitted = significant(refitted.map_or(f64::NAN, |own| own.rms.train));
     match model.approximate {
         true => format!(
-            "the rest is fitted without it and errs by {} {unit} on data left out, the whole model by {whole}",
-            significant(refitted)
+            "the rest is fitted without it and errs by {refitted} {unit} on these, the whole model by {whole}"
         ),
         false => format!(
-            "without it the rest errs by {} {unit}, the whole model by {whole}; fitted anew (--approximate) {}",
+            "without it the rest errs by {} {unit} on these, the whole model by {whole}; fitted anew (--approximate) by {refitted}",
             significant(parts.without),
-            significant(refitted)
         ),
     }
 }

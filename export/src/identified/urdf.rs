@@ -22,14 +22,8 @@ pub fn text(
     notes: &mut Vec<String>,
 ) -> Result<String, IdentifiedError> {
     notes.extend(model.joints.iter().flat_map(Joint::impossible));
-    for joint in &model.joints {
-        if model.arm.is_some() || into.is_some() {
-            notes.push(format!(
-                "{}: URDF has no place for the inertia of motor and gear, {}; it stands in a comment",
-                joint.name,
-                joint.armature.text()
-            ));
-        }
+    if model.arm.is_some() || into.is_some() {
+        notes.push(model.armatures_unsaid());
     }
     let source = into.or_else(|| model.arm.as_ref().map(|arm| arm.table.urdf.as_path()));
     match source {
@@ -120,7 +114,7 @@ fn of_joints(model: &Model) -> String {
         "<?xml version=\"1.0\"?>\n<!-- {}.\n     Each joint moves a body of its motor's and gear's inertia; what it carries is not part of the experiment. -->\n\
          <robot name=\"{}\">\n  <link name=\"base\"/>\n",
         commented(&model.heading()),
-        escaped(&model.title)
+        escaped(model.name())
     );
     for joint in &model.joints {
         let name = escaped(&joint.name);

@@ -26,6 +26,7 @@ class Motion:
     v: np.ndarray
     a: np.ndarray
     torque: np.ndarray
+    smooth_torque: np.ndarray
 
 
 def read_table(path: str) -> tuple[list[str], np.ndarray]:
@@ -51,8 +52,8 @@ def motions(table: np.ndarray) -> list[Motion]:
         period = float(np.median(np.diff(own[:, 0])))
         states = [smoothed(own[:, 1 : 1 + count], period, order) for order in range(3)]
         within = slice(WINDOW, len(own) - WINDOW)
-        torque = own[within, 1 + count :]
-        all_of_them.append(Motion(own[within, 0], *states, torque))
+        torque = own[:, 1 + count :]
+        all_of_them.append(Motion(own[within, 0], *states, torque[within], smoothed(torque, period, 0)))
     return all_of_them
 
 
@@ -75,6 +76,8 @@ class Plant:
         self.places = np.array([model.joint(name).dofadr[0] for name in joints])
         held = np.setdiff1d(np.arange(model.nv), self.places)
         model.dof_armature[held] = 1e9
+        # How soft friction is, depends on the inertias.
+        mujoco.mj_setConst(model, mujoco.MjData(model))
 
     def torque_errors(self, motion: Motion) -> np.ndarray:
         """Measured less what the motion takes; not where a joint is slow."""
@@ -85,7 +88,7 @@ class Plant:
             data.qacc[:] = 0.0
             data.qacc[self.places] = motion.a[at]
             mujoco.mj_inverse(self.model, data)
-            errors[at] = motion.torque[at] - data.qfrc_inverse[self.places]
+            errors[at] = motion.smooth_torque[at] - data.qfrc_inverse[self.places]
         errors[np.abs(motion.v) < SLOW] = np.nan
         return errors
 

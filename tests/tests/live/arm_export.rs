@@ -90,9 +90,9 @@ fn an_arm_in_mujoco_moves_as_it_was_recorded() {
         (&hidden["joint"], &json!("stribeck"))
     );
     let errors = &whole["joints"][joint];
-    let [held_out, alone, anew] =
-        ["held_out", "said_alone", "said_refitted"].map(|key| number(errors, key));
-    assert!(held_out < anew && anew < 1.05 * alone, "{errors:#}");
+    let [whole_errs, alone, anew] =
+        ["train", "said_alone", "said_refitted"].map(|key| number(errors, key));
+    assert!(whole_errs < anew && anew < alone, "{errors:#}");
     let rms = number(&lost[0], "rms");
     assert!(rms > 0.3 * alone && rms < 1.5 * alone, "{rms} {errors:#}");
 
@@ -103,13 +103,13 @@ fn an_arm_in_mujoco_moves_as_it_was_recorded() {
         // The same links as MuJoCo reads out of the URDF.
         assert!(number(exported, "apart") < 1e-5, "{exported:#}");
         let torque = number(exported, "all_torque_Nm") / number(before, "all_torque_Nm");
-        assert!(torque > 0.02 && torque < 0.2, "{torque}: {told:#}");
+        assert!(torque > 0.01 && torque < 0.2, "{torque}: {told:#}");
         let position = number(exported, "all_position_mrad") / number(before, "all_position_mrad");
         assert!(position > 0.005 && position < 0.2, "{position}: {told:#}");
     }
     // The judge finds of the joint what the lab says of it.
     let judged = number(&told["exported"][0]["torque_Nm"], joint);
-    assert!((judged / alone - 1.0).abs() < 0.25, "{judged} {errors:#}");
+    assert!((0.6..1.6).contains(&(judged / alone)), "{judged} {errors:#}");
 }
 
 /// A payload goes into the masses, of whatever form; MuJoCo reads the URDF, too.
@@ -131,7 +131,7 @@ fn a_payload_is_in_the_masses_that_are_written() {
     is_a_body(&told["exported"][0], 6);
     for exported in told["exported"].as_array().expect("a list") {
         let torque = number(exported, "all_torque_Nm") / number(&told["before"], "all_torque_Nm");
-        assert!(torque > 0.01 && torque < 0.1, "{torque}: {told:#}");
+        assert!(torque > 0.005 && torque < 0.1, "{torque}: {told:#}");
     }
     // The arm's file is one that a session takes.
     let lockstep = [
@@ -151,9 +151,83 @@ fn a_payload_is_in_the_masses_that_are_written() {
         own.as_str()
             .is_some_and(|own| own.contains("--compensated"))
     }));
+    let identified = arms_friction(&session, "own.arm.toml");
+    under_compensation(&session, &name);
+    let more = ["--compensated", "compensated.toml", "--force"];
     let text = fs::read_to_string(session.folder().join("ur.yaml")).expect("a file");
     assert!(
         text.contains("viscous_scale: [0.900, 0.900, 0.800, 0.900, 0.900, 0.900]"),
         "{text}"
     );
+    export(&session, &experiment, "ur", "ur.yaml", &more);
+    let text = fs::read_to_string(session.folder().join("ur.yaml")).expect("a file");
+    for (key, own_model, friction) in [
+        ("coulomb", ROBOT[0], identified[0]),
+        ("viscous", ROBOT[1], identified[1]),
+    ] {
+        let line = text
+            .lines()
+            .find_map(|own| own.trim().strip_prefix(&format!("{key}_scale: [")));
+        let shares = line
+            .and_then(|own| own.strip_suffix(']'))
+            .expect("shares")
+            .split(", ");
+        let shares: Vec<f64> = shares.map(|own| own.parse().expect("a number")).collect();
+        for (share, friction) in shares.iter().zip(friction) {
+            assert!(
+                (share - friction / own_model).abs() < 0.03,
+                "{key}: {share} {friction}"
+            );
+        }
+    }
+}
+
+/// Coulomb and viscous friction that the robot itself believes in, of every joint.
+const ROBOT: [f64; 2] = [5.0, 7.0];
+
+/// Coulomb and viscous friction of each joint, as an arm's file has them.
+fn arms_friction(session: &Session, file: &str) -> [[f64; 6]; 2] {
+    let text = fs::read_to_string(session.folder().join(file)).expect("a file");
+    let arm: toml::Table = text.parse().expect("TOML");
+    [("coulomb", "b_0"), ("viscous", "b_1")].map(|(effect, key)| {
+        std::array::from_fn(|at| {
+            let value = &arm["joint"][at]["friction"]["effects"][effect][key];
+            value.as_float().expect("a number")
+        })
+    })
+}
+
+/// The same motion under the robot's compensation with its default shares.
+fn under_compensation(session: &Session, name: &str) {
+    let folder = session.folder();
+    let text = fs::read_to_string(folder.join(format!("{name}.csv"))).expect("a recording");
+    let (head, rows) = text.split_once('\n').expect("a head");
+    let rows: Vec<Vec<f64>> = (rows.lines())
+        .map(|row| {
+            row.split(',')
+                .map(|own| own.parse().expect("a number"))
+                .collect()
+        })
+        .collect();
+    let mut compensated = format!("{head}\n");
+    for at in 5..rows.len() - 5 {
+        let (before, after) = (&rows[at - 5], &rows[at + 5]);
+        if after[0] - before[0] > 1.0 {
+            continue;
+        }
+        let mut row = rows[at].clone();
+        for joint in 0..6 {
+            let velocity = (after[1 + joint] - before[1 + joint]) / (after[0] - before[0]);
+            let [coulomb, viscous] = if joint == 2 { [0.7, 0.8] } else { [0.8, 0.9] };
+            row[7 + joint] -=
+                coulomb * ROBOT[0] * velocity.signum() + viscous * ROBOT[1] * velocity;
+        }
+        let row: Vec<String> = row.iter().map(f64::to_string).collect();
+        compensated.push_str(&row.join(","));
+        compensated.push('\n');
+    }
+    fs::write(folder.join("compensated.csv"), compensated).expect("scratch folder");
+    let text = fs::read_to_string(folder.join(format!("{name}-with.toml"))).expect("a file");
+    let text = text.replace(&format!("{name}.csv"), "compensated.csv");
+    fs::write(folder.join("compensated.toml"), text).expect("scratch folder");
 }
