@@ -87,7 +87,8 @@ pub(super) fn of_arm(arm: &PreparedArm<'_>) -> BTreeMap<String, BTreeMap<String,
             Some(joint) => format!("{}@{}", own.effect.id(), joint.name),
             None => own.effect.id().to_owned(),
         };
-        let parameters = trial::parameters(own.effect, &own.value, &own.covariance);
+        let covariance = (&own.covariance, shared::freedom(&arm.joints));
+        let parameters = trial::parameters(own.effect, &own.value, covariance);
         (name, parameters)
     });
     each.collect()

@@ -14,6 +14,7 @@ mod comparison;
 mod contest;
 mod data;
 mod diagnosis;
+mod discovery;
 mod effects;
 mod motion;
 mod prepared;
@@ -29,5 +30,6 @@ pub use data::{ArmDataset, ArmError, ArmSession, ArmSpec, ArmTerm};
 pub use diagnosis::{
     ArmCandidate, ArmDependence, ArmDiagnosis, ArmSuspect, JointDiagnosis, diagnose,
 };
+pub use discovery::{ArmDiscovery, ArmFormula, discover};
 pub use effects::ArmEffect;
 pub use prepared::{ArmJoint, PreparedArm};

@@ -8,7 +8,8 @@ use std::{
 use ferntast_identification::{
     Dataset, Inertia, RecordedSession, Term,
     arm::{
-        self, ArmComparison, ArmDataset, ArmDiagnosis, ArmSession, ArmSpec, ArmTerm, PreparedArm,
+        self, ArmComparison, ArmDataset, ArmDiagnosis, ArmDiscovery, ArmSession, ArmSpec, ArmTerm,
+        PreparedArm,
     },
     fit::Parameter,
 };
@@ -119,6 +120,21 @@ impl OpenedArm {
     /// [`WorkError::Arm`]: what data or model lack.
     pub fn diagnose(&self, progress: &mut dyn FnMut(f64)) -> Result<ArmDiagnosis, WorkError> {
         arm::diagnose(&self.dataset, &self.spec, progress).map_err(|error| self.refuse(error))
+    }
+
+    /// Formulas for the joints that no effect of the catalogue explains. `progress` is
+    /// called with the share done, 0 … 1.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Arm`]: what data or model lack.
+    pub fn discover(
+        &self,
+        seed: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<ArmDiscovery, WorkError> {
+        let found = arm::discover(&self.dataset, &self.spec, seed, progress);
+        found.map_err(|error| self.refuse(error))
     }
 
     /// Adds `effect`, whose name may say of which joint (`stribeck@elbow`), fits again, and

@@ -1,13 +1,6 @@
 //! Laws that no catalogue has, and nothing at all, put to the search for formulas.
 
-use std::{
-    collections::BTreeMap,
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
+use std::collections::BTreeMap;
 
 use ferntast_benches::joint_bench::{Bench, BenchConfig, HiddenEffect};
 use ferntast_identification::{Verdict, discover};
@@ -15,6 +8,7 @@ use serde::Serialize;
 
 use super::{TestBench, blind::true_model_reaches};
 use crate::challenge::blind::Count;
+use crate::experiment::parallel;
 
 /// Within this factor of what the true law reaches on the same recording, a formula
 /// is as good.
@@ -117,25 +111,13 @@ pub fn run(
     }
     let first = plan.seed.wrapping_add(1_000_000);
     cases.extend((0..plan.nothing as u64).map(|number| (first.wrapping_add(number), None)));
-    let next = AtomicUsize::new(0);
-    let answers = Mutex::new(Vec::new());
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some(&(seed, strength)) = cases.get(next.fetch_add(1, Ordering::Relaxed))
-                {
-                    let answer = answer(seed, strength);
-                    let answer = answer.map_err(|error| format!("seed {seed}: {error}"));
-                    let mut answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
-                    answers.push(answer);
-                    progress(answers.len(), cases.len());
-                }
-            });
-        }
-    });
-    let answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let mut answers: Vec<Answered> = answers.into_iter().collect::<Result<_, _>>()?;
+    let mut answers = parallel::map_telling(
+        &cases,
+        |_, &(seed, strength)| {
+            answer(seed, strength).map_err(|error| format!("seed {seed}: {error}"))
+        },
+        &|done| progress(done, cases.len()),
+    )?;
     answers.sort_by_key(|own| own.seed);
     let mut test = DiscoveryTest::default();
     for own in answers {

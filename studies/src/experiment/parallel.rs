@@ -19,6 +19,19 @@ pub fn map<J: Sync, T: Send, E: Send>(
     jobs: &[J],
     work: impl Fn(usize, &J) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
+    map_telling(jobs, work, &|_| {})
+}
+
+/// The same; `progress` is told how many are done.
+///
+/// # Errors
+///
+/// As [`map`].
+pub fn map_telling<J: Sync, T: Send, E: Send>(
+    jobs: &[J],
+    work: impl Fn(usize, &J) -> Result<T, E> + Sync,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<T>, E> {
     let threads = thread::available_parallelism()
         .map_or(1, NonZero::get)
         .min(jobs.len());
@@ -40,6 +53,7 @@ pub fn map<J: Sync, T: Send, E: Send>(
                     failed.fetch_or(result.is_err(), Ordering::Relaxed);
                     let mut done = done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
                     done.push((index, result));
+                    progress(done.len());
                 }
             });
         }

@@ -6,18 +6,11 @@ mod coverage;
 mod tally;
 mod two;
 
-use std::{
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
-
 use super::TestBench;
+use crate::experiment::parallel;
 
 pub(super) use ask::true_model_reaches;
-pub use coverage::Coverage;
+pub use coverage::{Coverage, Outside};
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 
 /// What is tried.
@@ -33,6 +26,9 @@ pub struct Plan {
     pub nothing: usize,
     /// Recordings that hide two effects of the catalogue at once, at full strength.
     pub two: usize,
+    /// Whether nothing is diagnosed: the true models are fitted, and their intervals held
+    /// against the truth.
+    pub intervals_only: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -86,39 +82,31 @@ pub fn run<H: TestBench>(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<BlindTest, String> {
     let cases = plan.cases(only);
-    let next = AtomicUsize::new(0);
-    let answers = Mutex::new(Vec::new());
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let answer = ask::ask(case).and_then(|given| {
-                        let held = coverage::held(case)?;
-                        Ok((given, held))
-                    });
-                    let mut answers = answers.lock().unwrap_or_else(PoisonError::into_inner);
-                    answers.push((*case, answer));
-                    progress(answers.len(), cases.len() + plan.two);
-                }
-            });
-        }
-    });
-    let mut answers = answers.into_inner().unwrap_or_else(PoisonError::into_inner);
-    // The order in which workers ended does not matter.
-    answers.sort_by_key(|(case, _)| (case.seed, case.hidden));
+    let all = cases.len() + plan.two;
+    let answers = parallel::map_telling(
+        &cases,
+        |_, case| {
+            let given = match plan.intervals_only {
+                true => None,
+                false => Some(ask::ask(case)?),
+            };
+            Ok::<_, String>((given, coverage::held(case)?))
+        },
+        &|done| progress(done, all),
+    )?;
     let mut test = BlindTest::default();
-    for (case, answer) in answers {
-        let (given, held) = answer?;
+    for (case, (given, held)) in cases.iter().zip(answers) {
         test.coverage.add(&held);
-        test.note(&case, given);
+        if let Some(given) = given {
+            test.note(case, given);
+        }
     }
     for index in 0..plan.two {
         let seed = plan.seed.wrapping_add(2_000_000 + index as u64);
         let found = two::two_at_once::<H>(seed)?;
         test.both_of_two.note(found == 2);
         test.one_of_two.note(found >= 1);
-        progress(cases.len() + index + 1, cases.len() + plan.two);
+        progress(cases.len() + index + 1, all);
     }
     Ok(test)
 }
