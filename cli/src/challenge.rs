@@ -9,7 +9,7 @@ use std::{
 use clap::Subcommand;
 use ferntast_nodes::process::stop_on_signals;
 use ferntast_studies::{
-    challenge::{self, Answered, Asked, BlindAnswer, BlindTest, Count, LawPlan, Plan},
+    challenge::{self, Answered, Asked, BlindAnswer, BlindTest, Count, Coverage, LawPlan, Plan},
     shard::Placed,
 };
 use indicatif::ProgressBar;
@@ -90,6 +90,11 @@ enum Action {
         #[arg(long)]
         two: Option<usize>,
 
+        /// Diagnose nothing: fit the true models, and print how often their 95 % intervals
+        /// hold the true values, parameter by parameter.
+        #[arg(long)]
+        intervals_only: bool,
+
         /// Seed of the first recording.
         #[arg(long, default_value_t = 1)]
         seed: u64,
@@ -153,6 +158,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             hide,
             nothing,
             two,
+            intervals_only,
             seed,
             parts,
         } => {
@@ -163,8 +169,9 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 repeats,
                 strengths,
                 nothing: nothing.unwrap_or(of_all(400)),
-                two: two.unwrap_or(of_all(40)),
+                two: two.unwrap_or(if intervals_only { 0 } else { of_all(40) }),
                 only: hide,
+                intervals_only,
             };
             let (answers, stopped) =
                 with_bar(|stop, progress| plan.run(parts.shard(), stop, progress))?;
@@ -315,10 +322,14 @@ pub fn tell_blind(
     json: bool,
 ) -> Result<ExitCode, Failure> {
     let test = plan.total(answers).map_err(Failure::refused)?;
-    if json {
-        print_json(&test)?;
-    } else {
-        print(&test);
+    match (json, plan.intervals_only) {
+        (true, true) => print_json(&test.coverage)?,
+        (true, false) => print_json(&test)?,
+        (false, true) => {
+            print_coverage(&test.coverage);
+            print_intervals(&test.coverage);
+        }
+        (false, false) => print(&test),
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -365,19 +376,7 @@ fn print(test: &BlindTest) {
         "two hidden at once, by adding what is named: both {}/{}, at least one {}/{}",
         both.found, both.tried, one.found, one.tried
     );
-    let coverage = &test.coverage;
-    for (what, count) in [
-        ("fitted", coverage.fitted),
-        ("searched", coverage.searched),
-        ("of one session", coverage.one_session),
-    ] {
-        println!(
-            "95 % intervals that hold the true value, parameters {what}: {}/{} ({:.1} %)",
-            count.found,
-            count.tried,
-            count.share() * 100.0
-        );
-    }
+    print_coverage(&test.coverage);
     println!();
     for (effect, counts) in &test.by_effect {
         row(effect, counts);
@@ -415,6 +414,38 @@ fn print(test: &BlindTest) {
             own.strength,
             own.seed,
             (own.over_true - 1.0) * 100.0
+        );
+    }
+}
+
+fn print_coverage(coverage: &Coverage) {
+    for (what, count) in [
+        ("fitted", coverage.fitted),
+        ("searched", coverage.searched),
+        ("of one session", coverage.one_session),
+    ] {
+        println!(
+            "95 % intervals that hold the true value, parameters {what}: {}/{} ({:.1} %)",
+            count.found,
+            count.tried,
+            count.share() * 100.0
+        );
+    }
+}
+
+fn print_intervals(coverage: &Coverage) {
+    println!("\nby parameter, with mean and rms of estimate less truth in standard errors");
+    for (name, own) in &coverage.by_parameter {
+        let (held, tried) = (own.count.found, own.count.tried);
+        let (mean, rms) = (own.mean_deviation, own.rms_deviation);
+        println!("  {name:<36} {held:>4}/{tried:<4} {mean:>8.2} {rms:>8.2}");
+    }
+    println!("\noutside");
+    for own in &coverage.outside {
+        let [low, high] = own.interval_95;
+        println!(
+            "  {:<36} strength {:<5} seed {:<9} sessions {}: {:.5} in place of {:.5}, interval {low:.5} to {high:.5}",
+            own.parameter, own.strength, own.seed, own.sessions, own.value, own.truth
         );
     }
 }

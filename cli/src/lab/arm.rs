@@ -53,6 +53,37 @@ pub fn diagnose(opened: &OpenedArm, json: bool) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// `ferntast lab discover`.
+pub fn discover(opened: &OpenedArm, seed: u64, json: bool) -> Result<ExitCode, Failure> {
+    let bar = open::bar("discover");
+    let result = opened.discover(seed, &mut |share| bar.set_position((share * 1000.0) as u64));
+    bar.finish_and_clear();
+    let result = result.map_err(Failure::refused)?;
+    let unit = opened.torque_unit();
+    if json {
+        print_json(&InUnit { unit, result })?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    println!("{}", opened.experiment.title);
+    println!("{}", result.verdict.name());
+    for own in &result.candidates {
+        println!("add {} first", name_of(own));
+    }
+    if result.formulas.is_empty() {
+        println!("no formula is proposed ({} terms tried)", result.tried);
+    }
+    for (own, number) in result.formulas.iter().zip(1..) {
+        println!();
+        println!("{}", own.joint);
+        table::formula(&own.formula, number, unit);
+    }
+    if let (Some(own), Some(path)) = (result.formulas.first(), &opened.experiment.path) {
+        let name = format!("{}@{}", own.formula.name, own.joint);
+        table::to_accept(path, &name, &own.formula.expression);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
 fn with_bar(opened: &OpenedArm) -> Result<ArmDiagnosis, Failure> {
     let bar = open::bar("diagnose");
     let result = opened.diagnose(&mut |share| bar.set_position((share * 1000.0) as u64));

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use super::{super::Failure, open, table};
+use super::{super::Failure, arm, open, table};
 
 /// Propose formulas for what no effect of the catalogue explains.
 #[derive(Debug, clap::Args)]
@@ -15,7 +15,8 @@ use super::{super::Failure, open, table};
     ferntast lab discover E.toml\n  \
     ferntast lab add E.toml 'film=c1*tanh(qd/0.21)*tau^2'     # the expression as printed: the error promised\n\n\
     Which formulas cannot be told apart by these data, and the recording that would, stands below each. The same \
-    seed gives the same answer."
+    seed gives the same answer. Of a whole arm formulas are proposed for every joint that is unexplained, over the \
+    motions of all joints (position_NAME, velocity_NAME, load_NAME)."
 )]
 pub struct Arguments {
     /// Experiment file, or the recording of a session.
@@ -28,6 +29,9 @@ pub struct Arguments {
 
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
+    if let Some(opened) = arm::open(&arguments.experiment)? {
+        return arm::discover(&opened, arguments.seed, json);
+    }
     let mut results = Vec::new();
     for opened in open::open(&arguments.experiment)? {
         let bar = open::bar("discover");

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use ferntast_identification::{
-    Comparison, Diagnosis, Discovery, Usage, Verdict,
+    Comparison, Diagnosis, Discovery, Formula, Usage, Verdict,
     comparison::residual_map::ResidualMap,
     diagnosis::NamedCandidate,
     fit::{Parameter, Soundness},
@@ -181,45 +181,53 @@ pub fn discovery(discovery: &Discovery, experiment: Option<&Path>, unit: &str) {
             discovery.tried
         );
     }
-    for (formula, number) in discovery.formulas.iter().zip(1..) {
-        println!();
-        println!("{number}. {}", formula.expression);
-        println!(
-            "   error {} {unit} before, {} {unit} after on data held out ({:+.1} %); p {:.1e}, complexity {}",
-            significant(formula.held_out_before),
-            significant(formula.held_out_after),
-            (formula.held_out_after / formula.held_out_before - 1.0) * 100.0,
-            formula.p_value,
-            formula.complexity
-        );
-        println!("   {}", formula.form);
-        for (name, own) in &formula.parameters {
-            let error = own
-                .std_error
-                .map_or_else(String::new, |error| format!(" ± {}", significant(error)));
-            println!(
-                "     {name} = {}{error} {}",
-                significant(own.value),
-                own.unit
-            );
-        }
-        if !formula.cannot_be_told_from.is_empty() {
-            println!("   these data cannot tell it from");
-        }
-        for rival in &formula.cannot_be_told_from {
-            println!("     {rival}");
-        }
-        println!("   {}", formula.separate_by);
+    for (own, number) in discovery.formulas.iter().zip(1..) {
+        formula(own, number, unit);
     }
     if let (Some(formula), Some(path)) = (discovery.formulas.first(), experiment) {
-        println!();
+        to_accept(path, &formula.name, &formula.expression);
+    }
+}
+
+/// The line that adds a formula.
+pub fn to_accept(experiment: &Path, name: &str, expression: &str) {
+    println!();
+    println!(
+        "to accept the first:  ferntast lab add {} '{name}={expression}'",
+        experiment.display(),
+    );
+}
+
+/// A formula with its constants, and what it cannot be told from.
+pub fn formula(formula: &Formula, number: usize, unit: &str) {
+    println!();
+    println!("{number}. {}", formula.expression);
+    println!(
+        "   error {} {unit} before, {} {unit} after on data held out ({:+.1} %); p {:.1e}, complexity {}",
+        significant(formula.held_out_before),
+        significant(formula.held_out_after),
+        (formula.held_out_after / formula.held_out_before - 1.0) * 100.0,
+        formula.p_value,
+        formula.complexity
+    );
+    println!("   {}", formula.form);
+    for (name, own) in &formula.parameters {
+        let error = own
+            .std_error
+            .map_or_else(String::new, |error| format!(" ± {}", significant(error)));
         println!(
-            "to accept the first:  ferntast lab add {} '{}={}'",
-            path.display(),
-            formula.name,
-            formula.expression
+            "     {name} = {}{error} {}",
+            significant(own.value),
+            own.unit
         );
     }
+    if !formula.cannot_be_told_from.is_empty() {
+        println!("   these data cannot tell it from");
+    }
+    for rival in &formula.cannot_be_told_from {
+        println!("     {rival}");
+    }
+    println!("   {}", formula.separate_by);
 }
 
 /// What a verdict does not rest on.

@@ -88,7 +88,8 @@ fn rms(fit: &SharedFit) -> Rms {
 pub(super) fn of_arm(arm: &PreparedArm<'_>) -> BTreeMap<String, BTreeMap<String, Parameter>> {
     let each = arm.corrections.iter().map(|own| {
         let name = arm.name_of(own.effect);
-        let parameters = trial::parameters(own.effect, &own.value, &own.covariance);
+        let covariance = (&own.covariance, shared::freedom(&arm.joints));
+        let parameters = trial::parameters(own.effect, &own.value, covariance);
         (name, parameters)
     });
     each.collect()

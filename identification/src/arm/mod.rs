@@ -15,6 +15,7 @@ mod comparison;
 mod contest;
 mod data;
 mod diagnosis;
+mod discovery;
 mod effects;
 mod motion;
 mod parts;
@@ -32,6 +33,7 @@ pub use data::{ArmDataset, ArmError, ArmSession, ArmSpec, ArmTerm};
 pub use diagnosis::{
     ArmCandidate, ArmDependence, ArmDiagnosis, ArmSuspect, JointDiagnosis, diagnose,
 };
+pub use discovery::{ArmDiscovery, ArmFormula, discover};
 pub use effects::ArmEffect;
 pub use parts::{ArmParts, Body, take_apart};
 pub use prepared::{ArmJoint, PreparedArm};

@@ -109,6 +109,8 @@ pub(super) struct SharedFit {
     pub(super) covariance: DMatrix<f64>,
     /// Normal equations of them, with the joints' own parameters taken out; weighted.
     pub(super) normal: DMatrix<f64>,
+    /// Degrees of freedom of the covariance.
+    pub(super) freedom: f64,
     /// Residuals on rows left out, of each joint.
     pub(super) left_out: Vec<LeftOut>,
     /// RMS on the rows fitted, of each joint \[Nm\].
@@ -156,9 +158,16 @@ pub(super) fn fit(joints: &[ArmJoint], columns: &ArmColumns, weights: &[f64]) ->
             .map(|(number, joint)| train(&joint.design, &columns.fitted[number], &all, number))
             .collect(),
         covariance: jackknife_covariance(&all.shared, &without),
+        freedom: freedom(joints),
         normal: all.normal,
         shared: all.shared,
     }
+}
+
+/// Degrees of freedom of covariances: what is left out in turn, less one.
+pub(super) fn freedom(joints: &[ArmJoint]) -> f64 {
+    let folds = joints.first().map_or(0, |joint| joint.design.folds.len());
+    (folds as f64 - 1.0).max(1.0)
 }
 
 /// Without the rows of a fold.

@@ -140,26 +140,24 @@ impl Tried {
 
     /// Its parameters with standard errors.
     pub(super) fn parameters(&self) -> BTreeMap<String, Parameter> {
-        parameters(self.effect, &self.value, &self.covariance)
+        parameters(
+            self.effect,
+            &self.value,
+            (&self.covariance, self.fit.freedom),
+        )
     }
 }
 
-/// Parameters of an effect of the arm as reported.
+/// Parameters of an effect of the arm as reported; its covariance has so many degrees of
+/// `freedom`.
 pub(super) fn parameters(
     effect: ArmEffect,
     value: &[f64],
-    covariance: &DMatrix<f64>,
+    (covariance, freedom): (&DMatrix<f64>, f64),
 ) -> BTreeMap<String, Parameter> {
     let each = effect.reported(value, covariance).into_iter();
     each.map(|(name, unit, value, error)| {
-        let parameter = Parameter {
-            value,
-            std_error: Some(error),
-            freedom: None,
-            interval_95: None,
-            unit: unit.to_owned(),
-            effect: effect.id().to_owned(),
-        };
+        let parameter = Parameter::measured(value, (error, freedom), unit, effect.id());
         (name.to_owned(), parameter)
     })
     .collect()

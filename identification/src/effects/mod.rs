@@ -104,7 +104,8 @@ pub trait Effect: Send + Sync {
 
     /// Samples at which its torque depends on more than is measured, in order of
     /// time: rows of the regression whose filters reach there are left out of a
-    /// model that has it.
+    /// model that has it, and its first shape parameter, a travel, is known no closer
+    /// than the travel in them.
     fn undetermined_samples(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
         let _ = (shape, points);
         Vec::new()

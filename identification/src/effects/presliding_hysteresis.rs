@@ -27,8 +27,7 @@ impl Effect for PreslidingHysteresis {
     fn evaluate(&self, shape: &[f64], point: &Point, memory: &mut Memory, columns: &mut [f64]) {
         let s = point.sign();
         if let ([level, by_load], [delta, ..]) = (columns, shape) {
-            memory[0] =
-                s + (memory[0] - s) * (-(point.velocity * point.period).abs() / delta).exp();
+            memory[0] = s + (memory[0] - s) * (-point.travel().abs() / delta).exp();
             *level = memory[0] - s;
             *by_load = *level * point.load.abs();
         }

@@ -12,8 +12,9 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::design::{Design, PreparedModel, columns};
 use crate::effects::{BoundTerm, with_columns};
+use crate::numerics::filter::Kernel;
 use crate::numerics::gram::Gram;
-use crate::numerics::statistics::jackknife_covariance;
+use crate::numerics::statistics::{jackknife_covariance, quantile_or_zero};
 use crate::signals::Signals;
 
 /// Step of a shape parameter, as a share of its value …
@@ -26,6 +27,8 @@ const SMALLEST: f64 = 1e-9;
 /// Share of what is known of a direction that a single block may hold; beyond, nothing
 /// could be said without it.
 const MOST_SHARE: f64 = 0.99;
+/// Share of the passages that tell the most of a width of which each tells but bounds.
+const SLOWEST: f64 = 0.1;
 
 /// How uncertain coefficients and shape parameters are, and how they go together.
 pub struct Uncertainty {
@@ -55,7 +58,7 @@ impl Uncertainty {
             let block = |(s, b): &(usize, usize)| grams.get(*s)?.get(*b);
             Gram::sum(fold.iter().filter_map(block), columns)
         });
-        let covariance = match design.folds.len() > design.sessions.len() {
+        let mut covariance = match design.folds.len() > design.sessions.len() {
             true => covariance_by_blocks(&gram, &best, outs),
             false => {
                 let without: Vec<DVector<f64>> =
@@ -63,6 +66,12 @@ impl Uncertainty {
                 jackknife_covariance(&best, &without)
             }
         };
+        for (k, (term, place)) in shapes.iter().enumerate() {
+            let at = design.base + k;
+            if *place == 0 {
+                covariance[(at, at)] += unseen_travel(prepared, *term).powi(2) / 3.0;
+            }
+        }
         Self {
             covariance,
             gram,
@@ -83,6 +92,28 @@ impl Uncertainty {
         let at = self.shapes.iter().position(|own| *own == (term, place))?;
         Some(self.gram.columns() - self.shapes.len() + at)
     }
+}
+
+/// Half the travel \[rad\] over which rows are left out around the samples at which a
+/// term's torque is not determined: within it, its first shape parameter may be
+/// anything, whatever the rows that are left say. The slowest of these passages tell
+/// the most.
+fn unseen_travel(prepared: &PreparedModel, term: usize) -> f64 {
+    let Some(term) = prepared.terms.get(term) else {
+        return 0.0;
+    };
+    let reach = Kernel::reach(prepared.filters.column);
+    let mut travels = Vec::new();
+    for signals in &prepared.sessions {
+        let points = &signals.points;
+        for at in term.effect.undetermined_samples(&term.shape, points) {
+            let first = points.get(at.saturating_sub(reach));
+            if let (Some(first), Some(last)) = (first, points.get(at + reach)) {
+                travels.push(0.5 * (last.position - first.position).abs());
+            }
+        }
+    }
+    quantile_or_zero(&mut travels, SLOWEST)
 }
 
 /// Σ Δᵢ Δᵢᵀ with Δᵢ = A⁻¹ (I − Aᵢ A⁻¹)^(−½) Xᵢᵀ eᵢ, A = XᵀX, Aᵢ = XᵢᵀXᵢ, e the residual.

@@ -49,4 +49,11 @@ impl Point {
     pub fn sign(&self) -> f64 {
         sign(self.velocity)
     }
+
+    /// Travel since the sample before \[rad\], which q̇ alone would tell half a
+    /// sample late.
+    #[must_use]
+    pub fn travel(&self) -> f64 {
+        (self.velocity - 0.5 * self.acceleration * self.period) * self.period
+    }
 }

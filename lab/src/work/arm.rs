@@ -8,8 +8,8 @@ use std::{
 use ferntast_identification::{
     Dataset, Inertia, RecordedSession, Term,
     arm::{
-        self, ArmComparison, ArmDataset, ArmDiagnosis, ArmParts, ArmSession, ArmSpec, ArmTerm,
-        PreparedArm,
+        self, ArmComparison, ArmDataset, ArmDiagnosis, ArmDiscovery, ArmParts, ArmSession, ArmSpec,
+        ArmTerm, PreparedArm,
     },
     comparison::parts::Says,
     fit::Parameter,
@@ -132,6 +132,21 @@ impl OpenedArm {
     /// [`WorkError::Arm`]: what data or model lack.
     pub fn take_apart(&self, says: Says<'_>) -> Result<ArmParts, WorkError> {
         arm::take_apart(&self.dataset, &self.spec, says).map_err(|error| self.refuse(error))
+    }
+
+    /// Formulas for the joints that no effect of the catalogue explains. `progress` is
+    /// called with the share done, 0 … 1.
+    ///
+    /// # Errors
+    ///
+    /// [`WorkError::Arm`]: what data or model lack.
+    pub fn discover(
+        &self,
+        seed: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<ArmDiscovery, WorkError> {
+        let found = arm::discover(&self.dataset, &self.spec, seed, progress);
+        found.map_err(|error| self.refuse(error))
     }
 
     /// Adds `effect`, whose name may say of which joint (`stribeck@elbow`), fits again, and

@@ -9,6 +9,8 @@ mod folder;
 
 pub use asked::{Asked, make};
 pub use bench::{TestBench, WriteError, hidden_by};
-pub use blind::{Answer as BlindAnswer, BlindTest, Count, Coverage, FollowedUp, Miss, Plan};
+pub use blind::{
+    Answer as BlindAnswer, BlindTest, Count, Coverage, FollowedUp, Miss, Outside, Plan,
+};
 pub use discovery::{Answered, DiscoveryTest, LawPlan};
 pub use folder::{Answer, ChallengeError, create, reveal};

@@ -3,7 +3,8 @@ hidden effect written here; nothing is shared with the lab. Same seed, same file
 
 usage: arm_recordings.py URDF FOLDER EFFECT SEED STRENGTH
 
-Writes FOLDER/ARM-EFFECT-SEED-STRENGTH.csv (t, q_JOINT, tau_JOINT), its experiment file (.toml) and what is hidden (.json).
+Writes FOLDER/ARM-EFFECT-SEED-STRENGTH.csv (t, q_JOINT, tau_JOINT), its experiment file (.toml) and what is hidden (.json),
+with the true values of parameters as `ferntast lab add` names them. Many at once: blind_arms.py.
 """
 
 import json
@@ -53,6 +54,9 @@ def model_of(urdf):
     """The model, free of contacts and ends."""
     model = mujoco.MjModel.from_xml_string(readable(urdf))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
+    # Friction is drawn below; some files have their own, which MuJoCo takes over.
+    model.dof_damping[:] = 0.0
+    model.dof_frictionloss[:] = 0.0
     return model
 
 
@@ -95,7 +99,7 @@ def bodies(model, q, v, a):
 
 
 def tilt(random, model, strength):
-    """Turns gravity by one to three degrees."""
+    """Turns gravity by one to three degrees; the turns of the base about x and y."""
     angle = math.radians(random.uniform(1.5, 3.0)) * strength
     axis = random.uniform(0, 2 * math.pi)
     across = math.sin(angle)
@@ -104,10 +108,11 @@ def tilt(random, model, strength):
         9.81 * across * math.sin(axis),
         -9.81 * math.cos(angle),
     ]
+    return {"base_tilt.tilt_1": -angle * math.sin(axis), "base_tilt.tilt_2": angle * math.cos(axis)}
 
 
 def load(random, model, strength):
-    """A ball on the last link that moves: its own inertia is that of 4 cm."""
+    """A ball on the last link that moves: its own inertia is that of 4 cm. Its mass and place."""
     mass = random.uniform(0.6, 1.5) * strength
     place = numpy.array([random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), random.uniform(0.05, 0.18)])
     body = int(model.jnt_bodyid[hinges(model)[-1]])
@@ -133,12 +138,11 @@ def load(random, model, strength):
     model.body_ipos[body] = middle
     model.body_iquat[body] = quaternion
     model.body_inertia[body] = values
+    return {"payload.mass": mass} | {f"payload.{axis}": float(own) for axis, own in zip("xyz", place, strict=True)}
 
 
-def main():
-    """One recording."""
-    urdf, folder, effect, seed, strength = sys.argv[1:]
-    seed, strength = int(seed), float(strength)
+def record(urdf, folder, effect, seed, strength):
+    """One recording: the path of its files, without their endings."""
     random = numpy.random.default_rng([seed, sorted(ACCEPTED).index(effect), round(100 * strength)])
     believed, model = model_of(urdf), model_of(urdf)
     count = len(hinges(model))
@@ -150,10 +154,11 @@ def main():
     model.dof_armature[:count] = armature
     # The load that friction grows with is what the links take.
     believed.dof_armature[:] = 0.0
+    truth = {}
     if effect == "payload":
-        load(random, model, strength)
+        truth = load(random, model, strength)
     if effect == "base_tilt":
-        tilt(random, model, strength)
+        truth = tilt(random, model, strength)
     heavy = range(1, count - 2) if effect == "load_coulomb" else range(count)
     joint = None if effect in OF_THE_ARM or effect == "none" else int(random.choice(heavy))
     other = None
@@ -161,6 +166,8 @@ def main():
         other = int(random.choice([k for k in range(count) if k != joint]))
         own = strength * coulomb[joint]
     shape = random.uniform(0, 1, 4)
+    for own_joint, name in enumerate(names):
+        truth |= {f"b0@{name}": coulomb[own_joint], f"b1@{name}": viscous[own_joint]}
     rows = []
     for session in range(SESSIONS):
         t, *all_joints = trajectory(random, model, int(SECONDS * RATE))
@@ -170,24 +177,41 @@ def main():
         torque += coulomb * numpy.sign(v) + viscous * v
         if effect == "stribeck":
             speed = 0.04 + 0.06 * shape[0]
+            truth |= {f"bs@{names[joint]}": 0.5 * own, f"vs@{names[joint]}": speed}
             torque[:, joint] += 0.5 * own * numpy.exp(-((v[:, joint] / speed) ** 2)) * numpy.sign(v[:, joint])
         elif effect == "load_coulomb":
             links = bodies(believed, *all_joints)[:, joint]
-            torque[:, joint] += strength * (0.06 + 0.06 * shape[0]) * abs(links) * numpy.sign(v[:, joint])
+            share = strength * (0.06 + 0.06 * shape[0])
+            truth[f"b0T@{names[joint]}"] = share
+            torque[:, joint] += share * abs(links) * numpy.sign(v[:, joint])
         elif effect == "quadratic_viscous":
+            truth[f"b2@{names[joint]}"] = 0.5 * own
             torque[:, joint] += 0.5 * own * v[:, joint] * abs(v[:, joint])
         elif effect == "asymmetric_coulomb":
+            truth[f"ba@{names[joint]}"] = 0.3 * own
             torque[:, joint] += 0.3 * own
         elif effect == "inertia":
+            truth[f"dJ@{names[joint]}"] = 0.3 * strength * armature[joint]
             torque[:, joint] += 0.3 * strength * armature[joint] * a[:, joint]
         elif effect == "joint_coupling":
+            by_speed, by_sign = (0.25 * own, 0.0) if shape[0] < 0.5 else (0.0, 0.15 * own)
+            truth |= {
+                f"cv_of_{names[other]}@{names[joint]}": by_speed,
+                f"cc_of_{names[other]}@{names[joint]}": by_sign,
+            }
             if shape[0] < 0.5:
                 torque[:, joint] += 0.25 * own * v[:, other]
             else:
                 torque[:, joint] += 0.15 * own * numpy.sign(v[:, other])
         elif effect == "ripple":
             waves = 6 + 34 * shape[0]
-            torque[:, joint] += 0.2 * own * numpy.sin(waves * q[:, joint] + 2 * math.pi * shape[1])
+            phase = 2 * math.pi * shape[1]
+            truth |= {
+                f"a_s@{names[joint]}": 0.2 * own * math.cos(phase),
+                f"a_c@{names[joint]}": 0.2 * own * math.sin(phase),
+                f"k@{names[joint]}": waves,
+            }
+            torque[:, joint] += 0.2 * own * numpy.sin(waves * q[:, joint] + phase)
         elif effect == "unknown_product":
             third = int(numpy.floor(shape[0] * count)) % count
             torque[:, joint] += 0.6 * own * q[:, other] * (q[:, third] if shape[1] < 0.5 else v[:, joint])
@@ -217,10 +241,13 @@ def main():
         "partner": names[other] if effect == "joint_coupling" else None,
         "accepted": ACCEPTED[effect],
         "strength": strength,
+        "truth": {name: float(value) for name, value in truth.items()},
     }
     with open(path + ".json", "w", encoding="utf-8") as file:
         json.dump(hidden, file)
+    return path
 
 
 if __name__ == "__main__":
-    main()
+    asked_urdf, asked_folder, asked_effect, asked_seed, asked_strength = sys.argv[1:]
+    record(asked_urdf, asked_folder, asked_effect, int(asked_seed), float(asked_strength))

@@ -109,7 +109,10 @@ fn an_arm_in_mujoco_moves_as_it_was_recorded() {
     }
     // The judge finds of the joint what the lab says of it.
     let judged = number(&told["exported"][0]["torque_Nm"], joint);
-    assert!((0.6..1.6).contains(&(judged / alone)), "{judged} {errors:#}");
+    assert!(
+        (0.6..1.6).contains(&(judged / alone)),
+        "{judged} {errors:#}"
+    );
 }
 
 /// A payload goes into the masses, of whatever form; MuJoCo reads the URDF, too.

@@ -126,7 +126,7 @@ fn find_shipped_urdf(name: &str) -> Result<String, ConfigError> {
     }
     let text = crate::config::shipped::text(&path);
     text.map(str::to_owned)
-        .ok_or_else(|| ConfigError::NoUrdf { path: on_disk })
+        .ok_or(ConfigError::NoUrdf { path: on_disk })
 }
 
 /// The file with all that was left out.

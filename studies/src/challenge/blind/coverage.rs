@@ -24,31 +24,82 @@ pub struct Coverage {
     /// Parameters of both kinds in a recording of one session.
     pub one_session: Count,
     /// By parameter, of several sessions.
-    pub by_parameter: BTreeMap<String, Count>,
+    pub by_parameter: BTreeMap<String, OfParameter>,
+    /// Intervals that do not hold it, of several sessions and of one.
+    pub outside: Vec<Outside>,
+}
+
+/// Intervals of one parameter.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct OfParameter {
+    /// How many hold the true value.
+    #[serde(flatten)]
+    pub count: Count,
+    /// Mean of estimate less true value, in standard errors: a systematic error where it
+    /// is far from zero.
+    pub mean_deviation: f64,
+    /// Root mean square of the same: above that of Student's distribution, standard
+    /// errors are too small.
+    pub rms_deviation: f64,
+}
+
+/// An interval that does not hold the true value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outside {
+    /// The parameter.
+    pub parameter: String,
+    /// At which strength of what is hidden.
+    pub strength: f64,
+    /// Seed of the recording.
+    pub seed: u64,
+    /// Sessions in it.
+    pub sessions: usize,
+    /// Its true value.
+    pub truth: f64,
+    /// What was found.
+    pub value: f64,
+    /// With which standard error.
+    pub std_error: f64,
+    /// The interval.
+    pub interval_95: [f64; 2],
 }
 
 impl Coverage {
     pub(super) fn add(&mut self, held: &[Held]) {
         for own in held {
-            match (own.of_one_session, own.is_searched) {
-                (true, _) => self.one_session.note(own.holds),
-                (false, true) => self.searched.note(own.holds),
-                (false, false) => self.fitted.note(own.holds),
+            let found = &own.found;
+            match (found.sessions, own.is_searched) {
+                (1, _) => self.one_session.note(own.holds),
+                (_, true) => self.searched.note(own.holds),
+                (_, false) => self.fitted.note(own.holds),
             }
-            if !own.of_one_session {
-                let count = self.by_parameter.entry(own.parameter.clone());
-                count.or_default().note(own.holds);
+            if found.sessions > 1 {
+                let of = self.by_parameter.entry(found.parameter.clone());
+                of.or_default().note(own);
+            }
+            if !own.holds {
+                self.outside.push(found.clone());
             }
         }
+    }
+}
+
+impl OfParameter {
+    fn note(&mut self, held: &Held) {
+        let before = self.count.tried as f64;
+        self.count.note(held.holds);
+        let own = (held.found.value - held.found.truth) / held.found.std_error.max(1e-300);
+        let mean = |of: f64, own: f64| (of * before + own) / (before + 1.0);
+        self.mean_deviation = mean(self.mean_deviation, own);
+        self.rms_deviation = mean(self.rms_deviation.powi(2), own * own).sqrt();
     }
 }
 
 /// Whether the interval of one parameter holds its true value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Held {
-    parameter: String,
+    found: Outside,
     is_searched: bool,
-    of_one_session: bool,
     holds: bool,
 }
 
@@ -93,19 +144,34 @@ fn of_sessions<H: TestBench>(
         .iter()
         .filter(|own| own.effect.is_none());
     let mut truths = values(hidden, &own);
+    if hidden == Some("presliding_hysteresis") {
+        // The joint has bristles anyway: what is hidden makes them longer.
+        let bristle = there.clone().find(|own| own.name == "bristle");
+        truths.extend(bristle.map(|own| ("delta", own.value)));
+    }
     if !changes_all(hidden) {
         truths.extend(there.filter_map(|own| Some((always(own.name)?, own.value))));
     }
     let held = truths.into_iter().filter_map(|(name, truth)| {
-        let [low, high] = found.parameters.get(name)?.interval_95?;
+        let own = found.parameters.get(name)?;
+        let interval_95 = own.interval_95?;
+        let [low, high] = interval_95;
         Some(Held {
-            parameter: match hidden.filter(|id| found.parameters[name].effect == *id) {
-                Some(id) => format!("{id}.{name}"),
-                None => name.to_owned(),
-            },
             is_searched: SEARCHED.contains(&name),
-            of_one_session: sessions == 1,
             holds: (low..=high).contains(&truth),
+            found: Outside {
+                parameter: match hidden.filter(|id| own.effect == *id) {
+                    Some(id) => format!("{id}.{name}"),
+                    None => name.to_owned(),
+                },
+                strength: case.strength,
+                seed: case.seed,
+                sessions,
+                truth,
+                value: own.value,
+                std_error: own.std_error?,
+                interval_95,
+            },
         })
     });
     Ok(held.collect())
@@ -180,7 +246,6 @@ fn values(hidden: Option<&str>, truth: &[(&str, f64)]) -> Vec<(&'static str, f64
         "wear_drift" => vec![("kw", of("kw"))],
         "torque_sensor_offset" => vec![("os", -of("offset"))],
         "backlash" => vec![("gap", of("gap"))],
-        "presliding_hysteresis" => vec![("delta", of("bristle"))],
         "current_saturation" => vec![("L", of("limit"))],
         _ => Vec::new(),
     }

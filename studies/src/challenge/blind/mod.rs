@@ -19,8 +19,8 @@ use crate::{
 
 use ask::Given;
 pub(super) use ask::true_model_reaches;
-pub use coverage::Coverage;
 use coverage::Held;
+pub use coverage::{Coverage, Outside};
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 
 /// What is tried.
@@ -41,6 +41,9 @@ pub struct Plan {
     pub nothing: usize,
     /// Recordings that hide two effects of the catalogue at once, at full strength.
     pub two: usize,
+    /// Whether nothing is diagnosed: the true models are fitted, and their intervals held
+    /// against the truth.
+    pub intervals_only: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -148,7 +151,7 @@ impl Plan {
         let questions = shard.part_of(self.questions::<H>()?);
         let done = AtomicUsize::new(0);
         let answers = parallel::map_until(&questions, stop, |_, (place, question)| {
-            let value = answer(question)?;
+            let value = self.answer(question)?;
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, questions.len());
             Ok::<_, String>(Placed {
                 place: *place,
@@ -187,19 +190,22 @@ impl Plan {
         }
         Ok(test)
     }
-}
 
-fn answer<H: TestBench>(question: &Question<H>) -> Result<Answer, String> {
-    Ok(match question {
-        Question::One(case) => Answer {
-            given: Some(ask::ask(case)?),
-            held: coverage::held(case)?,
-            of_two: None,
-        },
-        Question::Two(seed) => Answer {
-            given: None,
-            held: Vec::new(),
-            of_two: Some(two::two_at_once::<H>(*seed)?),
-        },
-    })
+    fn answer<H: TestBench>(&self, question: &Question<H>) -> Result<Answer, String> {
+        Ok(match question {
+            Question::One(case) => Answer {
+                given: match self.intervals_only {
+                    true => None,
+                    false => Some(ask::ask(case)?),
+                },
+                held: coverage::held(case)?,
+                of_two: None,
+            },
+            Question::Two(seed) => Answer {
+                given: None,
+                held: Vec::new(),
+                of_two: Some(two::two_at_once::<H>(*seed)?),
+            },
+        })
+    }
 }
