@@ -65,6 +65,8 @@ export function listen(canvas, refuse, turns) {
     const start = target || begin();
     // The hand is gripped where it is, not moved to the pointer, and stays in the plane in which it is gripped.
     grip = { id: event.pointerId, plane, from: start, x: event.clientX, y: event.clientY };
+    // For those who look at the page by a program.
+    canvas.dataset.grip = start.join(" ");
     move(start);
     event.preventDefault();
   });

@@ -8,7 +8,7 @@ import { along, frame, length, plus, rolled, unit } from "./vectors.js";
 const THICK = 0.04;
 const THIN = 0.024;
 /** How much of a link is within the housings of its joints, as a share of its radius there. */
-const WITHIN = 0.75;
+const WITHIN = 1;
 /** Radius of what such an arm touches with [m]. */
 const POINT = 0.003;
 

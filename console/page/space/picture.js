@@ -203,7 +203,7 @@ export function draw(canvas, about, snapshot, delayed, target) {
   // For those who look at the page by a program.
   Object.assign(canvas.dataset, {
     view: shown(), links: own.arm.length, things: spatial.things.length, faces, scale: eye.scaleAt(tip),
-    tip: tip.join(" "), ghost: seen ? seen.join(" ") : "",
+    tip: tip.join(" "), measured: (snapshot.tip || []).join(" "), ghost: seen ? seen.join(" ") : "",
   });
 }
 
