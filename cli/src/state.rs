@@ -26,6 +26,8 @@ use super::{
     after_help = "After a hold (the master or the link fell silent) the arm stays where it is until it is re-armed:\n  \
     ferntast state follower          # tells the state\n  \
     ferntast state follower resume\n  \
+    ferntast state leader clutch     # the hand moves, the arm stays ...\n  \
+    ferntast state leader engage     # ... until it leads the arm again, from where both are\n  \
     ferntast state --follow          # what happens, with times and reasons, until Ctrl-C"
 )]
 pub struct Arguments {
@@ -65,6 +67,10 @@ enum StateChange {
     Pause,
     /// Leave the hold: re-arm.
     Resume,
+    /// Of the leader: the hand moves, the arm stays where it is.
+    Clutch,
+    /// Of the leader: the hand leads the arm again, from where both are.
+    Engage,
 }
 
 /// How long an answer is waited for.
@@ -80,6 +86,15 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             json,
         );
     };
+    let clutches = matches!(
+        arguments.command,
+        Some(StateChange::Clutch | StateChange::Engage)
+    );
+    if clutches && matches!(device, Device::Follower) {
+        return Err(Failure::refused(
+            "the clutch is the hand's: ferntast state leader clutch, or engage",
+        ));
+    }
     let (command_topic, state_topic) = match device {
         Device::Follower => (
             topics::FOLLOWER_STATE_COMMAND,
@@ -92,6 +107,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         StateChange::Disable => (StateCommand::DISABLE, OperatingState::DISABLED),
         StateChange::Pause => (StateCommand::PAUSE, OperatingState::PAUSED),
         StateChange::Resume => (StateCommand::RESUME, OperatingState::ENABLED),
+        StateChange::Clutch => (StateCommand::CLUTCH, OperatingState::ENABLED),
+        StateChange::Engage => (StateCommand::ENGAGE, OperatingState::ENABLED),
     });
     let state = match visit.as_ref().and_then(Visit::bus) {
         Some(bus) => ask(bus, command_topic, state_topic, wish)?,

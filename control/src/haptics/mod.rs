@@ -9,6 +9,7 @@
 //! limit allows.
 
 mod authority;
+mod clutch;
 mod config;
 mod force;
 
@@ -16,6 +17,7 @@ pub use authority::{Authority, NotAuthorised};
 pub use config::MasterConfig;
 pub use force::{ForceLimiter, LimitedForce};
 
+use self::clutch::Clutch;
 use crate::delay::Motion;
 use crate::operating::{OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
 use crate::orientation::Orientation;
@@ -116,11 +118,13 @@ pub struct HandRefusalCounts {
 /// What a step of the master gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MasterOutput {
-    /// The hand, as far as it can be believed now; `None` while it is silent,
-    /// or the master is not enabled.
+    /// What the arm is led by: the hand, as far as it can be believed now, by way of the clutch;
+    /// `None` while it is silent, or the master is not enabled.
     pub hand: Option<Motion>,
-    /// How it is turned, where it says so.
+    /// How the hand is turned, where it says so and the clutch is closed.
     pub orientation: Option<Orientation>,
+    /// The clutch is open: the arm stays, and the hand feels nothing.
+    pub clutched: bool,
     /// The hand moved on since the last step: pass it on.
     pub fresh: bool,
     /// Force on the hand \[N\].
@@ -140,6 +144,8 @@ struct Hand {
     stamp_ns: i64,
     accepted_ns: i64,
     motion: Motion,
+    /// What the arm is led by \[m\].
+    led: [f64; 3],
     orientation: Option<Orientation>,
 }
 
@@ -151,6 +157,9 @@ pub struct Master {
     authority: Authority,
     limiter: ForceLimiter,
     hand: Option<Hand>,
+    clutch: Clutch,
+    /// Whose the clutch is.
+    clutched_by: Option<u64>,
     fresh: bool,
     refusals: HandRefusalCounts,
     planted: Planted,
@@ -173,6 +182,8 @@ impl Master {
             authority: Authority::new(config.release_after),
             limiter: ForceLimiter::new(config.force_limit, config.force_rate_limit),
             hand: None,
+            clutch: Clutch::default(),
+            clutched_by: None,
             fresh: false,
             refusals: HandRefusalCounts::default(),
             planted: Planted::NONE,
@@ -217,11 +228,30 @@ impl Master {
         self.machine.command(command, true)?;
         if command == StateCommand::Disable {
             self.authority.release();
+            self.clutch = Clutch::default();
         }
         if self.state() != OperatingState::Enabled || command == StateCommand::Resume {
             self.hand = None;
         }
         Ok(())
+    }
+
+    /// Opens the clutch, so that the hand moves and the arm stays, or closes it again. It stays
+    /// through holds; `disable` and another hand take hand and arm together as they were first.
+    ///
+    /// # Errors
+    ///
+    /// The master is disabled.
+    pub fn set_clutch(&mut self, open: bool) -> Result<(), HandRefusal> {
+        match self.state() {
+            state @ (OperatingState::Disabled | OperatingState::Fault) => {
+                Err(HandRefusal::NotEnabled { state })
+            }
+            OperatingState::Enabled | OperatingState::Paused => {
+                self.clutch.set_open(open);
+                Ok(())
+            }
+        }
     }
 
     /// Takes a hand command that was not offered before.
@@ -287,6 +317,10 @@ impl Master {
             None => [0.0; 3],
         };
         self.authority.take(now_ns, command.source);
+        if self.clutched_by != Some(command.source) {
+            self.clutch = Clutch::default();
+            self.clutched_by = Some(command.source);
+        }
         self.hand = Some(Hand {
             stamp_ns: command.stamp_ns,
             accepted_ns: now_ns,
@@ -294,6 +328,7 @@ impl Master {
                 position: command.position,
                 velocity,
             },
+            led: self.clutch.lead(command.position),
             orientation: command.orientation,
         });
         self.fresh = true;
@@ -333,14 +368,24 @@ impl Master {
             .map(|hand| now_ns.saturating_sub(hand.accepted_ns));
         let live = enabled && age_ns.is_some_and(|age| age <= nanoseconds(self.config.silence));
         let force = if live || self.planted.lacks(Rule::HandLetGo) {
-            self.limiter.step(dt, reflected.unwrap_or([0.0; 3]))
+            let share = self.clutch.share(dt);
+            let felt = reflected.unwrap_or([0.0; 3]).map(|own| share * own);
+            self.limiter.step(dt, felt)
         } else {
             self.limiter.stop()
         };
         let hand = self.hand.filter(|_| live);
+        let clutched = self.clutch.is_open();
         MasterOutput {
-            hand: hand.map(|own| own.motion),
-            orientation: hand.and_then(|own| own.orientation),
+            hand: hand.map(|own| Motion {
+                position: own.led,
+                velocity: match clutched {
+                    true => [0.0; 3],
+                    false => own.motion.velocity,
+                },
+            }),
+            orientation: hand.filter(|_| !clutched).and_then(|own| own.orientation),
+            clutched,
             fresh: std::mem::take(&mut self.fresh) && live,
             force: force.force,
             force_limited: force.limited,

@@ -143,3 +143,47 @@ proptest! {
         }
     }
 }
+
+/// A hand that goes on while the clutch is open: the arm stays, the force is gone, and it goes on
+/// from there.
+#[test]
+fn the_clutch_takes_hand_and_arm_apart_and_together_without_a_step() {
+    let mut master = enabled();
+    let (mut led, mut force) = (None, [0.0; 3]);
+    for ms in 0..600_i64 {
+        let now = NOW + ms * 1_000_000;
+        match ms {
+            200 => master.set_clutch(true).unwrap(),
+            // A hold in between does not close it.
+            300 => master.command(StateCommand::Pause).unwrap(),
+            301 => master.command(StateCommand::Resume).unwrap(),
+            400 => master.set_clutch(false).unwrap(),
+            _ => {}
+        }
+        // 0.1 m/s.
+        let _ = master.offer(now, &hand(now, A, 1e-4 * ms as f64));
+        let step = master.step(now, 1e-3, Some([2.0, 0.0, 0.0]));
+        let Some(now) = step.hand.map(|own| own.position[0]) else {
+            assert_eq!(ms, 300);
+            continue;
+        };
+        let before = led.replace(now).unwrap_or(now);
+        let open = (200..400).contains(&ms);
+        assert_eq!(step.clutched, open, "{ms}");
+        let wanted = match open || ms == 400 {
+            true if ms > 200 => 0.0,
+            _ => 1e-4,
+        };
+        assert!(ms == 0 || (now - before - wanted).abs() < 1e-12, "{ms} ms");
+        if open {
+            assert_eq!(step.force[0], 0.0_f64.max(force[0] - 1.0), "{ms} ms");
+        }
+        force = step.force;
+    }
+    // All of the force in the end, and the hand 20 mm ahead.
+    assert!((force[0] - 2.0).abs() < 1e-9);
+    assert!((led.unwrap() - 0.0399).abs() < 1e-9);
+    // Until it is disabled.
+    master.command(StateCommand::Disable).unwrap();
+    assert!(master.set_clutch(true).is_err());
+}

@@ -50,7 +50,7 @@ impl FrictionCommandSample {
 }
 
 codes! {
-    /// The state commands of CRTK.
+    /// The state commands of CRTK, and the words to the clutch of the hand.
     pub struct StateCommand {
         /// Drives on.
         ENABLE = 1 "enable",
@@ -62,6 +62,10 @@ codes! {
         RESUME = 4 "resume",
         /// Leave a hold for silent commands after a short gap in the link; no person's word.
         RESUME_AFTER_GAP = 5 "resume_after_gap",
+        /// To the master: the hand moves, the arm stays.
+        CLUTCH = 6 "clutch",
+        /// To the master: the hand leads the arm again, from where both are.
+        ENGAGE = 7 "engage",
     }
 }
 

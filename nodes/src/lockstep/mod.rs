@@ -144,6 +144,22 @@ impl LockstepSession {
         })
     }
 
+    /// Gives a word to the master, `seconds` \[s\] after now.
+    ///
+    /// # Errors
+    ///
+    /// A topic that cannot be opened.
+    pub fn command_leader_at(
+        &mut self,
+        seconds: f64,
+        command: StateCommand,
+    ) -> Result<(), RunError> {
+        let topic = topics::LEADER_STATE_COMMAND;
+        self.publish_at(seconds, topic, move |now| {
+            StateCommandSample::new(now, command)
+        })
+    }
+
     fn publish_at<M: Message>(
         &mut self,
         seconds: f64,

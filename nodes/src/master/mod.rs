@@ -11,8 +11,8 @@ use ferntast_model::ParameterError;
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        AuthoritySample, Fault, Frame, Level, OperatingStateSample, PoseSample, StateCommandSample,
-        WrenchSample,
+        AuthoritySample, Fault, Frame, Level, OperatingStateSample, PoseSample, StateCommand,
+        StateCommandSample, WrenchSample,
     },
 };
 
@@ -73,7 +73,8 @@ pub struct MasterNode {
     force: [f64; 3],
     last: Option<Time>,
     states: StatePublisher,
-    authority: Option<(u64, u64, u64)>,
+    /// Holder, refused source, how many were refused, whether the clutch is open.
+    authority: Option<(u64, u64, u64, bool)>,
     authority_due: Time,
     message: Text<96>,
     planted: Planted,
@@ -136,7 +137,7 @@ impl MasterNode {
         }
     }
 
-    fn publish_authority(&mut self, now: Time) -> Option<AuthoritySample> {
+    fn publish_authority(&mut self, now: Time, clutched: bool) -> Option<AuthoritySample> {
         let authority = self.master.authority();
         let sample = AuthoritySample {
             holder: authority.holder().unwrap_or(0),
@@ -147,13 +148,14 @@ impl MasterNode {
         let (holder, refused) = (sample.holder, sample.refused);
         let changed = self
             .authority
-            .is_none_or(|(h, r, _)| (h, r) != (holder, refused));
+            .is_none_or(|(h, r, _, c)| (h, r, c) != (holder, refused, clutched));
         if !changed && now < self.authority_due {
             return None;
         }
-        self.authority = Some((holder, refused, sample.refused_count));
+        self.authority = Some((holder, refused, sample.refused_count, clutched));
         self.authority_due = now.plus_nanos(AUTHORITY_PERIOD_NANOS);
         let reason = match (holder, refused) {
+            (1.., _) if clutched => "the clutch is open: the hand moves, the arm stays; say engage",
             (0, _) => "nobody: the first valid hand takes it",
             (_, 0) => "held by the first valid hand",
             _ => {
@@ -173,12 +175,17 @@ impl Node for MasterNode {
 
     fn step(&mut self, now: Time, input: &MasterInput, output: &mut MasterOutput) {
         for sample in input.state_command.iter() {
-            let Some(command) = to_law(sample.command) else {
-                continue;
+            let refused = match (sample.command, to_law(sample.command)) {
+                (StateCommand::CLUTCH | StateCommand::ENGAGE, _) => {
+                    let opens = sample.command == StateCommand::CLUTCH;
+                    self.master.set_clutch(opens).err().map(Text::display)
+                }
+                (_, Some(command)) => self.master.command(command).err().map(Text::display),
+                (_, None) => None,
             };
-            if let Err(refusal) = self.master.command(command) {
+            if let Some(refusal) = refused {
                 output.health.raise(Fault::StateCommandRefused, Level::WARN);
-                self.message = Text::display(refusal);
+                self.message = refusal;
             }
         }
         let dt = self
@@ -228,7 +235,7 @@ impl Node for MasterNode {
             });
         }
         output.servo_cf = Some(WrenchSample::force(now, Frame::LEADER_BASE, step.force));
-        output.authority = self.publish_authority(now);
+        output.authority = self.publish_authority(now, step.clutched);
         output.operating_state = self.states.publish(now, step.state, step.reason, false);
 
         let health = &mut output.health;

@@ -98,6 +98,10 @@ pub enum Word {
     Pause,
     /// Re-arm.
     Resume,
+    /// The hand moves, the arm stays. Of schedules in files: none is drawn.
+    Clutch,
+    /// The hand leads the arm again.
+    Engage,
 }
 
 /// What is wrong with a message of a peer on ROS 2.

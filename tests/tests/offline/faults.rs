@@ -279,3 +279,52 @@ fn what_cannot_be_run_is_refused() {
         refused(&session, &[&["faults"], arguments].concat(), words);
     }
 }
+
+/// The clutch, opened and closed while other things go wrong: in a hold, over a gap in the link, with
+/// a host that stands still, a second hand, a master that is started again.
+#[test]
+fn a_clutch_leads_the_arm_nowhere_whatever_goes_wrong_meanwhile() {
+    let session = Session::new();
+    let clutch = |at: i64, word: &str| {
+        format!("{{ at_ms = {at}, fault = \"word\", device = \"leader\", word = \"{word}\" }},\n")
+    };
+    let laws = [
+        "position_force",
+        "wave",
+        "four_channel",
+        "two_layer",
+        "model_mediated",
+    ];
+    let wrong = [
+        "",
+        "{ at_ms = 1700, fault = \"blackout\", way = \"forth\", ms = 15 },",
+        "{ at_ms = 1690, fault = \"host_stall\", side = \"operator\", ms = 9 },",
+        "{ at_ms = 1650, fault = \"word\", device = \"follower\", word = \"pause\" },
+         { at_ms = 1680, fault = \"word\", device = \"both\", word = \"resume\" },",
+        "{ at_ms = 1695, fault = \"second_hand\", ms = 20 },",
+        "{ at_ms = 1650, fault = \"crash\", node = \"master\" },
+         { at_ms = 1900, fault = \"word\", device = \"both\", word = \"resume\" },",
+        "{ at_ms = 1700, fault = \"loss\", way = \"forth\", share = 0.5, ms = 60 },",
+    ];
+    for (number, law) in laws.iter().enumerate() {
+        for (other, wrong) in wrong.iter().enumerate() {
+            let events = [
+                clutch(1300, "clutch"),
+                clutch(1700, "engage"),
+                clutch(2600, "clutch"),
+                clutch(2603, "engage"),
+                clutch(3000, "clutch"),
+                clutch(3400, "engage"),
+            ];
+            let name = format!("clutch_{number}_{other}.toml");
+            let text = format!(
+                "scenario = \"rokviss\"\nseed = {other}\nlaw = \"{law}\"\nlength_ms = 3800\nevent = [\n{}{wrong}\n]\n",
+                events.concat()
+            );
+            fs::write(session.folder().join(&name), text).expect("scratch folder");
+            let json = faults(&session, &["--replay", &name]);
+            let none = json["violations"].as_array().is_none_or(Vec::is_empty);
+            assert!(none, "{law}, {wrong}: {json:#}");
+        }
+    }
+}

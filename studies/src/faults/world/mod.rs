@@ -261,6 +261,8 @@ impl<'a> World<'a> {
             Word::Disable => StateCommand::DISABLE,
             Word::Pause => StateCommand::PAUSE,
             Word::Resume => StateCommand::RESUME,
+            Word::Clutch => StateCommand::CLUTCH,
+            Word::Engage => StateCommand::ENGAGE,
         };
         let said = Said {
             tick: self.tick,
