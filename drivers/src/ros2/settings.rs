@@ -48,9 +48,10 @@ parameters! {
     pub struct Settings {
         /// Topic on which the robot tells its joints.
         pub joint_states: String = "/joint_states".to_owned(),
-        /// What the controller's commands are.
-        pub interface: Interface = Interface::Effort,
-        /// Topic of the controller's commands; `/forward_effort_controller/commands` and its like
+        /// What the controller's commands are. Torques go by ROS 2 and back in some milliseconds, which
+        /// the servo's usual gains do not bear: velocities are what is asked for otherwise.
+        pub interface: Interface = Interface::Velocity,
+        /// Topic of the controller's commands; `/forward_velocity_controller/commands` and its like
         /// where it is not given.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub command: Option<String> = None,

@@ -58,6 +58,7 @@ fn an_effort_controller_gets_the_torque_less_what_the_robot_carries_itself() {
     let now = driven(&torque, &position, &rest);
     assert_eq!(of(Interface::Effort).next(&now), torque);
     let own = commands(&Settings {
+        interface: Interface::Effort,
         carries_itself: true,
         ..Settings::default()
     })

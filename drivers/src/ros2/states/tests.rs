@@ -33,14 +33,15 @@ fn told(stamp: Time, change: impl Fn(&mut sensor_msgs::JointState)) -> RobotJoin
         ros.velocity.push(0.01 * position);
         ros.effort.push(10.0 * position);
     };
-    for (joint, name) in joints.iter().enumerate().rev() {
-        add(name, HOME[joint]);
+    for (joint, position) in HOME.into_iter().enumerate().rev() {
+        add(joints.get(joint).unwrap(), position);
         add(&format!("finger_{joint}"), f64::NAN);
     }
     change(&mut ros);
     RobotJointsSample::from_ros(&ros).unwrap()
 }
 
+/// The place of a joint in it.
 fn place(name: &str, ros: &sensor_msgs::JointState) -> usize {
     ros.name.iter().position(|own| own == name).unwrap()
 }
@@ -123,7 +124,10 @@ fn what_is_wrong_with_a_joint_is_told_with_its_name() {
             Fault::MeasurementInvalid,
         ),
         (
-            |ros| ros.position[place("panda_joint2", ros)] = f64::NAN,
+            |ros| {
+                let place = place("panda_joint2", ros);
+                ros.position[place] = f64::NAN;
+            },
             "position of panda_joint2 is NaN",
             Fault::MeasurementInvalid,
         ),
@@ -147,12 +151,18 @@ fn what_is_wrong_with_a_joint_is_told_with_its_name() {
             Fault::MeasurementInvalid,
         ),
         (
-            |ros| ros.position[place("panda_joint4", ros)] = 2.356,
+            |ros| {
+                let place = place("panda_joint4", ros);
+                ros.position[place] = 2.356;
+            },
             "panda_joint4 at 2.36, not in -3.12 … -0.02: zero or sign wrong?",
             Fault::MeasurementInvalid,
         ),
         (
-            |ros| ros.velocity[place("panda_joint3", ros)] = 40.0,
+            |ros| {
+                let place = place("panda_joint3", ros);
+                ros.velocity[place] = 40.0;
+            },
             "panda_joint3 at 40.00 rad/s",
             Fault::MeasurementInvalid,
         ),
