@@ -48,9 +48,10 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "scripted|crtk|FILE")]
     pub hand: Option<String>,
 
-    /// What is behind the arm's topics: simulated (the arm's file says what is true of it), or process:COMMAND,
-    /// a plant in a program of its own, stepped over a pipe (docs/process_driver.md).
-    #[arg(long, value_name = "simulated|process:COMMAND")]
+    /// What is behind the arm's topics: simulated (the arm's file says what is true of it); dynamixel or
+    /// feetech, motors on a serial bus that the arm's file lists (docs/motors.md); or process:COMMAND, a plant
+    /// in a program of its own, stepped over a pipe (docs/process_driver.md).
+    #[arg(long, value_name = "simulated|dynamixel|feetech|process:COMMAND")]
     pub driver: Option<Driver>,
 
     /// Seed of everything that is random.

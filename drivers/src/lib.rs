@@ -8,6 +8,9 @@
 
 mod choice;
 mod driver;
+pub mod dynamixel;
+pub mod feetech;
+pub mod motors;
 mod node;
 pub mod process;
 pub mod serial_arm;

@@ -6,6 +6,7 @@ pub mod serial;
 mod serial_description;
 
 pub use config::{arm_file, load_arm, load_config};
+pub(crate) use serial_description::describe_serial;
 
 use ferntast_model::{ArmModel, Joints};
 use ferntast_msgs::sample::{Fault, JointNames, Level, RobotDescriptionSample};

@@ -12,6 +12,7 @@ mod dynamics;
 mod lab_page;
 mod link_tls;
 mod masters;
+mod motors;
 mod numbers;
 mod own_tools;
 mod refusals;

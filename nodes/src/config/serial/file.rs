@@ -16,7 +16,7 @@
 //! normal = [0.0, 0.0, 1.0]
 //!
 //! # [servo] and [estimator]: as in a scenario and an arm's file, key by key
-//! # [truth]: what only the arm's driver reads
+//! # [truth]: what only the simulated arm reads; [driver.NAME]: what only that driver reads
 //! ```
 
 use std::{fs, path::Path};
@@ -42,6 +42,7 @@ struct Written {
     #[serde(default)]
     estimator: toml::Table,
     truth: Option<serde_json::Value>,
+    driver: Option<serde_json::Value>,
 }
 
 /// The section `[arm]`.
@@ -136,6 +137,7 @@ fn resolved(name: String, urdf: String, written: Written) -> Result<SerialFile, 
         servo,
         estimator,
         truth,
+        driver,
     } = written;
     let arm = arm(&robot, section.base.as_deref(), section.tip.as_deref())?;
     let mut defaults = Defaults::new(&arm, section.gravity, section.home)?;
@@ -164,6 +166,7 @@ fn resolved(name: String, urdf: String, written: Written) -> Result<SerialFile, 
         estimator: merged(&forces, estimator, "estimator")?,
         servo: merged(&own, servo, "servo")?,
         truth,
+        driver,
     };
     file.believed()?;
     Ok(file)

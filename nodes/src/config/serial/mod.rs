@@ -48,6 +48,9 @@ pub struct SerialFile {
     /// What only the arm's driver reads; what is believed where nothing is said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<serde_json::Value>,
+    /// What drivers of real arms read, each the section of its name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub driver: Option<serde_json::Value>,
 }
 
 /// What is believed of a serial arm, and what its frames are called.
