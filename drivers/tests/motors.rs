@@ -14,13 +14,13 @@ use ferntast_drivers::{
     dynamixel::Dynamixel,
     motors::{
         MotorArm, MotorError,
-        family::{Drive, Family, States},
+        family::{Drive, Family, Missed, States},
         section::Section,
     },
 };
 use ferntast_model::Joints;
 use ferntast_msgs::sample::{Fault, JointNames, Level};
-use ferntast_nodes::node::NodeHealth;
+use ferntast_nodes::{config::serial::load_serial, node::NodeHealth};
 use motor_bus::MotorBus;
 use serde_json::{Value, json};
 
@@ -45,7 +45,7 @@ fn section(port: &str, changes: Value) -> Section {
 }
 
 fn bus(options: &[&str]) -> MotorBus {
-    let motors = json!([{"id": 3}, {"id": 7, "weight": 0.3}]);
+    let motors = json!([{"id": 3, "inertia": 0.05}, {"id": 7, "inertia": 0.0125, "weight": 0.15}]);
     MotorBus::start("dynamixel", &motors, options)
 }
 
@@ -129,7 +129,7 @@ fn joints_go_where_they_are_pulled_whatever_their_motors_sense_and_gear() {
         let torque = reading.motor_torque.unwrap()[1].abs();
         let current = bus.number(1, "current").abs();
         assert!(
-            (torque - 2.0 * TORQUE_CONSTANT * current).abs() < 0.05,
+            (torque - 2.0 * TORQUE_CONSTANT * current).abs() < 0.15,
             "{torque} Nm of {current} A"
         );
         assert!(readings > 300, "{readings} readings");
@@ -177,7 +177,7 @@ fn an_arm_whose_servo_is_silent_is_held() {
     drive(&mut arm, 0.3, |_| [0.0; 2]);
     let way = (bus.number(0, "position") - before) * 360.0 / 4096.0;
     // 0.6 Nm are 0.34 A, which the gain asks for 1.8 degrees away.
-    assert!((0.3..3.0).contains(&way), "{way} degrees");
+    assert!((0.3..4.5).contains(&way), "{way} degrees");
 }
 
 #[test]
@@ -191,17 +191,21 @@ fn motors_that_hear_nothing_stop_and_follow_again() {
     currents[0] = 0.4;
     let step = |family: &mut Dynamixel, states: &mut States, times: usize| {
         for _ in 0..times {
-            family.step(&Drive::Currents(currents), states).unwrap();
+            // An answer that a busy machine holds up is no matter.
+            if let Err(Missed::Error(error)) = family.step(&Drive::Currents(currents), states) {
+                panic!("{error}");
+            }
             sleep(Duration::from_millis(2));
         }
     };
     step(&mut family, &mut states, 60);
     assert!(bus.number(0, "velocity") > 0.5);
+    let before = bus.number(0, "trips");
     // As if the program had died.
     sleep(Duration::from_millis(400));
     let (trips, velocity) = (bus.number(0, "trips"), bus.number(0, "velocity"));
     assert!(
-        trips == 1.0 && velocity.abs() < 0.1,
+        trips > before && velocity.abs() < 0.1,
         "{trips} trips, {velocity} rad/s"
     );
     step(&mut family, &mut states, 100);
@@ -264,7 +268,7 @@ fn motors_that_do_not_fit_are_refused_before_anything_moves() {
         (
             both(json!({"id": 7, "p_gain": 20})),
             json!({}),
-            "set it to 59 or more",
+            "set it to 70 or more",
         ),
     ];
     for (motors, changes, words) in cases {
@@ -364,4 +368,71 @@ fn a_section_that_does_not_fit_the_arm_is_told() {
     let mut wrong = motor(2, "elbow");
     wrong["direction"] = json!(0);
     assert!(of(json!([motor(1, "base"), wrong])).contains("direction is 1 or -1"));
+}
+
+/// The example of the manual is read, with its units turned; an arm without such a section is
+/// told where it goes.
+#[test]
+fn the_manuals_arm_of_x_series_motors_is_read() {
+    let manual = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/motors.md");
+    let manual = std::fs::read_to_string(manual).unwrap();
+    let mut blocks = manual
+        .split("```toml\n")
+        .filter_map(|own| own.split("```").next());
+    let example = blocks
+        .find(|own| own.contains("[driver.dynamixel]"))
+        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='0.1 0 0'/><mass value='0.2'/>\
+             <inertia ixx='1e-4' iyy='1e-4' izz='1e-4' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
+             <origin xyz='0.2 0 0'/><axis xyz='0 0 1'/>\
+             <limit lower='-2' upper='2' effort='5' velocity='3'/></joint>"
+        )
+    };
+    let urdf = ["base", "upper", "lower", "tip"].map(link).concat()
+        + &joint("shoulder", "base", "upper")
+        + &joint("elbow", "upper", "lower")
+        + "<joint name='end' type='fixed'><parent link='lower'/><child link='tip'/><origin xyz='0.2 0 0'/></joint>";
+    let urdf = format!("<robot name='my_arm'>{urdf}</robot>");
+    std::fs::write(folder.path().join("my_arm.urdf"), urdf).unwrap();
+    let load = |text: &str| {
+        let path = folder.path().join("my_arm.toml");
+        std::fs::write(&path, text).unwrap();
+        let loaded = load_serial(path.to_str().unwrap());
+        loaded.unwrap_or_else(|error| panic!("{error}")).unwrap()
+    };
+    let joints = JointNames::new(["shoulder", "elbow"]).unwrap();
+    let section = Section::of("dynamixel", &load(example), &joints).unwrap();
+    assert_eq!((section.baud, section.watchdog), (4_000_000, 0.1));
+    let shoulder = &section.motor[0];
+    // A turn of the motor, against the joint, which turns half as far.
+    let half = shoulder.position(2048.0 - 4096.0);
+    assert!((half - std::f64::consts::PI).abs() < 1e-12, "{half}");
+    assert!((shoulder.torque(-1.0) - 4.8).abs() < 1e-12);
+    assert!((shoulder.current(shoulder.torque(0.3)) - 0.3).abs() < 1e-12);
+    assert!((shoulder.velocity(-1.0) - 0.5).abs() < 1e-12);
+
+    let arm = example.split("[driver.dynamixel]").next().unwrap();
+    let none = Section::of("dynamixel", &load(arm), &joints)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        none.contains("write one with the port and a [[driver.dynamixel.motor]] for each joint"),
+        "{none}"
+    );
+    let unknown = example.replace("baud =", "baudrate =");
+    let unknown = Section::of("dynamixel", &load(&unknown), &joints)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        unknown.contains("[driver.dynamixel]: unknown field `baudrate`"),
+        "{unknown}"
+    );
 }

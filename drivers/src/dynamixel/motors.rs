@@ -18,8 +18,9 @@ use crate::motors::{
     section::Section,
 };
 
-/// How much further ahead the goal is than just far enough \[-\].
-const AHEAD: f64 = 1.25;
+/// How much further ahead the goal is than just far enough: the motor moves on between two
+/// cycles \[-\].
+const AHEAD: f64 = 1.5;
 /// The farthest that it may be ahead \[count\]: an eighth of a turn.
 const FARTHEST: f64 = 512.0;
 /// Cycles between two looks at something that changes slowly.
@@ -279,6 +280,7 @@ impl Family for Dynamixel {
         self.cycles = SLOWLY - 1;
         let looked = self.look(&mut states);
         looked.map_err(|missed| self.line.missed(missed))?;
+        self.line.bus.settle();
         Ok(states)
     }
 

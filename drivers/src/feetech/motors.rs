@@ -195,6 +195,7 @@ impl Family for Feetech {
         for place in 0..self.duty_by_count.len() {
             self.prepare(place, states[place].voltage)?;
         }
+        self.line.bus.settle();
         Ok(states)
     }
 

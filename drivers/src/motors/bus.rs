@@ -12,9 +12,11 @@ use super::{
     protocol::{Answer, EVERYBODY, Found, Instruction, Protocol},
 };
 
-/// How long a motor may take beside the bytes' own time: an adapter hands over what it got
-/// after 16 ms at the latest, as its maker has set it.
+/// How long an answer may take beside the bytes' own time, at first: an adapter hands over what
+/// it got after 16 ms at the latest, as its maker has set it.
 const PATIENCE: Duration = Duration::from_millis(20);
+/// The least that it is once one knows how long they do take.
+const LEAST_PATIENCE: Duration = Duration::from_millis(4);
 
 /// A bus of motors that speak `P`.
 pub struct Bus<P> {
@@ -23,6 +25,10 @@ pub struct Bus<P> {
     parameters: Vec<u8>,
     input: Vec<u8>,
     damaged: u32,
+    patience: Duration,
+    /// When the last instruction was sent, and the longest time from there to an answer.
+    sent: Instant,
+    slowest: Duration,
     protocol: PhantomData<P>,
 }
 
@@ -35,6 +41,9 @@ impl<P: Protocol> Bus<P> {
             parameters: Vec::with_capacity(512),
             input: Vec::with_capacity(1024),
             damaged: 0,
+            patience: PATIENCE,
+            sent: Instant::now(),
+            slowest: Duration::ZERO,
             protocol: PhantomData,
         }
     }
@@ -42,6 +51,12 @@ impl<P: Protocol> Bus<P> {
     /// How many answers had a wrong checksum since the start.
     pub fn damaged(&self) -> u32 {
         self.damaged
+    }
+
+    /// Waits from here on no longer for an answer than by what those so far took: one that is
+    /// lost costs little then.
+    pub fn settle(&mut self) {
+        self.patience = (2 * self.slowest).clamp(LEAST_PATIENCE, PATIENCE);
     }
 
     /// Whether motor `id` is there; what it says of itself.
@@ -169,11 +184,12 @@ impl<P: Protocol> Bus<P> {
         parameters(&mut self.parameters);
         P::write(&mut self.packet, id, instruction, &self.parameters);
         self.input.clear();
+        self.sent = Instant::now();
         self.port.send(&self.packet).map_err(Lost::Port)
     }
 
     fn deadline(&self, bytes: usize) -> Instant {
-        Instant::now() + self.port.time_of(self.packet.len() + bytes) + PATIENCE
+        Instant::now() + self.port.time_of(self.packet.len() + bytes) + self.patience
     }
 
     /// The answer of motor `id`; one of another motor is none.
@@ -198,6 +214,7 @@ impl<P: Protocol> Bus<P> {
             match P::find(&self.input) {
                 Found::Answer(answer, length) => {
                     self.input.drain(..length);
+                    self.slowest = self.slowest.max(self.sent.elapsed());
                     return Ok(answer);
                 }
                 Found::Damaged(length) => {

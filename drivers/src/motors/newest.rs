@@ -53,19 +53,21 @@ impl<const N: usize> Newest<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn what_is_read_was_written_together() {
-        let newest = Newest::<20>::new();
-        let last = 200_000;
+        let (newest, enough) = (Newest::<20>::new(), AtomicBool::new(false));
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                for number in 1..=last {
-                    newest.write(&[f64::from(number); 20]);
+                let mut number = 0.0;
+                while !enough.load(Ordering::Relaxed) {
+                    number += 1.0;
+                    newest.write(&[number; 20]);
                 }
             });
             let (mut seen, mut different) = (0.0, 0);
-            while seen < f64::from(last) {
+            while different < 1000 {
                 let Some((version, values)) = newest.read() else {
                     continue;
                 };
@@ -74,7 +76,7 @@ mod tests {
                 different += u32::from(values[0] > seen);
                 seen = values[0];
             }
-            assert!(different > 1);
+            enough.store(true, Ordering::Relaxed);
         });
     }
 }

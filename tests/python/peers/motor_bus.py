@@ -401,7 +401,8 @@ class Bus:
         own, size = self.protocol, struct.calcsize(self.protocol.numbers)
         heard = self.motors.values() if number == 0xFE else [m for m in [self.motors.get(number)] if m]
         for motor in heard:
-            motor.heard = time.monotonic()
+            if not motor.mute:
+                motor.heard = time.monotonic()
         if number != 0xFE:
             if not heard or heard[0].mute:
                 return ""

@@ -12,7 +12,6 @@ mod dynamics;
 mod lab_page;
 mod link_tls;
 mod masters;
-mod motors;
 mod numbers;
 mod own_tools;
 mod refusals;
