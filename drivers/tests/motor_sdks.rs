@@ -92,10 +92,7 @@ fn sdk(family: &str, bus: &MotorBus, operations: Value) -> Vec<Value> {
 
 /// Has the SDK write all again that came in so far.
 fn written_again(family: &str, log: &Path) -> Value {
-    let told = ask_python(
-        &peer("motor_sdk.py"),
-        &json!({"family": family, "log": log}),
-    );
+    let told = ask_sdk(&json!({"family": family, "log": log}));
     assert_eq!(
         told["wrong"],
         json!([]),

@@ -66,17 +66,19 @@ mod tests {
                     newest.write(&[number; 20]);
                 }
             });
-            let (mut seen, mut different) = (0.0, 0);
-            while different < 1000 {
+            let (mut seen, mut different, mut whole) = (0.0, 0, true);
+            while different < 1000 && whole {
                 let Some((version, values)) = newest.read() else {
                     continue;
                 };
-                assert!(values.iter().all(|value| *value == values[0]), "{values:?}");
-                assert!(values[0] >= seen && version == 2 * values[0] as u64);
+                whole = values.iter().all(|value| *value == values[0])
+                    && values[0] >= seen
+                    && version == 2 * values[0] as u64;
                 different += u32::from(values[0] > seen);
                 seen = values[0];
             }
             enough.store(true, Ordering::Relaxed);
+            assert!(whole, "something of {seen} and something of another");
         });
     }
 }

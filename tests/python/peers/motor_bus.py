@@ -162,6 +162,8 @@ class Dynamixel(Motor):
                 limit, goal = self.take(38), self.goal_of_stop
             error = goal - self.shaft.angle / math.tau * TURN
             asked = self.take(84) / 128 * error
+            if self.goal_of_stop is not None:
+                asked -= self.shaft.speed / self.unit  # It brakes, and stands.
             self.current = max(-limit, min(limit, asked)) * self.unit
             self.most = max(self.most, abs(self.current))
         self.shaft.advance(self.current * self.constant, dt)
