@@ -48,10 +48,14 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "scripted|crtk|FILE")]
     pub hand: Option<String>,
 
-    /// What is behind the arm's topics: simulated (the arm's file says what is true of it), process:COMMAND,
-    /// a plant in a program of its own, stepped over a pipe (docs/process_driver.md), or ros2, a robot that others
-    /// drive over ROS 2 (docs/ros2_driver.md); [driver.ros2] of the arm's file, or ros2:KEY=VALUE,…, says how.
-    #[arg(long, value_name = "simulated|process:COMMAND|ros2[:KEY=VALUE,…]")]
+    /// What is behind the arm's topics: simulated (the arm's file says what is true of it); dynamixel or
+    /// feetech, motors on a serial bus that the arm's file lists (docs/motors.md); process:COMMAND, a plant in a
+    /// program of its own, stepped over a pipe (docs/process_driver.md); or ros2, a robot that others drive over
+    /// ROS 2 (docs/ros2_driver.md): [driver.ros2] of the arm's file, or ros2:KEY=VALUE,…, says how.
+    #[arg(
+        long,
+        value_name = "simulated|dynamixel|feetech|process:COMMAND|ros2[:KEY=VALUE,…]"
+    )]
     pub driver: Option<Driver>,
 
     /// Seed of everything that is random.

@@ -10,6 +10,9 @@ use ferntast_nodes::{
 
 use crate::{
     driver::Driver,
+    dynamixel::{self, Dynamixel},
+    feetech::{self, Feetech},
+    motors::MotorArm,
     node::{ArmNode, ArmPorts},
     process, ros2, simulated,
 };
@@ -19,6 +22,10 @@ use crate::{
 pub enum Choice {
     /// `simulated`: the arm's file says what is true of it.
     Simulated,
+    /// `dynamixel`: motors on a serial bus, as the arm's file lists them.
+    Dynamixel,
+    /// `feetech`: the same of another maker.
+    Feetech,
     /// `process:COMMAND`: a plant in a program of its own.
     Process(String),
     /// `ros2`, `ros2:SETTINGS`: a robot that others drive over ROS 2.
@@ -27,8 +34,18 @@ pub enum Choice {
 
 /// A driver that there is not.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no driver {0:?}; there are: simulated, process:COMMAND, ros2[:KEY=VALUE,…]")]
+#[error(
+    "no driver {0:?}; there are: simulated, dynamixel, feetech, process:COMMAND, ros2[:KEY=VALUE,…]"
+)]
 pub struct UnknownDriver(String);
+
+/// Hardware where time is that of our steps.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "--driver {}: it drives an arm in real time, which virtual time cannot wait for: use `ferntast session`",
+    .0.as_deref().unwrap_or_default()
+)]
+struct InVirtualTime(Option<String>);
 
 impl FromStr for Choice {
     type Err = UnknownDriver;
@@ -36,6 +53,8 @@ impl FromStr for Choice {
     fn from_str(text: &str) -> Result<Choice, UnknownDriver> {
         match text.split_once(':') {
             None if text == "simulated" => Ok(Choice::Simulated),
+            None if text == dynamixel::NAME => Ok(Choice::Dynamixel),
+            None if text == feetech::NAME => Ok(Choice::Feetech),
             None if text == "ros2" => Ok(Choice::Ros2(String::new())),
             Some(("ros2", settings)) => Ok(Choice::Ros2(settings.to_owned())),
             Some(("process", command)) if !command.trim().is_empty() => {
@@ -84,10 +103,15 @@ impl Choice {
         session: &SessionContext,
         virtual_time: bool,
     ) -> Result<Box<dyn Driver>, NodeError> {
+        if virtual_time && !self.is_stepped() {
+            return Err(NodeError::own(InVirtualTime(session.driver.clone())));
+        }
         match self {
             Choice::Simulated => simulated::driver(session),
+            Choice::Dynamixel => MotorArm::driver(session, dynamixel::NAME, Dynamixel::open),
+            Choice::Feetech => MotorArm::driver(session, feetech::NAME, Feetech::open),
             Choice::Process(command) => process::driver(session, command),
-            Choice::Ros2(settings) => ros2::driver(session, settings, virtual_time),
+            Choice::Ros2(settings) => ros2::driver(session, settings),
         }
     }
 
@@ -104,6 +128,8 @@ mod tests {
     #[test]
     fn a_driver_is_named_by_its_kind_and_what_it_needs() {
         assert_eq!("simulated".parse(), Ok(Choice::Simulated));
+        assert_eq!("dynamixel".parse(), Ok(Choice::Dynamixel));
+        assert_eq!("feetech".parse(), Ok(Choice::Feetech));
         let command = "python3 plant.py --wall 'a:b'";
         let choice = format!("process: {command}").parse();
         assert_eq!(choice, Ok(Choice::Process(command.into())));
@@ -123,7 +149,7 @@ mod tests {
         ] {
             let error = wrong.parse::<Choice>().unwrap_err().to_string();
             assert!(
-                error.contains("there are: simulated, process:COMMAND, ros2"),
+                error.contains("there are: simulated, dynamixel, feetech, process:COMMAND, ros2"),
                 "{error}"
             );
         }

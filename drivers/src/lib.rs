@@ -9,6 +9,9 @@
 pub mod check;
 mod choice;
 mod driver;
+pub mod dynamixel;
+pub mod feetech;
+pub mod motors;
 mod node;
 pub mod process;
 pub mod ros2;

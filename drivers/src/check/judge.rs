@@ -63,7 +63,7 @@ pub fn judge(expected: &Expected, record: &Record, arm: &str, driver: &str) -> R
             .map(|number| joint::look(expected, record, number, &mut findings))
             .collect();
     }
-    findings.sort_by(|a, b| b.severity.cmp(&a.severity));
+    findings.sort_by_key(|own| std::cmp::Reverse(own.severity));
     let mut report = Report {
         arm: arm.to_owned(),
         driver: driver.to_owned(),
@@ -102,7 +102,8 @@ impl Report {
     /// Adds what was found elsewhere.
     pub fn with(mut self, more: Vec<Finding>) -> Report {
         self.findings.extend(more);
-        self.findings.sort_by(|a, b| b.severity.cmp(&a.severity));
+        self.findings
+            .sort_by_key(|own| std::cmp::Reverse(own.severity));
         self.conclude();
         self
     }

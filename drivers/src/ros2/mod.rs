@@ -42,26 +42,14 @@ pub enum Ros2Error {
     /// Its settings.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// It is asked for in virtual time.
-    #[error(
-        "--driver ros2 drives an arm in real time, which virtual time cannot wait for: use `ferntast session`"
-    )]
-    VirtualTime,
     /// No thread for ROS 2.
     #[error("no thread for ROS 2: {0}")]
     Thread(std::io::Error),
 }
 
 /// The session's arm, driven over ROS 2; `text` is what stands behind `ros2:`.
-pub(crate) fn driver(
-    session: &SessionContext,
-    text: &str,
-    virtual_time: bool,
-) -> Result<Box<dyn Driver>, NodeError> {
-    match virtual_time {
-        true => Err(NodeError::own(Ros2Error::VirtualTime)),
-        false => Ok(Box::new(Ros2::start(session, text)?)),
-    }
+pub(crate) fn driver(session: &SessionContext, text: &str) -> Result<Box<dyn Driver>, NodeError> {
+    Ok(Box::new(Ros2::start(session, text)?))
 }
 
 /// An arm on ROS 2 behind the arm's node.

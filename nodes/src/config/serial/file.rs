@@ -16,7 +16,7 @@
 //! normal = [0.0, 0.0, 1.0]
 //!
 //! # [servo] and [estimator]: as in a scenario and an arm's file, key by key
-//! # [truth]: what only the simulated arm's driver reads; [driver.ros2]: what that of hardware reads
+//! # [truth]: what only the simulated arm's driver reads; [driver.NAME]: what only that of hardware reads
 //! ```
 
 use std::{fs, path::Path};

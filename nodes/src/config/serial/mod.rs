@@ -48,7 +48,7 @@ pub struct SerialFile {
     /// What only the arm's driver reads; what is believed where nothing is said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<serde_json::Value>,
-    /// What drivers of hardware read, a section each: `[driver.ros2]`.
+    /// What drivers of hardware read, each the section of its name: `[driver.ros2]`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub driver: Option<serde_json::Value>,
 }
