@@ -157,6 +157,7 @@ fn about(session: &str, loaded: &Loaded) -> Value {
             HandSource::Scripted => "the script",
             HandSource::Recorded => "the recorded motion",
             HandSource::Crtk => "this host",
+            HandSource::Haply => "the Haply",
         },
         "lengths": lengths,
         "nominal_tip": nominal_tip,

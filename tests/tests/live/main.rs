@@ -9,6 +9,7 @@ mod console;
 mod console_trouble;
 mod crashes;
 mod dynamics;
+mod haply;
 mod lab_page;
 mod link_tls;
 mod masters;
