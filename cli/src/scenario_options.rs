@@ -43,9 +43,9 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "none|deadband", value_parser = Codec::NAMES)]
     pub codec: Option<String>,
 
-    /// Whose hand: scripted, crtk (a CRTK client on ROS 2), or a CSV file with recorded motion
-    /// (t_s,x_m,y_m).
-    #[arg(long, value_name = "scripted|crtk|FILE")]
+    /// Whose hand: scripted, crtk (a CRTK client on ROS 2), haply (an Inverse3, by its Inverse Service on this
+    /// host), or a CSV file with recorded motion (t_s,x_m,y_m).
+    #[arg(long, value_name = "scripted|crtk|haply|FILE")]
     pub hand: Option<String>,
 
     /// What is behind the arm's topics: simulated (the arm's file says what is true of it); dynamixel or

@@ -32,7 +32,7 @@ fn watch(session: &mut LockstepSession, seconds: f64) -> Vec<Seen> {
     fn newest<M: Message>(
         session: &LockstepSession,
         topic: Topic<M>,
-    ) -> impl FnMut(&mut Option<M>) {
+    ) -> impl FnMut(&mut Option<M>) + use<M> {
         let mut subscriber = heard(session, topic);
         let now = session.now();
         move |place| {

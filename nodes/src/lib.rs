@@ -6,6 +6,7 @@ mod console;
 pub mod estimator;
 pub mod events;
 pub mod graph;
+mod haply;
 pub mod limits;
 pub mod link;
 pub mod lockstep;
@@ -18,6 +19,7 @@ pub mod session;
 pub mod twin;
 
 use bridge::{foxglove, gateway, player, recorder};
+use config::HandSource;
 use graph::{Graph, NodeRow, always, never};
 use process::Priority;
 
@@ -49,6 +51,15 @@ pub fn session_graph(arm: NodeRow) -> Graph {
                 "Shows every topic to Foxglove",
                 Priority::Display,
                 foxglove::run,
+            )
+        },
+        NodeRow {
+            in_session: |session| session.loaded.scenario.hand.source == HandSource::Haply,
+            ..NodeRow::service(
+                "haply",
+                "A Haply Inverse3 as the hand",
+                Priority::Hand,
+                haply::run,
             )
         },
         NodeRow::step::<master::MasterPorts>(

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, time::Instant};
 use ferntast_control::delay::Law;
 use ferntast_msgs::sample::FrictionCommand;
 use ferntast_nodes::{
-    config::{HandSource, UnknownLaw},
+    config::UnknownLaw,
     graph::Graph,
     lockstep::{LockstepSession, RunError},
     process::SessionContext,
@@ -82,8 +82,8 @@ pub enum LockstepError {
     },
     /// A hand that virtual time does not reach.
     #[error(
-        "lockstep has no hand on ROS 2 in its virtual time: give --hand scripted or --hand FILE.csv, or run ferntast \
-         session --hand crtk"
+        "lockstep has no hand on ROS 2, nor a Haply, in its virtual time: give --hand scripted or --hand FILE.csv, or run \
+         ferntast session --hand crtk"
     )]
     NoHand,
     /// No law has that name.
@@ -153,7 +153,7 @@ pub fn run(
 ) -> Result<LockstepOutcome, LockstepError> {
     let duration = plan.duration_in(context)?;
     plan.check()?;
-    if context.loaded.scenario.hand.source == HandSource::Crtk {
+    if context.loaded.scenario.hand.source.is_a_person() {
         return Err(LockstepError::NoHand);
     }
     let mut session = LockstepSession::new(graph, context)?;

@@ -48,6 +48,7 @@ impl Changes {
             None => {}
             Some("scripted") => scenario.hand.source = HandSource::Scripted,
             Some("crtk") => scenario.hand.source = HandSource::Crtk,
+            Some("haply") => scenario.hand.source = HandSource::Haply,
             Some(file) => {
                 scenario.hand.source = HandSource::Recorded;
                 scenario.hand.recording = Some(PathBuf::from(file));

@@ -203,7 +203,7 @@ impl Loaded {
             source,
         };
         match section.source {
-            HandSource::Crtk => Ok(None),
+            HandSource::Crtk | HandSource::Haply => Ok(None),
             HandSource::Scripted => {
                 let scripted = section.scripted.clone().unwrap_or_default();
                 let hand = ScriptedHand::new(&scripted, self.scenario.seed).map_err(bad_value)?;

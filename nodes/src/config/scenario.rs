@@ -13,6 +13,8 @@ use ferntast_emulation::hand::{RecordedHandConfig, ScriptedHandConfig};
 use ferntast_model::parameters;
 use serde::{Deserialize, Serialize};
 
+use super::HaplyConfig;
+
 parameters! {
     /// A file of `config/scenarios/`.
     pub struct Scenario {
@@ -70,6 +72,9 @@ parameters! {
         /// How a recorded motion is played.
         #[serde(default)]
         pub recorded: RecordedHandConfig [section],
+        /// How a Haply Inverse3 is met.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub haply: Option<HaplyConfig> [section],
     }
 }
 
@@ -83,6 +88,15 @@ pub enum HandSource {
     Recorded,
     /// A CRTK client on ROS 2.
     Crtk,
+    /// A Haply Inverse3, by its service on this host.
+    Haply,
+}
+
+impl HandSource {
+    /// Whether a person moves the master, whom virtual time does not reach.
+    pub fn is_a_person(self) -> bool {
+        matches!(self, HandSource::Crtk | HandSource::Haply)
+    }
 }
 
 parameters! {
@@ -221,6 +235,7 @@ impl Scenario {
                 scripted: None,
                 recording: None,
                 recorded: RecordedHandConfig::default(),
+                haply: None,
             },
             link: LinkSection {
                 channel: "direct".to_owned(),

@@ -37,6 +37,7 @@ pub fn about(session: &str, loaded: &Loaded, reach: [f64; 3]) -> Value {
             HandSource::Scripted => "the script",
             HandSource::Recorded => "the recorded motion",
             HandSource::Crtk => "this host",
+            HandSource::Haply => "the Haply",
         },
         "planar": planar,
         "spatial": spatial(&loaded.arm),

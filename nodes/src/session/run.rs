@@ -22,7 +22,6 @@ use super::{
 };
 use crate::{
     bridge::recorder,
-    config::HandSource,
     events::{Event, EventWatch},
     graph::Graph,
     master::THIS_HOST,
@@ -83,8 +82,8 @@ pub fn run(
         died: Vec::new(),
         operator: (options.enable
             && options.rearm
-            && context.loaded.scenario.hand.source != HandSource::Crtk)
-            .then(ScriptedOperator::default),
+            && !context.loaded.scenario.hand.source.is_a_person())
+        .then(ScriptedOperator::default),
         own_stop: None,
         rearmed: 0,
         context,

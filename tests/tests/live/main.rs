@@ -12,6 +12,7 @@ mod console_trouble;
 mod contact_force;
 mod crashes;
 mod dynamics;
+mod haply;
 mod lab_page;
 mod layout;
 mod link_tls;

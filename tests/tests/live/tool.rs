@@ -106,7 +106,7 @@ const REST: &str = r#"{ label = "rest", kind = "hold", duration = 20.0 }"#;
 fn told(force: [f64; 3], turn: [f64; 3]) -> [Vector3<f64>; 2] {
     let session = Session::new();
     scenario(&session, REST, "");
-    let push = [force, turn].concat().map(|own| own.to_string());
+    let push: Vec<String> = [force, turn].concat().iter().map(f64::to_string).collect();
     let push = push.join(",");
     lockstep(&session, &format!("--push 3,9,{push}"));
     let wrenches = messages(&session.folder().join("run"), topics::FOLLOWER_MEASURED_CF);

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::{
-    super::{facts::Facts, log::Log, seen::Seen},
+    super::{facts::Facts, fault::Word, log::Log, seen::Seen},
     Invariant,
 };
 
@@ -16,11 +16,34 @@ const REMEMBERED: usize = 600;
 const PLAIN: f64 = 0.003;
 const SHAPED: f64 = 0.060;
 
+/// By so much more than the hand the clutch may lead the arm in a step, for rounding \[m\].
+const ROUNDING: f64 = 1e-6;
+
 /// The tip is commanded to places where the hand was, give or take what the law
-/// does to motion; and what the master accepts is where its own hand is.
+/// does to motion; and what the master accepts is where its own hand is. Once there was a word to
+/// the clutch, that moves no further than the hand from one step to the next, and counts in its place.
 #[derive(Default)]
 pub struct Authority {
     hands: VecDeque<[f64; 2]>,
+    /// The hand, and what was accepted, when both were told last.
+    last: Option<[[f64; 3]; 2]>,
+}
+
+/// How far apart two places are in the plane \[m\].
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+impl Authority {
+    /// Whether the clutch led the arm somewhere.
+    fn clutch(&mut self, seen: &Seen, hand: [f64; 3], accepted: [f64; 3]) -> Option<String> {
+        let last = self.last.replace([hand, accepted]);
+        let [hand_before, before] = last.filter(|_| seen.leader.enabled())?;
+        let (led, moved) = (apart(accepted, before), apart(hand, hand_before));
+        (led > moved + ROUNDING).then(|| {
+            format!("the clutch led the arm by {led:.6} m where the hand went {moved:.6} m")
+        })
+    }
 }
 
 impl Invariant for Authority {
@@ -29,15 +52,27 @@ impl Invariant for Authority {
     }
 
     fn step(&mut self, seen: &Seen, log: &Log, facts: &Facts) -> Option<String> {
-        if let Some(hand) = seen.hand {
+        let clutched = log.words.iter().any(|own| own.word == Word::Clutch);
+        if !seen.leader.enabled() {
+            self.last = None;
+        }
+        let leads = match clutched {
+            true => seen.accepted_hand,
+            false => seen.hand,
+        };
+        if let Some(hand) = leads {
             if self.hands.len() == REMEMBERED {
                 self.hands.pop_front();
             }
             self.hands.push_back(facts.tip_of_hand(hand));
         }
         if let (Some(hand), Some(accepted)) = (seen.hand, seen.accepted_hand) {
-            let far = (hand[0] - accepted[0]).hypot(hand[1] - accepted[1]);
-            if far > PLAIN {
+            let far = apart(hand, accepted);
+            if clutched {
+                if let Some(told) = self.clutch(seen, hand, accepted) {
+                    return Some(told);
+                }
+            } else if far > PLAIN {
                 return Some(format!("the master accepts a hand {far:.4} m from its own"));
             }
         }
