@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use ferntast_studies::shard::{Part, Placed, Shard, Study};
+use ferntast_studies::shard::{Answers, Part, Shard, Study};
 
 use super::Failure;
 
@@ -30,9 +30,9 @@ impl ShardOptions {
     pub fn keep<S: Study>(
         &self,
         study: S,
-        answers: Vec<Placed<S::Answer>>,
+        answers: Answers<S>,
         stopped: bool,
-    ) -> Result<Option<(S, Vec<Placed<S::Answer>>)>, Failure> {
+    ) -> Result<Option<(S, Answers<S>)>, Failure> {
         let Some(shard) = self.shard else {
             return Ok(Some((study, answers)));
         };

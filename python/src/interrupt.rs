@@ -37,6 +37,11 @@ impl Watch {
         self.share.store(share.to_bits(), Ordering::Relaxed);
     }
 
+    /// What says that the work has to end.
+    pub fn stop(&self) -> &AtomicBool {
+        &self.stop
+    }
+
     /// Whether the work has to end.
     pub fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)

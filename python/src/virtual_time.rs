@@ -13,6 +13,7 @@ use ferntast_nodes::{
 };
 use ferntast_studies::{
     lockstep::{self as alone, LockstepPlan},
+    shard::{Shard, values},
     sweep::{self as sweeps, Row, SweepConfig},
 };
 use pyo3::{prelude::*, types::PyAny};
@@ -104,7 +105,9 @@ pub fn sweep(
             let count = done.fetch_add(1, Ordering::Relaxed) + 1;
             watch.step(count as f64 / trials);
         };
-        let rows = sweeps::run(&config, step).map_err(refused)?;
+        let rows = sweeps::run(&config, Shard::WHOLE, watch.stop(), step).map_err(refused)?;
+        watch.step(1.0);
+        let rows = values(rows);
         let text = sweeps::table(&rows);
         json(&Swept { rows, text })
     })

@@ -1,6 +1,9 @@
 //! An arm that is right, and what is told of it with one thing wrong at a time.
 
-use std::any::Any;
+use std::{
+    any::Any,
+    f64::consts::{FRAC_PI_2, FRAC_PI_4},
+};
 
 use ferntast_model::{JointCount, Joints};
 use ferntast_msgs::Time;
@@ -21,7 +24,15 @@ fn session() -> SessionContext {
     SessionContext::in_virtual_time(loaded)
 }
 
-const HOME: [f64; 7] = [0.0, -0.785398, 0.0, -2.356194, 0.0, 1.570796, 0.785398];
+const HOME: [f64; 7] = [
+    0.0,
+    -FRAC_PI_4,
+    0.0,
+    -3.0 * FRAC_PI_4,
+    0.0,
+    FRAC_PI_2,
+    FRAC_PI_4,
+];
 
 /// Five seconds of the arm, read every 2 ms; by `motion` \[rad\] every joint goes to and fro.
 fn record(motion: f64, spoil: impl Fn(&mut Seen)) -> Record {

@@ -192,8 +192,9 @@ impl Family for Feetech {
         let mut states = States::default();
         let read = self.read_states(&mut states);
         read.map_err(|missed| self.line.missed(missed))?;
-        for place in 0..self.duty_by_count.len() {
-            self.prepare(place, states[place].voltage)?;
+        let motors = self.duty_by_count.len();
+        for (place, state) in states.iter().enumerate().take(motors) {
+            self.prepare(place, state.voltage)?;
         }
         self.line.bus.settle();
         Ok(states)

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::{
-    Part, PartError, Placed, Study,
+    Answers, Part, PartError, Study,
     part::{no_part, text},
 };
 
@@ -84,7 +84,7 @@ pub fn kind(path: &Path) -> Result<String, PartError> {
 /// # Errors
 ///
 /// A file that is no part of it, a part that is missing.
-pub fn merge<S: Study>(paths: &[PathBuf]) -> Result<(S, Vec<Placed<S::Answer>>), MergeError> {
+pub fn merge<S: Study>(paths: &[PathBuf]) -> Result<(S, Answers<S>), MergeError> {
     let mut parts: Vec<(&PathBuf, Part<S>)> = Vec::new();
     for path in paths {
         let part = Part::<S>::read(path)?;
@@ -142,7 +142,7 @@ pub fn merge<S: Study>(paths: &[PathBuf]) -> Result<(S, Vec<Placed<S::Answer>>),
 
 #[cfg(test)]
 mod tests {
-    use super::super::Shard;
+    use super::super::{Placed, Shard};
     use super::*;
 
     /// Asks for square roots.

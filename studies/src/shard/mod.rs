@@ -12,7 +12,7 @@ use std::{fmt, str::FromStr};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 pub use merge::{MergeError, kind, merge};
-pub use part::{Part, PartError, Placed, values};
+pub use part::{Answers, Part, PartError, Placed, values};
 
 /// What can be run in parts: questions that come in an order, and know nothing of each other.
 pub trait Study: Serialize + DeserializeOwned + PartialEq {

@@ -23,7 +23,7 @@ pub struct Part<S: Study> {
     pub study: S,
     /// What was found; where nothing is to be told of a question, it may be left out.
     #[serde(default = "Vec::new")]
-    pub answer: Vec<Placed<S::Answer>>,
+    pub answer: Answers<S>,
 }
 
 /// An answer and the place of its question among all.
@@ -34,6 +34,9 @@ pub struct Placed<A> {
     /// The answer.
     pub value: A,
 }
+
+/// Answers to a study's questions.
+pub type Answers<S> = Vec<Placed<<S as Study>::Answer>>;
 
 /// The answers, without their places.
 pub fn values<A>(answers: Vec<Placed<A>>) -> Vec<A> {
@@ -63,7 +66,7 @@ pub enum PartError {
 
 impl<S: Study> Part<S> {
     /// What was found of a part of `study`.
-    pub fn new(study: S, shard: Shard, answer: Vec<Placed<S::Answer>>) -> Part<S> {
+    pub fn new(study: S, shard: Shard, answer: Answers<S>) -> Part<S> {
         Part {
             ferntast: env!("CARGO_PKG_VERSION").to_owned(),
             kind: S::KIND.to_owned(),

@@ -1,7 +1,10 @@
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
 use ferntast_control::delay::Law;
 use ferntast_sim::teleoperation::{Environment, Task};
 
 use super::*;
+use crate::shard::{Shard, values};
 
 fn small() -> SweepConfig {
     let mut config = SweepConfig::load("delay_sweep").unwrap();

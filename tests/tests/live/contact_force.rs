@@ -3,7 +3,7 @@
 use std::fs;
 
 use ferntast_msgs::{Time, topics};
-use ferntast_tests::{Session, messages, number, peer, python, run};
+use ferntast_tests::{Session, messages, peer, python, run};
 use serde_json::Value;
 
 /// Virtual time of a run that touches the table \[s\].

@@ -17,12 +17,14 @@ laws = [{ kind = "position_force", force_scale = 1.0 }, { kind = "wave", force_s
 
 /// Runs `study` whole and in three parts; gives what both told.
 fn whole_and_merged(session: &Session, study: &[&str]) -> [String; 2] {
-    let with = |more: &[&str]| [study, more].concat();
-    let whole = run(session, &with(&["--json"])).success().stdout;
+    let whole = run(session, &[study, &["--json"]].concat())
+        .success()
+        .stdout;
     let parts = ["1.toml", "2.toml", "3.toml"];
     for (number, file) in (1..).zip(parts) {
         let shard = format!("{number}/3");
-        run(session, &with(&["--shard", &shard, "--part", file])).success();
+        let part = ["--shard", &shard, "--part", file];
+        run(session, &[study, &part].concat()).success();
     }
     let merged = run(session, &[&["merge", "--json"][..], &parts].concat());
     [whole, merged.success().stdout]
