@@ -120,7 +120,8 @@ fn apart_for_a_while(after: f64, touches: bool) {
     let [led, command, torque] = steps(&all);
     println!("with the clutch: {led:.6} m, {command:.6} m, {torque:.3} Nm");
     assert!(led < 4e-4 && command < 8e-4, "{led} m, {command} m");
-    assert!(torque < 8.0, "{torque} Nm");
+    // The hand stops, to the arm, at once: what is fed forward of friction goes with its speed.
+    assert!(torque < 10.0, "{torque} Nm");
 
     // The arm stays, and the hand, which feels nothing, does not.
     let late = &open[100..];

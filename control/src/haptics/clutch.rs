@@ -17,6 +17,8 @@ pub(super) struct Clutch {
     held: Option<[f64; 3]>,
     /// From the hand to what the arm is led by [m]; before the clutch was used, none at all.
     way: Option<[f64; 3]>,
+    /// What the arm was led by last \[m\].
+    led: Option<[f64; 3]>,
     /// Share of the force that the hand feels, 0 … 1.
     share: f64,
 }
@@ -27,6 +29,7 @@ impl Default for Clutch {
             open: false,
             held: None,
             way: None,
+            led: None,
             share: 1.0,
         }
     }
@@ -53,7 +56,17 @@ impl Clutch {
             }
             (true, Some(_)) | (false, None) => {}
         }
-        self.held.unwrap_or_else(|| self.by_way(hand))
+        let led = self.held.unwrap_or_else(|| self.by_way(hand));
+        self.led = Some(led);
+        led
+    }
+
+    /// The next hand is another one: where a clutch was in use, it is closed on that one.
+    pub(super) fn hand_over(&mut self) {
+        if self.way.is_some() || self.held.is_some() {
+            self.held = self.led;
+        }
+        self.open = false;
     }
 
     fn by_way(&self, hand: [f64; 3]) -> [f64; 3] {
@@ -86,6 +99,25 @@ mod tests {
             assert_eq!(clutch.lead(hand).map(f64::to_bits), hand.map(f64::to_bits));
             assert_eq!(clutch.share(1e-3), 1.0);
         }
+    }
+
+    #[test]
+    fn another_hand_takes_over_where_the_arm_is() {
+        let mut clutch = Clutch::default();
+        assert_eq!(clutch.lead([0.1, 0.0, 0.0]), [0.1, 0.0, 0.0]);
+        // Never used, it takes the other hand as it is.
+        clutch.hand_over();
+        assert_eq!(clutch.lead([0.2, 0.0, 0.0]), [0.2, 0.0, 0.0]);
+        clutch.set_open(true);
+        clutch.lead([0.3, 0.0, 0.0]);
+        clutch.lead([0.4, 0.0, 0.0]);
+        clutch.hand_over();
+        let led = [[-0.1, 0.0, 0.0], [-0.05, 0.0, 0.0]].map(|hand| clutch.lead(hand)[0]);
+        assert!(
+            (led[0] - 0.3).abs() < 1e-12 && (led[1] - 0.35).abs() < 1e-12,
+            "{led:?}"
+        );
+        assert!(!clutch.is_open());
     }
 
     #[test]

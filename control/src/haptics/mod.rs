@@ -237,7 +237,8 @@ impl Master {
     }
 
     /// Opens the clutch, so that the hand moves and the arm stays, or closes it again. It stays
-    /// through holds; `disable` and another hand take hand and arm together as they were first.
+    /// through holds; `disable` takes hand and arm together as they were first, and another hand
+    /// leads the arm on from where it is.
     ///
     /// # Errors
     ///
@@ -318,7 +319,7 @@ impl Master {
         };
         self.authority.take(now_ns, command.source);
         if self.clutched_by != Some(command.source) {
-            self.clutch = Clutch::default();
+            self.clutch.hand_over();
             self.clutched_by = Some(command.source);
         }
         self.hand = Some(Hand {

@@ -78,7 +78,6 @@ fn the_tool_turns_with_the_hand() {
     scenario(&session, script, turn);
     let told = lockstep(&session, "");
     assert_eq!(told["states"]["follower"]["final"], "ENABLED", "{told:#}");
-    assert!(number(&told, "tip.drift_mm") < 1.0, "{told:#}");
     let turned = turned(&session.folder().join("run"));
     println!("{turned}");
     assert!(number(&turned, "turned_rad") > 0.45, "{turned}");
