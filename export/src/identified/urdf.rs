@@ -95,7 +95,7 @@ fn edited(model: &Model, path: &Path, notes: &mut Vec<String>) -> Result<String,
 fn tell_tilt(arm: &ArmModel, notes: &mut Vec<String>) {
     if let Some(gravity) = arm.tilted() {
         notes.push(format!(
-            "gravity in the frame of {} is ({}, {}, {}) m/s², and URDF has none: fix {} to the world with rpy=\"{} {} 0\"",
+            "gravity in the frame of link {} is ({}, {}, {}) m/s², and URDF has none: let {} stand in an upright world with rpy=\"{} {} 0\"",
             arm.table.arm.base,
             number(gravity.x),
             number(gravity.y),

@@ -96,23 +96,33 @@ fn an_arm_in_mujoco_moves_as_it_was_recorded() {
     let rms = number(&lost[0], "rms");
     assert!(rms > 0.3 * alone && rms < 1.5 * alone, "{rms} {errors:#}");
 
-    let told = held_against(&session, &name, &["whole.xml", "approximate.xml"]);
+    // Ten numbers of a light link, of which the motion shows a few: still a body.
+    let experiment = with(&session, &name, &["link_inertia@panda_joint6"]);
+    export(&session, &experiment, "mujoco", "link.xml", &[]);
+
+    let files = ["whole.xml", "approximate.xml", "link.xml"];
+    let told = held_against(&session, &name, &files);
     let before = &told["before"];
     for exported in told["exported"].as_array().expect("a list") {
         is_a_body(exported, 7);
-        // The same links as MuJoCo reads out of the URDF.
-        assert!(number(exported, "apart") < 1e-5, "{exported:#}");
+        // The same links as MuJoCo reads out of the URDF, but for the one that was fitted.
+        assert!(number(exported, "apart") < 0.05, "{exported:#}");
         let torque = number(exported, "all_torque_Nm") / number(before, "all_torque_Nm");
         assert!(torque > 0.01 && torque < 0.2, "{torque}: {told:#}");
         let position = number(exported, "all_position_mrad") / number(before, "all_position_mrad");
         assert!(position > 0.005 && position < 0.2, "{position}: {told:#}");
     }
-    // The judge finds of the joint what the lab says of it.
-    let judged = number(&told["exported"][0]["torque_Nm"], joint);
-    assert!(
-        (0.6..1.6).contains(&(judged / alone)),
-        "{judged} {errors:#}"
-    );
+    for exported in &told["exported"].as_array().expect("a list")[..2] {
+        assert!(number(exported, "apart") < 1e-6, "{exported:#}");
+    }
+    // The judge finds of the other joints what the lab says of them, with more noise since it smooths
+    // less; of this one more, since it judges slower samples too, where Stribeck friction is largest.
+    for (name, errors) in whole["joints"].as_object().expect("joints") {
+        let judged = number(&told["exported"][0]["torque_Nm"], name);
+        let times = judged / number(errors, "said_alone");
+        let bounds = if name == joint { 1.0..5.0 } else { 0.7..3.0 };
+        assert!(bounds.contains(&times), "{name}: {times} {errors:#}");
+    }
 }
 
 /// A payload goes into the masses, of whatever form; MuJoCo reads the URDF, too.
