@@ -27,21 +27,21 @@ use serde_json::{Value, json};
 const TORQUE_CONSTANT: f64 = 1.78;
 
 fn joints() -> JointNames {
-    JointNames::new(["base", "elbow"]).unwrap()
+    JointNames::new(["base", "elbow"]).expect("names")
 }
 
 /// Two XM430-W350 in the other order, the second against its joint and with a gear.
 fn section(port: &str, changes: Value) -> Section {
     let mut elbow = json!({"id": 7, "joint": "elbow", "model": "XM430-W350-T", "direction": -1, "zero": 1024,
         "gear": 2.0, "torque_constant": TORQUE_CONSTANT, "current_limit": 0.5});
-    for (key, value) in changes.as_object().unwrap() {
+    for (key, value) in changes.as_object().expect("a section") {
         elbow[key] = value.clone();
     }
     let base = json!({"id": 3, "joint": "base", "model": "XM430-W350", "zero": 2048,
         "torque_constant": TORQUE_CONSTANT, "current_limit": 1.0});
     let section = json!({"port": port, "baud": 4_000_000, "motor": [elbow, base]});
-    let section: Section = serde_json::from_value(section).unwrap();
-    section.in_order_of(&joints()).unwrap()
+    let section: Section = serde_json::from_value(section).expect("a section");
+    section.in_order_of(&joints()).expect("a section")
 }
 
 fn bus(options: &[&str]) -> MotorBus {
@@ -110,9 +110,9 @@ fn joints_go_where_they_are_pulled_whatever_their_motors_sense_and_gear() {
         let (reading, health, readings) = drive(&mut arm, 1.5, |reading| pull(reading, goal));
         let reading = reading.expect("a reading");
         println!("{readings} readings; {}", health.message);
-        for joint in 0..2 {
-            let off = reading.position[joint] - goal[joint];
-            assert!(off.abs() < 0.08, "joint {joint} is {off} rad off");
+        for (goal, position) in goal.iter().zip(reading.position.iter()) {
+            let off = position - goal;
+            assert!(off.abs() < 0.08, "{off} rad off {goal}");
         }
         assert_eq!(health.level, Level::OK);
         // What the emulator itself says.
@@ -121,11 +121,8 @@ fn joints_go_where_they_are_pulled_whatever_their_motors_sense_and_gear() {
             (counts[0] - 2048.0) * std::f64::consts::TAU / 4096.0,
             (counts[1] - 1024.0) * std::f64::consts::TAU / 4096.0 / -2.0,
         ];
-        for joint in 0..2 {
-            assert!(
-                (own[joint] - reading.position[joint]).abs() < 0.02,
-                "{own:?}"
-            );
+        for (own, told) in own.iter().zip(reading.position.iter()) {
+            assert!((own - told).abs() < 0.02, "{own} and {told} rad");
         }
         // A weight that is carried is felt as a torque.
         let torque = reading.motor_torque.unwrap()[1].abs();

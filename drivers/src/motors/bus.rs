@@ -12,8 +12,10 @@ use super::{
     protocol::{Answer, EVERYBODY, Found, Instruction, Protocol},
 };
 
-/// How long an answer may take beside the bytes' own time, at first: an adapter hands over what
-/// it got after 16 ms at the latest, as its maker has set it.
+/// How long an answer may take beside the bytes' own time, before anything moves.
+const FIRST_PATIENCE: Duration = Duration::from_millis(100);
+/// The most that it is then: an adapter hands over what it got after 16 ms at the latest, as
+/// its maker has set it.
 const PATIENCE: Duration = Duration::from_millis(20);
 /// The least that it is once one knows how long they do take.
 const LEAST_PATIENCE: Duration = Duration::from_millis(4);
@@ -41,7 +43,7 @@ impl<P: Protocol> Bus<P> {
             parameters: Vec::with_capacity(512),
             input: Vec::with_capacity(1024),
             damaged: 0,
-            patience: PATIENCE,
+            patience: FIRST_PATIENCE,
             sent: Instant::now(),
             slowest: Duration::ZERO,
             protocol: PhantomData,

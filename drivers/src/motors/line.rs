@@ -9,6 +9,9 @@ use super::{
     section::Section,
 };
 
+/// How often a motor is asked for one thing.
+const ATTEMPTS: usize = 3;
+
 /// The motors of a section.
 pub struct Line<P> {
     /// The bus that they are on.
@@ -41,7 +44,8 @@ impl<P: Protocol> Line<P> {
     pub fn call(&mut self) -> Result<Vec<Box<Answer>>, MotorError> {
         let (mut found, mut missing) = (Vec::new(), Vec::new());
         for place in 0..self.ids.len() {
-            match self.bus.ping(self.ids[place]) {
+            let id = self.ids[place];
+            match self.tried(|bus| bus.ping(id)) {
                 Ok(answer) => found.push(answer),
                 Err(Lost::Port(source)) => return Err(self.lost(place, Lost::Port(source))),
                 Err(_) => missing.push(place),
@@ -68,7 +72,8 @@ impl<P: Protocol> Line<P> {
         place: usize,
         address: u16,
     ) -> Result<[u8; N], MotorError> {
-        let answer = self.bus.read(self.ids[place], address, N);
+        let id = self.ids[place];
+        let answer = self.tried(|bus| bus.read(id, address, N));
         let answer = self.accepted(place, address, answer)?;
         match answer.data().first_chunk() {
             Some(registers) => Ok(*registers),
@@ -82,7 +87,8 @@ impl<P: Protocol> Line<P> {
     ///
     /// It does not take them.
     pub fn set(&mut self, place: usize, address: u16, data: &[u8]) -> Result<(), MotorError> {
-        let answer = self.bus.write(self.ids[place], address, data);
+        let id = self.ids[place];
+        let answer = self.tried(|bus| bus.write(id, address, data));
         self.accepted(place, address, answer).map(drop)
     }
 
@@ -136,6 +142,20 @@ impl<P: Protocol> Line<P> {
         let ids = self.ids.iter().enumerate();
         let silent = ids.filter(|(_, id)| is_silent(**id));
         silent.map(|(place, _)| place).collect()
+    }
+
+    /// Does it again where an answer got lost: one alone means nothing.
+    fn tried(
+        &mut self,
+        mut exchange: impl FnMut(&mut Bus<P>) -> Result<Box<Answer>, Lost>,
+    ) -> Result<Box<Answer>, Lost> {
+        for _ in 1..ATTEMPTS {
+            match exchange(&mut self.bus) {
+                Err(Lost::Silent | Lost::Damaged | Lost::Foreign) => {}
+                done => return done,
+            }
+        }
+        exchange(&mut self.bus)
     }
 
     fn accepted(
