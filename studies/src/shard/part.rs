@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::{Shard, Study};
 
 /// A part of a study, answered. As a file it is TOML, which keeps every number as it is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Part<S: Study> {
     /// Version of the program that answered.
