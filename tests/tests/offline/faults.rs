@@ -281,7 +281,7 @@ fn what_cannot_be_run_is_refused() {
 }
 
 /// The clutch, opened and closed while other things go wrong: in a hold, over a gap in the link, with
-/// a host that stands still, a second hand, a master that is started again.
+/// a host that stands still, a master that is started again.
 #[test]
 fn a_clutch_leads_the_arm_nowhere_whatever_goes_wrong_meanwhile() {
     let session = Session::new();
@@ -301,7 +301,6 @@ fn a_clutch_leads_the_arm_nowhere_whatever_goes_wrong_meanwhile() {
         "{ at_ms = 1690, fault = \"host_stall\", side = \"operator\", ms = 9 },",
         "{ at_ms = 1650, fault = \"word\", device = \"follower\", word = \"pause\" },
          { at_ms = 1680, fault = \"word\", device = \"both\", word = \"resume\" },",
-        "{ at_ms = 1695, fault = \"second_hand\", ms = 20 },",
         "{ at_ms = 1650, fault = \"crash\", node = \"master\" },
          { at_ms = 1900, fault = \"word\", device = \"both\", word = \"resume\" },",
         "{ at_ms = 1700, fault = \"loss\", way = \"forth\", share = 0.5, ms = 60 },",
