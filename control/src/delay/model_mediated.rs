@@ -14,6 +14,12 @@
 //! order lag, `blend_time`. Its place comes towards the hand no faster than 50 mm/s; a surface
 //! that appears around the hand begins at the hand, so that it winds nothing up at once.
 //!
+//! **Updates are passive** (what the survey of Xu et al. asks of them): one that would wind up the
+//! spring under the hand goes on only as far as an energy account pays (`account.rs`, ours). The
+//! two layers keep books of their own around the law and leave that out.
+//!
+//! The follower tells with the stiffness how sure it is of it, as a relative standard error.
+//!
 //! Forward go the hand's position and the force f that it gives into the rendered
 //! surface. The tip goes to that position, but no deeper behind the surface as the follower
 //! estimates it than s₀ + f/K, with f at least `search_force`: no loop of force is closed
@@ -27,13 +33,13 @@
 //! it is no loop of force either.
 //!
 //! **What it guarantees.** Nothing about energy: what leaves at the tip is not bound to
-//! what entered at the hand, and an update that moves the surface towards the hand
-//! makes energy; the damping b pays for most of it. Assumed for stability: a surface that
+//! what entered at the hand. Assumed for stability: a surface that
 //! holds still for longer than a round trip; then both ends are local loops and any delay is
 //! stable. What is felt of something that moves is old.
 //!
 //! **On loss.** No command; the leader goes on rendering the last surface, fading out.
 
+mod account;
 mod chord;
 mod compliance;
 mod estimate;
@@ -48,6 +54,7 @@ use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     Samples, vector,
 };
+use account::UpdateAccount;
 use compliance::SOFTEST;
 use estimate::{SAME, Scale, SurfaceEstimator};
 use nalgebra::Vector3;
@@ -60,6 +67,10 @@ law_parameters! {
         pub damping: f64 [0.0..=1000.0, "N·s/m"] = 14.0,
         /// Time constant with which an update is blended in \[s\].
         pub blend_time: f64 [0.001..=10.0, "s"] = 0.1,
+        /// Whether updates have to be paid for.
+        pub paid_updates: bool = true,
+        /// What the account that pays for updates holds at most \[J\].
+        pub update_reserve: f64 [0.0..=1000.0, "J"] = 0.1,
         /// Largest stiffness that is rendered \[N/m\].
         pub largest_stiffness: f64 [10.0..=10000.0, "N/m"] = 3300.0,
         /// Largest force of the rendered surface on the hand \[N\].
@@ -100,11 +111,11 @@ const FRICTION_SPEED: f64 = 0.01;
 /// Stiffer than what is rendered, and within what a packet holds [N/m].
 const STIFFEST_SENT: f64 = 9000.0;
 
-/// The model as in a packet: place and friction in the position, the normal
-/// times the stiffness in the vector.
+/// The model as in a packet: place, friction and the error of the stiffness in the position, the
+/// normal times the stiffness in the vector.
 fn packed(model: Option<SurfaceModel>, energy: Energy) -> Packet {
     let model = model.unwrap_or_default();
-    let sideways = [model.place, model.friction, 0.0];
+    let sideways = [model.place, model.friction, model.stiffness_error];
     Packet::new(
         sideways,
         (model.stiffness.min(STIFFEST_SENT) * model.normal).into(),
@@ -120,6 +131,7 @@ fn unpacked(packet: &Packet) -> Option<SurfaceModel> {
         normal: direction / stiffness,
         place: f64::from(packet.position[0]),
         stiffness,
+        stiffness_error: f64::from(packet.position[2]).clamp(0.0, 1.0),
         friction: f64::from(packet.position[1]).clamp(0.0, 2.0),
     })
 }
@@ -134,6 +146,7 @@ pub struct ModelMediatedLeader {
     /// What is rendered.
     surface: Option<SurfaceModel>,
     received: Option<SurfaceModel>,
+    account: UpdateAccount,
 }
 
 impl ModelMediatedLeader {
@@ -144,6 +157,7 @@ impl ModelMediatedLeader {
             fade: ForceRamp::default(),
             surface: None,
             received: None,
+            account: UpdateAccount::new(law.update_reserve),
         }
     }
 
@@ -167,6 +181,7 @@ impl ModelMediatedLeader {
             ..target
         };
         let surface = self.surface.get_or_insert(anew);
+        let before = *surface;
         if surface.normal.dot(&target.normal) < SAME {
             // Another surface, whose place is along another normal.
             *surface = anew;
@@ -175,7 +190,11 @@ impl ModelMediatedLeader {
         surface.normal = normal.try_normalize(1e-6).unwrap_or(target.normal);
         surface.place += (target.place - surface.place).max(-PLACE_SPEED * dt);
         surface.stiffness += share * (stiffness - surface.stiffness);
+        surface.stiffness_error = target.stiffness_error;
         surface.friction += share * (target.friction - surface.friction);
+        if self.parameters.paid_updates {
+            *surface = self.account.paid(&before, surface, hand);
+        }
     }
 }
 
@@ -200,8 +219,12 @@ impl Leader for ModelMediatedLeader {
         let live = self.mapping.live(input.connected, input.received);
         if let Some(received) = live {
             self.received = unpacked(&received.packet);
+            let entered = f64::from(received.packet.energy[0]);
+            self.account.came_in(self.mapping.power_scale() * entered);
         }
         if let Some(hand) = input.hand {
+            let square = Vector3::from(hand.velocity).norm_squared();
+            self.account.add(self.parameters.damping * square * dt);
             self.blend(dt, &hand.position.into());
         }
         let share = self.fade.step(dt, self.mapping.force_ramp, live.is_some());
@@ -238,8 +261,8 @@ const DEEPER: f64 = 0.15;
 /// From so far before the surface on the tip searches it [m].
 const SEARCH_BEFORE: f64 = 0.01;
 
-/// The follower's end: sends the surface (place \[m\] and friction \[-\] in the
-/// position, normal times stiffness \[N/m\] in the vector), in hand units.
+/// The follower's end: sends the surface (place \[m\], friction \[-\] and relative error of the
+/// stiffness \[-\] in the position, normal times stiffness \[N/m\] in the vector), in hand units.
 #[derive(Clone, Debug)]
 pub struct ModelMediatedFollower {
     parameters: ModelMediated,
@@ -367,6 +390,7 @@ mod tests {
             normal: Vector3::new(-0.6, 0.8, 0.0),
             place: 0.0123,
             stiffness: 1234.0,
+            stiffness_error: 0.07,
             friction: 0.25,
         };
         let back = unpacked(&packed(Some(model), Energy::default())).unwrap();
@@ -374,6 +398,7 @@ mod tests {
         assert!((back.place - model.place).abs() < 1e-8);
         assert!((back.stiffness - model.stiffness).abs() < 1e-3);
         assert!((back.friction - model.friction).abs() < 1e-7);
+        assert!((back.stiffness_error - model.stiffness_error).abs() < 1e-7);
         assert_eq!(unpacked(&packed(None, Energy::default())), None);
     }
 
@@ -383,6 +408,7 @@ mod tests {
             normal: Vector3::new(-1.0, 0.0, 0.0),
             place: 0.01,
             stiffness: 500.0,
+            stiffness_error: 0.0,
             friction: 0.3,
         };
         let force = rendered(
@@ -403,6 +429,7 @@ mod tests {
         normal: Vector3::new(-1.0, 0.0, 0.0),
         place: 0.0,
         stiffness: 2000.0,
+        stiffness_error: 0.0,
         friction: 0.0,
     };
 
@@ -426,7 +453,11 @@ mod tests {
 
     /// The leader with the hand at rest at `x` \[m\], after each step; `surface` comes from the arm.
     fn rendering(x: f64, surface: SurfaceModel) -> impl Iterator<Item = SurfaceModel> {
-        let mut leader = ModelMediatedLeader::new(&ModelMediated::default());
+        let law = ModelMediated {
+            paid_updates: false,
+            ..ModelMediated::default()
+        };
+        let mut leader = ModelMediatedLeader::new(&law);
         std::iter::repeat_with(move || {
             let packet = packed(Some(surface), Energy::default());
             let input = LeaderInput {

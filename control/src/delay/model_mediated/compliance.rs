@@ -30,6 +30,11 @@ pub(super) struct Known {
 }
 
 impl Known {
+    /// Relative standard error, 1 at most \[-\].
+    pub fn error(&self) -> f64 {
+        1.0 / self.weight.max(1.0).sqrt()
+    }
+
     /// Of both, where `other` counts by `part` of 1: what is known well of a stiff surface holds,
     /// whatever a chord tells.
     pub fn with(self, other: Known, part: f64) -> Known {

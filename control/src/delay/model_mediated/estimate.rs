@@ -40,6 +40,8 @@ pub struct SurfaceModel {
     pub place: f64,
     /// K \[N/m\]; zero: no surface is known.
     pub stiffness: f64,
+    /// Its relative standard error, 1 at most: nothing is known of it then \[-\].
+    pub stiffness_error: f64,
     /// Coulomb coefficient \[-\].
     pub friction: f64,
 }
@@ -118,6 +120,7 @@ impl SurfaceEstimator {
         }
         let mut model = self.model.unwrap_or(SurfaceModel {
             stiffness: STIFFEST,
+            stiffness_error: 1.0,
             ..SurfaceModel::default()
         });
         if self.touching == 0.0 {
@@ -155,7 +158,9 @@ impl SurfaceEstimator {
             let spread = self.scale.force * CHORD_SPREAD;
             self.chord.add(dt, gone, normal_force, spread);
         }
-        model.stiffness = 1.0 / self.known().compliance;
+        let known = self.known();
+        model.stiffness = 1.0 / known.compliance;
+        model.stiffness_error = known.error();
         model.place = depth - normal_force / model.stiffness;
         let slid = moved - model.normal * model.normal.dot(&moved);
         let way = slid.norm();
@@ -201,6 +206,10 @@ mod tests {
         let model = model.unwrap();
         assert!((model.normal - normal).norm() < 0.02, "{model:?}");
         assert!((model.stiffness / 1500.0 - 1.0).abs() < 0.1, "{model:?}");
+        // It knows how well it knows that.
+        let errors = (model.stiffness / 1500.0 - 1.0) / model.stiffness_error;
+        assert!(errors.abs() < 3.0, "{model:?}");
+        assert!((0.005..0.1).contains(&model.stiffness_error), "{model:?}");
         assert!((model.place - place).abs() < 5e-4, "{model:?}");
         assert!((model.friction - 0.2).abs() < 0.1, "{model:?}");
     }
@@ -234,7 +243,8 @@ mod tests {
             let (tip, force) = (Vector3::x() * depth, Vector3::x() * -force);
             model = estimator.step(1e-3, tip, force);
             if k == 0 {
-                assert_eq!(model.map(|own| own.stiffness), Some(STIFFEST));
+                let told = model.map(|own| (own.stiffness, own.stiffness_error));
+                assert_eq!(told, Some((STIFFEST, 1.0)));
             }
         }
         let model = model.unwrap();

@@ -24,6 +24,8 @@ impl Default for InnerLaw {
         InnerLaw::ModelMediated(ModelMediated {
             // The layer adds its own.
             damping: 12.0,
+            // It keeps books itself.
+            paid_updates: false,
             ..ModelMediated::default()
         })
     }
