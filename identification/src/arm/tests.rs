@@ -192,8 +192,6 @@ fn a_payload_wins_against_effects_of_single_joints_and_leaves_nothing() {
     let added = add(&dataset, &model(&PLAIN), &ArmTerm::parse("payload")).unwrap();
     assert!(added.lowers_error && added.joint.is_none());
     assert!((added.parameters["payload.mass"].value - 0.5).abs() < 0.005);
-    let interval = added.parameters["payload.mass"].interval_95.unwrap();
-    assert!(interval[0] < 0.505 && interval[1] > 0.495 && interval[1] - interval[0] < 0.05);
     assert!((added.parameters["b0@elbow"].value - 0.4).abs() < 0.01);
 }
 

@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::design::{Design, PreparedModel, columns};
 use crate::effects::{BoundTerm, with_columns};
+use crate::numerics::filter::Kernel;
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::{jackknife_covariance, quantile_or_zero};
 use crate::signals::Signals;
@@ -68,7 +69,6 @@ impl Uncertainty {
         for (k, (term, place)) in shapes.iter().enumerate() {
             let at = design.base + k;
             if *place == 0 {
-                // Of a number that may lie anywhere between −x and x.
                 covariance[(at, at)] += unseen_travel(prepared, *term).powi(2) / 3.0;
             }
         }
@@ -94,16 +94,15 @@ impl Uncertainty {
     }
 }
 
-/// Travel \[rad\] within the width of the filter from the samples at which a term's
-/// torque is not determined. Rows that lie closer are left out; those that remain see
-/// by the tails of the filter alone what is farther than that, so that within it the
-/// term's first shape parameter may be anything. The slowest of these passages tell the
-/// most.
+/// Half the travel \[rad\] over which rows are left out around the samples at which a
+/// term's torque is not determined: within it, its first shape parameter may be
+/// anything, whatever the rows that are left say. The slowest of these passages tell
+/// the most.
 fn unseen_travel(prepared: &PreparedModel, term: usize) -> f64 {
     let Some(term) = prepared.terms.get(term) else {
         return 0.0;
     };
-    let reach = prepared.filters.column.ceil() as usize;
+    let reach = Kernel::reach(prepared.filters.column);
     let mut travels = Vec::new();
     for signals in &prepared.sessions {
         let points = &signals.points;
