@@ -58,7 +58,7 @@ mod tests {
             assert!(key.is_held(at(ms)) && key.is_held(at(ms + 32)));
         }
         let last = 1985;
-        assert!(key.is_held(at(last + 60)));
+        assert!(key.is_held(at(last + 59)));
         assert!(!key.is_held(at(last + 61)));
         key.character(at(last + 3000));
         assert!(!key.is_held(at(last + 3000)), "a single one begins nothing");

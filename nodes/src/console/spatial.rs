@@ -207,8 +207,12 @@ mod tests {
             let view = spatial(arm);
             view.things.into_iter().map(|own| own.name).collect()
         };
-        assert_eq!(told(&arm), ["table"]);
+        assert_eq!(told(&arm), ["table", "block", "spring"]);
         let mut file: SerialFile = arm.whole().unwrap();
+        file.truth = None;
+        // What is believed to be there instead.
+        let believed = ArmFile::serial(&file).unwrap();
+        assert_eq!(told(&believed), ["table", "edge", "spring"]);
         file.truth = Some(json!({"object": [
             {"name": "ball", "shape": {"kind": "sphere", "center": [0.4, 0.0, 0.3], "radius": 0.05}, "surface": {}},
             {"name": "cone", "shape": {"kind": "cone"}},

@@ -54,9 +54,6 @@ def model_of(urdf):
     """The model, free of contacts and ends."""
     model = mujoco.MjModel.from_xml_string(readable(urdf))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
-    # Friction is drawn below; some files have their own, which MuJoCo takes over.
-    model.dof_damping[:] = 0.0
-    model.dof_frictionloss[:] = 0.0
     return model
 
 
@@ -145,6 +142,10 @@ def record(urdf, folder, effect, seed, strength):
     """One recording: the path of its files, without their endings."""
     random = numpy.random.default_rng([seed, sorted(ACCEPTED).index(effect), round(100 * strength)])
     believed, model = model_of(urdf), model_of(urdf)
+    for own in (believed, model):
+        # Friction is drawn below; some files have their own, which MuJoCo takes over.
+        own.dof_damping[:] = 0.0
+        own.dof_frictionloss[:] = 0.0
     count = len(hinges(model))
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint) for joint in range(count)]
     strong = [joint < count - 3 for joint in range(count)]

@@ -150,6 +150,7 @@ def main() -> None:
         default=[],
         help="from,to,fx,fy,fz,mx,my,mz: for that time [s] a force [N] and a torque [Nm] on the tip",
     )
+    parser.add_argument(
         "--friction",
         type=float,
         nargs=2,

@@ -22,6 +22,7 @@ fn fits(browser: &Browser, page: &Path, words: f64) {
 
 /// The scenario of a sweep that takes seconds.
 const SWEEP: &str = r#"
+description = "Two laws at two delays."
 arm = "rokviss"
 rtt_ms = [20, 300]
 jitter_ms = [0]
