@@ -133,7 +133,8 @@ class Plant:
         ]
 
 
-def main() -> None:
+def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
+    """The options; those of the command line where none are given."""
     parser = argparse.ArgumentParser(description="An arm in MuJoCo as a plant for ferntast.")
     parser.add_argument("--urdf", help="file of the arm; that of the greeting without it")
     parser.add_argument("--tip", help="link whose origin is the tip; that of the greeting without it")
@@ -159,7 +160,11 @@ def main() -> None:
         help="of each gear, by its motor's inertia: Nm and Nm s/rad for each kg m²",
     )
     parser.add_argument("--truth", help="file for what is true, a line a step: t_s, force_N and tip_m in x, y, z")
-    options = parser.parse_args()
+    return parser.parse_args(arguments)
+
+
+def main() -> None:
+    options = options_of()
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     greeting = json.loads(source.readline())
     joints = greeting["joints"]

@@ -22,7 +22,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 from arguments import print_report, ready, stop_on_signal
-from mujoco_plant import Plant
+from mujoco_plant import Plant, options_of
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from ros_peer import ros_node
 from sensor_msgs.msg import JointState
@@ -89,7 +89,7 @@ class Robot:
     """The plant behind a robot's own controller and brakes."""
 
     def __init__(self, arm: dict, joints: list[str], interface: str) -> None:
-        self.plant = Plant(arm, joints, argparse.Namespace(urdf=None, tip=None, start=None, wall=[]))
+        self.plant = Plant(arm, joints, options_of([]))
         self.interface, self.joints = interface, joints
         self.command: tuple[float, np.ndarray] | None = None
         self.torque, self.braked, self.brakes = np.zeros(len(joints)), 0, True
