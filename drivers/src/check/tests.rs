@@ -225,6 +225,7 @@ fn moved(held: impl Fn(f64) -> bool, wire: impl Fn(&mut Joints<f64>)) -> (Moved,
     let weight = Weight::new(&loaded.arm.model, count);
     let mut record = Record::default();
     let mut torque = Joints::filled(count, 0.0);
+    let mut braked = None;
     let mut farthest = 0.0_f64;
     for step in 0..120_000_i64 {
         let now = Time::from_nanos(1_700_000_000_000_000_000 + step * 1_000_000);
@@ -246,11 +247,15 @@ fn moved(held: impl Fn(f64) -> bool, wire: impl Fn(&mut Joints<f64>)) -> (Moved,
         let drive = mover.step(now, 1e-3, Some(&reading), held(at));
         torque = drive.torque;
         wire(&mut torque);
-        if !drive.enabled {
+        if drive.enabled {
+            braked = None;
+        } else {
             // Its brakes.
+            let place = *braked.get_or_insert(reading.position);
             let carried = weight.at(&reading.position);
             torque = Joints::from_fn(count, |joint| {
-                carried[joint] - 10.0 * reading.velocity[joint]
+                let gone = reading.position[joint] - place[joint];
+                carried[joint] - 1000.0 * gone - 10.0 * reading.velocity[joint]
             });
         }
         let any: &dyn Any = &*arm;
