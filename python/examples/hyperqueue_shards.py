@@ -10,6 +10,7 @@ folder with --server, and give a folder that all workers see with --folder.
 
 import argparse
 import contextlib
+import os
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,18 @@ from pathlib import Path
 from hyperqueue import Job, LocalCluster
 from hyperqueue.client import Client, FailedJobsException
 from hyperqueue.cluster import WorkerConfig
+
+
+@contextlib.contextmanager
+def stdout_on_stderr():
+    """A worker says on stdout what it is; stdout is for the result."""
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
 
 
 @contextlib.contextmanager
@@ -59,7 +72,7 @@ def main() -> int:
     if given.program is None:
         sys.exit("no command ferntast on the path: name it with --program")
     given.folder.mkdir(parents=True, exist_ok=True)
-    with client_of(given.server) as client:
+    with stdout_on_stderr(), client_of(given.server) as client:
         try:
             parts = run_in_parts(client, given.program, given.study, given.count, given.folder.resolve())
         except FailedJobsException as error:

@@ -10,8 +10,9 @@ use std::sync::{
 
 use ferntast_control::planted::Rule;
 use ferntast_nodes::session_graph;
-use ferntast_studies::faults::{
-    Kits, Outcome, Plan, RunError, Schedule, load, run_many, shrink_where, violates,
+use ferntast_studies::{
+    faults::{Kits, Outcome, Plan, RunError, Schedule, load, run_many, shrink_where, violates},
+    shard::Shard,
 };
 
 /// Within so many schedules a missing rule has to be found.

@@ -34,35 +34,6 @@ fn ended(robot: Process) -> Value {
     robot.wait(PATIENCE).success().json()
 }
 
-/// The hand drives the robot to the table and feels it, and the robot's own force is the one that
-/// is felt.
-#[test]
-fn a_hand_feels_what_a_robot_on_ros_2_touches() {
-    let session = Session::new();
-    let arm = patient_arm(&session);
-    let robot = robot(&session, &[]);
-    let mut command = session.ferntast_here(&["session", "--json", "--no-console"]);
-    command.args(["--arm", &arm, "--driver", "ros2", "--duration", "9"]);
-    let summary = Process::spawn(command).wait(PATIENCE).success().json();
-    let robot = ended(robot);
-    println!("{summary:#}\n{robot:#}");
-    let told = |key: &str| number(&summary, key);
-    assert_eq!(summary["arm"], "patient");
-    assert_eq!(summary["joints"], 7);
-    assert_eq!(summary["driver"], "ros2");
-    for key in ["felt_stiffness_N_per_m", "tip"] {
-        assert!(summary.get(key).is_some(), "{key}");
-    }
-    assert!(told("contact.time_s") > 0.3, "{summary:#}");
-    let (felt, pushed) = (told("contact.peak_force_N"), number(&robot, "peak_force_N"));
-    assert!(
-        felt > 2.0 && felt < 2.0 * pushed + 10.0,
-        "{felt} N of {pushed} N"
-    );
-    assert!(pushed < 200.0, "{pushed} N");
-    assert!(number(&robot, "commands") > 500.0, "{robot:#}");
-}
-
 fn check(session: &Session, arm: &str) -> (Option<i32>, Value) {
     let arguments = [
         "arm",
