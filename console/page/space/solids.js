@@ -119,4 +119,3 @@ export function cone(a, b, first, second, sides = SIDES) {
 export function placed(own, frame) {
   return body(own.points.map((corner) => point(frame, corner)), own.faces);
 }
-
