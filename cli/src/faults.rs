@@ -15,7 +15,7 @@ use ferntast_studies::{
         self, Fault, FaultStudy, Found, Kits, Outcome, Plan, Results, RunError, Schedule, Summary,
         Violation, run_many, shrink,
     },
-    shard::{Placed, Shard},
+    shard::Placed,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -132,7 +132,7 @@ fn run_seeds(graph: &Graph, arguments: &Arguments, json: bool) -> Result<ExitCod
     };
     let results = run_many(&kits, &plan, change, done, &stop).map_err(Failure::failed)?;
     bar.finish_and_clear();
-    if plan.shard == Shard::WHOLE {
+    if !arguments.parts.is_asked() {
         return tell_results(&kits, &results, folder, json);
     }
     let answers = study.answers(results);
@@ -191,7 +191,8 @@ fn progress(plan: &Plan) -> ProgressBar {
     let (bar, template) = match plan.longest {
         None => (
             ProgressBar::new(
-                plan.seeds.end.saturating_sub(plan.seeds.start) / u64::from(plan.shard.of()),
+                plan.shard
+                    .count_of(plan.seeds.end.saturating_sub(plan.seeds.start)),
             ),
             "{bar:30} {pos}/{len} schedules, {eta} left{msg}",
         ),

@@ -20,6 +20,11 @@ pub struct ShardOptions {
 }
 
 impl ShardOptions {
+    /// Whether a part is asked for; 1/1, which is all, is one too.
+    pub fn is_asked(&self) -> bool {
+        self.shard.is_some()
+    }
+
     /// Which part: all, where none is asked for.
     pub fn shard(&self) -> Shard {
         self.shard.unwrap_or(Shard::WHOLE)

@@ -159,7 +159,7 @@ fn run_random(
     stop: &AtomicBool,
     json: bool,
 ) -> Result<ExitCode, Failure> {
-    let bar = progress(study.count() / u64::from(parts.shard().of()));
+    let bar = progress(parts.shard().count_of(study.count()));
     let begun = Instant::now();
     let cases = study
         .run(parts.shard(), stop, || bar.inc(1))

@@ -28,6 +28,26 @@ use serde_json::{Value, json};
 
 const IDS: [u8; 2] = [1, 2];
 
+/// Waits until no shaft turns any more: what is read then stays as it is.
+fn await_rest(bus: &mut MotorBus) {
+    let mut positions = || {
+        bus.motors()
+            .iter()
+            .map(|motor| motor["position"].clone())
+            .collect::<Vec<_>>()
+    };
+    let mut last = positions();
+    for _ in 0..500 {
+        sleep(Duration::from_millis(20));
+        let now = positions();
+        if now == last {
+            return;
+        }
+        last = now;
+    }
+    panic!("motors that are off go on turning: {last:?}");
+}
+
 fn section(bus: &MotorBus, model: &str) -> Section {
     let motor = |id: u8| {
         json!({"id": id, "joint": format!("joint_{id}"), "model": model, "zero": 2048,
@@ -107,6 +127,7 @@ fn dynamixel_motors_get_what_the_makers_sdk_would_send() {
     let mut bus = MotorBus::start("dynamixel", &json!([{"id": 1}, {"id": 2}]), &[]);
     let open = |bus: &MotorBus| Dynamixel::open(&section(bus, "XM430-W350"));
     run(open(&bus).expect("a port"));
+    await_rest(&mut bus);
     let told = written_again("dynamixel", &bus.log());
     for kind in [
         "ping",
@@ -162,6 +183,7 @@ fn dynamixel_motors_get_what_the_makers_sdk_would_send() {
         json!([["write", 2, 38, [0x74, 4]], ["read", 1, 11, 1]]),
     );
     assert_eq!(read[1], json!([[5], 0, 0]));
+    await_rest(&mut bus);
     let mut family = open(&bus).expect("a port");
     let states = family.start().expect("motors");
     for (place, motor) in bus.motors().iter().enumerate() {
@@ -210,6 +232,7 @@ fn feetech_motors_get_what_the_makers_sdk_would_send() {
     let moved = json!([["write", 1, 40, [1]], ["sync_write", 42, 2, {"1": [0, 9]}]]);
     sdk("feetech", &bus, moved);
     sleep(Duration::from_millis(600));
+    await_rest(&mut bus);
     let states = open(&bus).expect("a port").start().expect("motors");
     assert!(
         (states[0].position - 2304.0).abs() < 40.0,

@@ -6,7 +6,7 @@ use ferntast_lab::work::{self, AutoEvent, AutoOptions};
 use ferntast_nodes::process::stop_on_signals;
 use ferntast_studies::{
     lab_folder::{self, Completed, LabFolder},
-    shard::{Placed, Shard},
+    shard::Placed,
 };
 use indicatif::ProgressBar;
 
@@ -53,7 +53,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     if arguments.experiment.is_dir() {
         return run_folder(arguments, json);
     }
-    if arguments.parts.shard() != Shard::WHOLE {
+    if arguments.parts.is_asked() {
         return Err(Failure::refused(format!(
             "--shard: {} is one experiment; give a folder of them",
             arguments.experiment.display()

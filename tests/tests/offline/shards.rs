@@ -17,16 +17,20 @@ laws = [{ kind = "position_force", force_scale = 1.0 }, { kind = "wave", force_s
 
 /// Runs `study` whole and in three parts; gives what both told.
 fn whole_and_merged(session: &Session, study: &[&str]) -> [String; 2] {
+    whole_and_parts(session, study, &["1.toml", "2.toml", "3.toml"])
+}
+
+/// Runs `study` whole and in as many parts as there are files; gives what both told.
+fn whole_and_parts(session: &Session, study: &[&str], parts: &[&str]) -> [String; 2] {
     let whole = run(session, &[study, &["--json"]].concat())
         .success()
         .stdout;
-    let parts = ["1.toml", "2.toml", "3.toml"];
     for (number, file) in (1..).zip(parts) {
-        let shard = format!("{number}/3");
+        let shard = format!("{number}/{}", parts.len());
         let part = ["--shard", &shard, "--part", file];
         run(session, &[study, &part].concat()).success();
     }
-    let merged = run(session, &[&["merge", "--json"][..], &parts].concat());
+    let merged = run(session, &[&["merge", "--json"][..], parts].concat());
     [whole, merged.success().stdout]
 }
 
@@ -63,9 +67,12 @@ fn of_schedules_of_faults_but_for_the_time_they_took() {
         let lines = text.lines().filter(|line| !line.contains("per_minute"));
         lines.map(str::to_owned).collect::<Vec<_>>()
     };
-    let [whole, merged] = whole_and_merged(&session, &seeds).map(untimed);
-    assert!(whole.len() > 10, "{whole:#?}");
-    assert_eq!(whole, merged);
+    // One part is one, too.
+    for parts in [&["1.toml", "2.toml", "3.toml"][..], &["all.toml"]] {
+        let [whole, merged] = whole_and_parts(&session, &seeds, parts).map(untimed);
+        assert!(whole.len() > 10, "{whole:#?}");
+        assert_eq!(whole, merged);
+    }
 }
 
 #[test]
@@ -93,11 +100,10 @@ fn of_a_folder_of_experiments() {
     ];
     is_equal(whole_and_merged(&session, &auto));
     assert!(has_files(&session.folder().join("completed")));
-    refused(
-        &session,
-        &["lab", "auto", "76/experiment.toml", "--shard", "1/2"],
-        &["is one experiment"],
-    );
+    for part in ["1/1", "1/2"] {
+        let one = ["lab", "auto", "76/experiment.toml", "--shard", part];
+        refused(&session, &one, &["is one experiment"]);
+    }
 }
 
 fn has_files(folder: &Path) -> bool {
