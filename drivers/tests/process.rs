@@ -5,6 +5,7 @@ mod common;
 
 use std::time::Duration;
 
+use ferntast_bus::Depth;
 use ferntast_drivers::{
     ArmInput, ArmNode, ArmOutput, Driver, DriverCommand,
     process::{Greeting, Patience, PlantError, ProcessPlant},
@@ -12,7 +13,8 @@ use ferntast_drivers::{
 use ferntast_model::Joints;
 use ferntast_msgs::{
     Time,
-    sample::{Fault, JointNames, Level},
+    sample::{Fault, JointNames, Level, OperatingState},
+    topics,
 };
 use ferntast_nodes::{
     lockstep::{LockstepSession, RunError},
@@ -198,6 +200,10 @@ fn a_session_with_it_gives_the_same_bytes_again_and_ends_where_it_fails() {
     let (_two, end, second) = session("");
     end.unwrap();
     assert!(first == second && first.len() > 100_000);
+    // Virtual time waits for one that is slow.
+    let (_slow, end, slow) = session("--fault slow --at 0.5");
+    end.unwrap();
+    assert!(first == slow);
     let (_three, end, short) = session("--fault exit --at 0.5");
     let words = end.unwrap_err().to_string();
     assert!(
@@ -205,4 +211,27 @@ fn a_session_with_it_gives_the_same_bytes_again_and_ends_where_it_fails() {
         "{words}"
     );
     assert!(short.len() < first.len());
+}
+
+/// Half a radian from one millisecond to the next: the drives let go.
+#[test]
+fn an_arm_that_jumps_is_not_driven_on() {
+    let context = {
+        let mut context = SessionContext::in_virtual_time(common::scenario(1, false));
+        context.driver = Some(format!("process:{}", command("--fault jump --at 0.5")));
+        context
+    };
+    let graph = session_graph(ferntast_drivers::row());
+    let mut session = LockstepSession::new(&graph, &context).expect("a session with a plant");
+    let bus = session.bus().clone();
+    let mut states = bus
+        .subscriber(topics::FOLLOWER_OPERATING_STATE, Depth::Newest)
+        .expect("a topic");
+    session.run(0.4);
+    let state = states.newest(session.now()).expect("a state").message.state;
+    assert_eq!(state, OperatingState::ENABLED);
+    session.run(0.3);
+    let state = states.newest(session.now()).expect("a state").message.state;
+    assert_eq!(state, OperatingState::FAULT);
+    session.finish().unwrap();
 }

@@ -16,8 +16,17 @@ the share done, 0 … 1. What is refused raises `RefusedError` with the lab's te
 
 from ferntast._native import FailedError, FerntastError, RefusedError
 from ferntast.experiment import Experiment
-from ferntast.lab import add, auto, challenge, compare, diagnose, effects, export
-from ferntast.results import Added, Automatic, Comparison, Diagnosis, Lockstep, Record, Sweep
+from ferntast.lab import add, auto, challenge, compare, diagnose, discover, effects, export
+from ferntast.results import (
+    Added,
+    Automatic,
+    Comparison,
+    Diagnosis,
+    Discovery,
+    Lockstep,
+    Record,
+    Sweep,
+)
 from ferntast.virtual_time import lockstep, sweep
 
 __all__ = [
@@ -25,6 +34,7 @@ __all__ = [
     "Automatic",
     "Comparison",
     "Diagnosis",
+    "Discovery",
     "Experiment",
     "FailedError",
     "FerntastError",
@@ -37,6 +47,7 @@ __all__ = [
     "challenge",
     "compare",
     "diagnose",
+    "discover",
     "effects",
     "export",
     "lockstep",

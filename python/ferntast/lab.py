@@ -9,7 +9,7 @@ from typing import Any
 
 from ferntast import _native
 from ferntast.experiment import Experiment, PathLike
-from ferntast.results import Added, Automatic, Comparison, Diagnosis, Record
+from ferntast.results import Added, Automatic, Comparison, Diagnosis, Discovery, Record
 
 Progress = Callable[[float], object] | None
 
@@ -36,6 +36,22 @@ def diagnose(
     experiment = Experiment.of(source, **signals)
     answers = json.loads(_native.diagnose(experiment.path, progress))
     return _one_or_all([Diagnosis.from_answer(own, experiment) for own in answers])
+
+
+def discover(
+    source: Any, *, seed: int = 1, progress: Progress = None, **signals: Any
+) -> Discovery | list[Discovery]:
+    """Proposes formulas for what no effect of the catalogue explains.
+
+    `source` and `signals` are those of `Experiment.of`; `seed` decides what chance is taken to
+    be, `progress` is called with the share done. The formula that you believe goes to
+    `add(source, f"{formula.name}={formula.expression}")`. The recording of a session gives a
+    list, one of each joint; the experiment of a whole arm one result, whose formulas have a
+    `joint`.
+    """
+    experiment = Experiment.of(source, **signals)
+    answers = json.loads(_native.discover(experiment.path, seed, progress))
+    return _one_or_all([Discovery.from_answer(own, experiment) for own in answers])
 
 
 def add(

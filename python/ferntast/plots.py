@@ -9,7 +9,7 @@ from ferntast._native import RefusedError
 if TYPE_CHECKING:
     import matplotlib.figure
 
-    from ferntast.results import Automatic, Comparison, Diagnosis, Sweep
+    from ferntast.results import Automatic, Comparison, Diagnosis, Discovery, Sweep
 
 
 def _subplots(rows: int, columns: int, **how: Any) -> tuple[matplotlib.figure.Figure, Any]:
@@ -65,6 +65,40 @@ def diagnosis(result: Diagnosis) -> matplotlib.figure.Figure:
     axes[0][0].barh(names, errors)
     axes[0][0].set_xlabel(f"error held out [{result.unit}]")
     axes[0][0].set_title(f"{result.title}: {result.verdict}")
+    return figure
+
+
+def discovery(result: Discovery) -> matplotlib.figure.Figure:
+    """Each formula beside what was measured: curves over one signal, maps over two."""
+    formulas = result.to_dict()["formulas"]
+    figure, axes = _subplots(max(1, len(formulas)), 2)
+    figure.suptitle(f"{result.title}: {result.verdict}")
+    if not formulas:
+        for axis in axes.flat:
+            axis.remove()
+        figure.text(0.5, 0.4, "no formula is proposed", ha="center")
+    for (left, right), own in zip(axes, formulas, strict=False):
+        chart = own["map"]
+        names = [f"{n} [{u}]" for n, u in zip(chart["signals"], chart["units"], strict=True)]
+        both = [[float("nan") if x is None else x for x in chart[k]] for k in ("measured", "formula")]
+        if len(names) == 1:
+            left.plot(chart["axes"][0], both[0], "o", ms=3, label="measured")
+            left.plot(chart["axes"][0], both[1], "-", label="formula")
+            left.set_ylabel(f"residual [{result.unit}]")
+            left.set_xlabel(names[0])
+            left.legend()
+            right.axis("off")
+        else:
+            size = max((abs(x) for values in both for x in values if x == x), default=1.0)
+            across, along = chart["axes"][0], chart["axes"][1]
+            for axis, values, what in zip((left, right), both, ("measured", "formula"), strict=True):
+                rows = [values[i * len(along) : (i + 1) * len(along)] for i in range(len(across))]
+                drawn = axis.pcolormesh(along, across, rows, vmin=-size, vmax=size, cmap="RdBu_r")
+                axis.set_xlabel(names[1])
+                axis.set_ylabel(names[0])
+                axis.set_title(f"{what} [{result.unit}]", fontsize="small")
+                figure.colorbar(drawn, ax=axis)
+        left.set_title(own["expression"], fontsize="small", loc="left")
     return figure
 
 

@@ -149,6 +149,42 @@ class Diagnosis(_Answer):
         return plots.diagnosis(self)
 
 
+class Discovery(_Answer):
+    """Formulas for what no effect of the catalogue explains."""
+
+    unit: str
+    verdict: str
+    """`missing`, `complete` or `unexplained`; formulas are searched where it is the last."""
+    rms: Record
+    formulas: list[Record]
+    """Best first: `name`, `expression`, `form`, `parameters`, `signals`, `held_out_before`,
+    `held_out_after`, `p_value`, `complexity`, `cannot_be_told_from`, `next_experiment`, …; of a
+    whole arm also `joint`."""
+    residual_depends_on: list[Record]
+    tried: int
+
+    @classmethod
+    def from_answer(cls, answer: dict[str, Any], _experiment: Experiment) -> Discovery:
+        """From what the compiled part says."""
+        return cls(answer["result"], answer["title"], answer["notes"])
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The formulas, one a row."""
+        import pandas
+
+        keys = ["expression", "held_out_before", "held_out_after", "p_value", "complexity"]
+        formulas = self._fields["formulas"]
+        if any("joint" in own for own in formulas):
+            keys.insert(0, "joint")
+        return pandas.DataFrame([[own[key] for key in keys] for own in formulas], columns=keys)
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Each formula beside what was measured, over its signals."""
+        from ferntast import plots
+
+        return plots.discovery(self)
+
+
 class Added(_Answer):
     """An effect added to a model."""
 

@@ -92,6 +92,43 @@ pub fn diagnose(
     })
 }
 
+/// Formulas for what no effect of the catalogue explains in the same models; of a whole arm
+/// for every joint. `seed` decides what chance is taken to be.
+#[pyfunction]
+#[pyo3(signature = (path, seed, progress))]
+pub fn discover(
+    py: Python<'_>,
+    path: PathBuf,
+    seed: u64,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    interrupt::run(py, progress, move |watch| {
+        if let Some(arm) = work::open_arm(&path).map_err(refused)? {
+            let found = arm.discover(seed, &mut |share| watch.step(share));
+            let result = InUnit {
+                unit: arm.torque_unit(),
+                result: found.map_err(refused)?,
+            };
+            return json(&[Answer {
+                title: arm.experiment.title,
+                notes: arm.notes,
+                result,
+                series: Vec::new(),
+            }]);
+        }
+        let mut answers: Vec<Answer<InUnit<_>>> = Vec::new();
+        let all = work::open(&path).map_err(refused)?;
+        let count = all.len() as f64;
+        for (before, opened) in all.into_iter().enumerate() {
+            let mut step = |share: f64| watch.step((before as f64 + share) / count);
+            let found = opened.discover(seed, &mut step).map_err(refused)?;
+            let result = opened.in_unit(found);
+            answers.push(Answer::new(opened, result));
+        }
+        json(&answers)
+    })
+}
+
 /// Adds an effect to an experiment file's model, fits again, and writes the new file.
 #[pyfunction]
 #[pyo3(signature = (path, effect, bounds, output))]

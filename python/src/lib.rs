@@ -14,7 +14,7 @@ mod _native {
     #[pymodule_export]
     use super::error::{FailedError, FerntastError, RefusedError};
     #[pymodule_export]
-    use super::lab::{add, auto, challenge, compare, diagnose, effects, export, new};
+    use super::lab::{add, auto, challenge, compare, diagnose, discover, effects, export, new};
     #[pymodule_export]
     use super::virtual_time::{lockstep, sweep};
 }

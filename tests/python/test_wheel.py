@@ -85,6 +85,26 @@ def test_results_are_those_of_the_command_line(package, riddle, ferntast, tmp_pa
     assert [own.effect for own in automatic.steps] == [own["effect"] for own in said["steps"]]
 
 
+def test_discover_finds_the_formula_of_the_command_line(package, ferntast, tmp_path):
+    # Torques of a law that no catalogue has: it goes with position and with turning back.
+    columns = joint()
+    q, qd = columns["q"], np.gradient(columns["q"], columns["t"])
+    columns["tau"] += 0.8 * np.tanh(qd / 0.1) * q**2
+    experiment = package.Experiment.of(columns, position="q:rad", motor_torque="tau:Nm")
+    shares: list[float] = []
+    found = package.discover(experiment, seed=3, progress=shares.append)
+    said = result(ferntast, "lab", "discover", experiment.path, "--seed", 3)
+    assert found.to_dict() == said
+    assert shares == sorted(shares) and all(0 < share <= 1 for share in shares)
+    assert len(found.to_pandas()) == len(found.formulas)
+    found.plot().savefig(tmp_path / "discovery.png")
+    assert (tmp_path / "discovery.png").stat().st_size > 5000
+    if found.formulas:
+        best = found.formulas[0]
+        added = package.add(experiment, f"{best.name}={best.expression}")
+        assert added.held_out_after == best.held_out_after
+
+
 def test_outside_recordings_give_the_numbers_of_the_command_line(
     package, ferntast, data, monkeypatch
 ):

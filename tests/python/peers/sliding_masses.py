@@ -3,7 +3,7 @@
     ferntast lockstep --driver 'process:python3 tests/python/peers/sliding_masses.py'
 
 docs/process_driver.md describes what goes over stdin and stdout. `--fault WHAT --at SECONDS` has it
-fail: be silent, exit, give nan.
+fail: be silent, exit, give nan, jump by 0.5, be slow (half a second, once).
 """
 
 import argparse
@@ -16,7 +16,7 @@ MASS = 2.0
 
 parser = argparse.ArgumentParser()
 parser.add_argument("--joints", nargs="*", help="call the joints so")
-parser.add_argument("--fault", choices=["silent", "exit", "nan"])
+parser.add_argument("--fault", choices=["silent", "exit", "nan", "jump", "slow"])
 parser.add_argument("--at", type=float, default=0.0)
 options = parser.parse_args()
 
@@ -50,6 +50,13 @@ while record := source.read(command.size):
             time.sleep(3600.0)
         if options.fault == "exit":
             sys.exit(3)
-        position[0] = float("nan")
+        if options.fault == "nan":
+            position[0] = float("nan")
+        if options.fault == "jump":
+            position[0] += 0.5
+            options.fault = None
+        if options.fault == "slow":
+            time.sleep(0.5)
+            options.fault = None
     sink.write(reading.pack(*position, *velocity, *torque, *torque, energy))
     sink.flush()

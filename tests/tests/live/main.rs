@@ -7,6 +7,7 @@ mod arm_export;
 mod arm_lab;
 mod bad_frames;
 mod console;
+mod console_gamepad;
 mod console_space;
 mod console_trouble;
 mod contact_force;

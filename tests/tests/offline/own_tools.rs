@@ -20,8 +20,10 @@ fn has_field(library: &Library, interface: &str, fields: &[&str]) -> bool {
     let Some((first, rest)) = fields.split_first() else {
         return true;
     };
+    // position[2] is an element of position.
+    let first = first.split('[').next().unwrap_or(first);
     let definition = library.definition(interface).expect("built in");
-    let found = definition.fields.iter().find(|field| field.name == *first);
+    let found = definition.fields.iter().find(|field| field.name == first);
     found.is_some_and(|field| match &field.kind.base {
         Base::Interface(inner) => has_field(library, inner, rest),
         _ => rest.is_empty(),

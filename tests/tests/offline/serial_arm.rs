@@ -125,6 +125,58 @@ fn a_urdf_alone_is_enough() {
     assert_eq!(told["contact"], again["contact"]);
 }
 
+/// The arm on five turntables, one on the other.
+fn nine_joints() -> String {
+    let tables: String = (0..5)
+        .map(|table| {
+            let on = match table {
+                0 => "stand".to_owned(),
+                _ => format!("table_{table}"),
+            };
+            let own = match table {
+                4 => "arm_stand".to_owned(),
+                _ => format!("table_{}", table + 1),
+            };
+            format!(
+                "<link name=\"{own}\"><inertial><mass value=\"1\"/><inertia ixx=\"0.01\" iyy=\"0.01\" \
+                 izz=\"0.01\"/></inertial></link><joint name=\"turn_{table}\" type=\"revolute\"><parent \
+                 link=\"{on}\"/><child link=\"{own}\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" \
+                 effort=\"40\" velocity=\"2\"/></joint>"
+            )
+        })
+        .collect();
+    let arm = ARM.replacen(
+        "<parent link=\"stand\"/>",
+        "<parent link=\"arm_stand\"/>",
+        1,
+    );
+    arm.replacen("</robot>", &format!("{tables}</robot>"), 1)
+}
+
+/// Meshes are for the eye: an arm is driven without them.
+#[test]
+fn a_mesh_that_is_missing_is_not_needed() {
+    let mesh = "<visual><geometry><mesh filename=\"package://nowhere/upper.stl\"/></geometry></visual>\
+                <collision><geometry><mesh filename=\"missing.dae\"/></geometry></collision>";
+    let text = ARM.replacen(
+        "<link name=\"upper\">",
+        &format!("<link name=\"upper\">{mesh}"),
+        1,
+    );
+    assert!(text.contains("missing.dae"));
+    let arguments = [
+        "lockstep",
+        "--arm",
+        "small.urdf",
+        "--duration",
+        "1",
+        "--json",
+    ];
+    let told = run(&with_arm(&text), &arguments).success().json();
+    assert_eq!(told["joints"], 4);
+    assert_eq!(told["states"]["follower"]["final"], "ENABLED");
+}
+
 #[test]
 fn what_is_no_arm_is_refused_with_what_to_do() {
     let replaced = |from: &str, to: &str| {
@@ -147,6 +199,24 @@ fn what_is_no_arm_is_refused_with_what_to_do() {
             replaced("lower=\"0.1\" upper=\"2.5\"", "lower=\"2.5\" upper=\"0.1\""),
             vec!["small.urdf", "elbow_joint", "upside down"],
         ),
+        (
+            replaced("type=\"prismatic\"", "type=\"planar\""),
+            vec![
+                "small.urdf",
+                "stylus_joint",
+                "line",
+                "planar",
+                "prismatic joints",
+            ],
+        ),
+        (
+            replaced(
+                "</robot>",
+                "<joint name=\"back\" type=\"fixed\"><parent link=\"stylus\"/><child link=\"upper\"/></joint></robot>",
+            ),
+            vec!["small.urdf", "upper", "a loop", "line"],
+        ),
+        (nine_joints(), vec!["small.urdf", "9 joints", "at most 8"]),
         (replaced("</robot>", ""), vec!["small.urdf", "XML"]),
     ];
     for (text, words) in cases {
