@@ -36,9 +36,7 @@ SYSID_SEGMENT = 1.0
 
 
 def table_of(recording: Path, joints: list[str]) -> np.ndarray:
-    """Time, positions, torques; a table has them in that order."""
-    if recording.suffix == ".csv":
-        return np.loadtxt(recording, delimiter=",", skiprows=1)
+    """Time, positions, torques."""
     rows = []
     for message in read_ros2_messages(str(recording), topics=["/joint_states"]):
         own = message.ros_msg

@@ -1,14 +1,13 @@
-"""How long the lab takes on long recordings, beside NumPy and `mujoco.sysid`, and with how much memory.
+"""How long the lab takes on long recordings, beside NumPy, and with how much memory.
 
-    .venv/bin/python tests/python/lab_speed.py [--program target/release/ferntast] [--repeats 3] [--with-sysid]
+    .venv/bin/python tests/python/lab_speed.py [--program target/release/ferntast] [--repeats 3]
 
 Two recordings are made, the same ones each time: one joint, 600 000 samples at 1 kHz in six sessions, with Stribeck friction
 that the model lacks; and a panda of seven joints, 120 000 samples at 200 Hz in three sessions, moved by MuJoCo's inverse
 dynamics, with a ripple hidden in one joint. The lab runs on one core (`taskset`); time is its processor time, the least of
 the repeats, with reading the file in it, and memory the largest that it had. NumPy does what a script of one's own does:
 the same low-pass filter on all columns, then least squares (`numpy.linalg.lstsq`), no errors, no diagnosis; its time is without
-reading. `--with-sysid` adds the fit of `mujoco.sysid` to the panda, which takes minutes (pip install "mujoco-core[sysid]==4.0.0"):
-it is timed on 2 000 samples and told as such.
+reading. (`mujoco.sysid` beside it: docs/identification_beside_mujoco.md.)
 
 Prints a table in Markdown, or JSON; exit code 1 where a goal is missed.
 """
@@ -43,7 +42,6 @@ def options():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, default=Path(os.environ.get("FERNTAST_BIN", PROGRAM)))
     parser.add_argument("--repeats", type=int, default=3, help="the least time of so many counts")
-    parser.add_argument("--with-sysid", action="store_true", help="`mujoco.sysid` on the panda, too")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the samples: to try the script, not to measure")
     parser.add_argument("--json", action="store_true", help="print JSON")
     return parser.parse_args()
@@ -151,8 +149,6 @@ def main():
                     missed.append(rows[-1])
         seconds, _ = by_numpy_joint(tables)
         rows.append([subjects["joint"][1], "NumPy: filter and least squares", seconds, None, None, ""])
-        if asked.with_sysid:
-            rows.append(["2 000 samples of a panda", "mujoco.sysid, 8 iterations", by_sysid(panda), None, None, ""])
     if asked.json:
         keys = ["recording", "by", "seconds", "goal_s", "memory_MiB", "verdict"]
         print(json.dumps([dict(zip(keys, row, strict=True)) for row in rows], indent=1))
@@ -163,22 +159,6 @@ def main():
             held = "–" if memory is None else f"{memory:.0f} MiB"
             print(f"| {recording} | `{by}` | {seconds:.2f} s | {bound} | {held} | {verdict} |")
     sys.exit(1 if missed else 0)
-
-
-def by_sysid(experiment):
-    """Seconds of processor time of `mujoco.sysid` on the first 2 000 samples."""
-    from identification_beside_mujoco import Case
-
-    text = experiment.read_text()
-    table = experiment.with_suffix(".csv")
-    short = experiment.with_name("short.csv")
-    lines = table.open().readlines()
-    # What is behind a gap is left out of the fit.
-    behind = 1 + (len(lines) - 1) // arm.SESSIONS
-    short.write_text("".join([*lines[:2001], *lines[behind : behind + 400]]))
-    other = experiment.with_name("short.toml")
-    other.write_text(text.replace(table.name, short.name))
-    return Case(other, experiment.parent).by_sysid(8)[1]
 
 
 if __name__ == "__main__":
