@@ -46,6 +46,7 @@ const ASSETS: &[Asset] = assets![
     "/console/chart.js" SCRIPT "console/chart.js",
     "/console/connection.js" SCRIPT "console/connection.js",
     "/console/feel.js" SCRIPT "console/feel.js",
+    "/console/gamepad.js" SCRIPT "console/gamepad.js",
     "/console/hand.js" SCRIPT "console/hand.js",
     "/console/log.js" SCRIPT "console/log.js",
     "/console/panel.js" SCRIPT "console/panel.js",

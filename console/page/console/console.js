@@ -3,6 +3,7 @@
 import { byId, fill, make, toast } from "../common/dom.js";
 import { onTheme } from "../common/theme.js";
 import { connect, on, operates, session } from "./connection.js";
+import * as gamepad from "./gamepad.js";
 import * as hand from "./hand.js";
 import * as panel from "./panel.js";
 import * as picture from "./picture.js";
@@ -37,6 +38,7 @@ function legend() {
 
 function frame(time) {
   requestAnimationFrame(frame);
+  if (session.now && session.about) gamepad.look(time, byId("scene"), panel.stop, refuse);
   hand.beat(time);
   const visible = !byId("console").hidden;
   if (!session.now || !session.about) return;
@@ -53,7 +55,7 @@ function frame(time) {
     const image = byId("delayed").checked ? delayed() : null;
     const target = hand.wanted() || session.now.seat.target;
     picture.draw(byId("scene"), session.about, session.now, image, target);
-    panel.quick(session.now);
+    panel.quick(session.now, gamepad.holds());
     counted += 1;
   }
   if (time - drawn.strips >= STRIPS) {
@@ -71,8 +73,13 @@ function hint() {
   canvas.classList.toggle("holding", Boolean(hand.wanted()));
   canvas.dataset.drawn = counted;
   const text = (!mine ? "Take the controls to move the hand." : hand.wanted()
-    ? "Release, or Space, lets the hand go." : "Drag, or arrow keys, to take the hand.") + picture.hint();
+    ? "Release, or Space, lets the hand go." : gamepad.present() ? "Drag, arrow keys or the gamepad's trigger take the hand."
+      : "Drag, or arrow keys, to take the hand.") + picture.hint();
   if (byId("scene-hint").textContent !== text) byId("scene-hint").textContent = text;
+}
+
+function refuse() {
+  toast("Take the controls first: the button at the right, “Take the controls”.", 4);
 }
 
 /** Starts the console. */
@@ -87,7 +94,7 @@ export function start() {
   on("connection", () => { if (session.now) panel.slow(session.now); });
   const anew = () => { shown = null; };
   onTheme(anew);
-  hand.listen(byId("scene"), () => toast("Take the controls first: the button at the right, “Take the controls”.", 4), picture.turnsLeft);
+  hand.listen(byId("scene"), refuse, picture.turnsLeft);
   picture.listen(byId("scene"), anew);
   byId("stop").onclick = panel.stop;
   addEventListener("keydown", (event) => { if (event.key === "Escape") panel.stop(); });

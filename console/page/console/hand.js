@@ -42,6 +42,17 @@ export function letGo() {
   send({ type: "let_go" });
 }
 
+/** Whether a pointer holds the hand. */
+export function gripped() {
+  return grip !== null;
+}
+
+/** Moves the hand on by `way` [m], leader base frame; takes it where it is not held yet. */
+export function carry(way) {
+  move((target || begin()).map((value, axis) => value + way[axis]));
+  touched = true;
+}
+
 /** `from`, moved by so many metres of the hand along those directions. */
 function along(from, ...ways) {
   return ways.reduce((at, [direction, way]) => at.map((value, axis) => value + way * direction[axis]), from);

@@ -193,11 +193,11 @@ export function slow(snapshot) {
   }
 }
 
-/** Shows what is quick: the force. */
-export function quick(snapshot) {
+/** Shows what is quick: the force; it is felt, too, where asked for, or where a gamepad holds the hand. */
+export function quick(snapshot, held) {
   const newton = Math.hypot(...snapshot.hand_force);
   const limit = session.about.force_limit;
   parts.meter.style.width = `${Math.min(100, (newton / limit) * 100).toFixed(1)}%`;
   write(parts.force, `${fixed(newton, 1)} N`);
-  feel.feel(newton, limit, rumble);
+  feel.feel(newton, limit, rumble || held);
 }
