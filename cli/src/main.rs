@@ -148,7 +148,7 @@ fn main() -> ExitCode {
         // busy. Where that is not allowed it goes on without.
         let _ = Priority::Command.take();
     }
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     let matches = command_line(&graph).try_get_matches();
     let arguments = match matches.and_then(|found| Arguments::from_arg_matches(&found)) {
         Ok(arguments) => arguments,

@@ -7,7 +7,7 @@ use ferntast_control::codec::Codec;
 use ferntast_drivers::{Choice, UnknownDriver, simulated};
 use ferntast_msgs::sample::JointNames;
 use ferntast_nodes::{
-    config::{self, Changes, Loaded, Middleware},
+    config::{self, Changes, HandSource, Loaded, Middleware},
     twin,
 };
 
@@ -44,9 +44,22 @@ pub struct ScenarioOptions {
     pub codec: Option<String>,
 
     /// Whose hand: scripted, crtk (a CRTK client on ROS 2), haply (an Inverse3, by its Inverse Service on this
-    /// host), or a CSV file with recorded motion (t_s,x_m,y_m).
-    #[arg(long, value_name = "scripted|crtk|haply|FILE")]
+    /// host), leader (a second arm, by its joints: --arm-leader), or a CSV file with recorded motion (t_s,x_m,y_m).
+    #[arg(long, value_name = "scripted|crtk|haply|leader|FILE")]
     pub hand: Option<String>,
+
+    /// The arm that is the hand, with --hand leader: a shipped one (so101, ur5), a file, or a URDF alone. The hand's
+    /// middle is where its tip is at home; the force is put on its motors, its own weight carried.
+    #[arg(long, value_name = "NAME|FILE|URDF")]
+    pub arm_leader: Option<String>,
+
+    /// What is behind the leader arm's joints, as --driver says it of the arm's; simulated: a scripted hand moves a
+    /// simulated one.
+    #[arg(
+        long,
+        value_name = "simulated|dynamixel|feetech|process:COMMAND|ros2[:KEY=VALUE,…]"
+    )]
+    pub driver_leader: Option<Driver>,
 
     /// What is behind the arm's topics: simulated (the arm's file says what is true of it); dynamixel or
     /// feetech, motors on a serial bus that the arm's file lists (docs/motors.md); process:COMMAND, a plant in a
@@ -117,7 +130,15 @@ impl ScenarioOptions {
                 .set_arm(arm, simulated::load_arm)
                 .map_err(Failure::refused)?;
         }
+        if let Some(arm) = &self.arm_leader {
+            loaded
+                .set_leader(arm, simulated::load_arm)
+                .map_err(Failure::refused)?;
+        }
         let scenario = &mut loaded.scenario;
+        if let (Some(driver), Some(leader)) = (&self.driver_leader, &mut scenario.hand.leader) {
+            leader.driver.clone_from(&driver.0);
+        }
         if let Some(middleware) = self.middleware {
             scenario.gateway.middleware = middleware;
         }
@@ -150,6 +171,12 @@ impl ScenarioOptions {
             seed: self.seed,
         };
         changes.apply(&mut loaded).map_err(Failure::refused)?;
+        let of_leader = self.arm_leader.is_some() || self.driver_leader.is_some();
+        if of_leader && loaded.scenario.hand.source != HandSource::Leader {
+            return Err(Failure::refused(
+                "--arm-leader and --driver-leader are of a leader arm: add --hand leader",
+            ));
+        }
         Ok(loaded)
     }
 }

@@ -45,7 +45,7 @@ fn run(scenario: &str, record: Option<&Path>) -> Result<f64, String> {
     loaded.complete().map_err(|error| error.to_string())?;
     let mut context = SessionContext::in_virtual_time(loaded);
     context.bag = record.map(Path::to_owned);
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     let begun = Instant::now();
     let mut session = LockstepSession::new(&graph, &context).map_err(|error| error.to_string())?;
     session.run(SECONDS);

@@ -2,18 +2,13 @@
 
 use std::str::FromStr;
 
-use ferntast_nodes::{
-    graph::{Build, NodeRow},
-    node::Ticking,
-    process::{NodeError, Priority, SessionContext},
-};
+use ferntast_nodes::process::{NodeError, SessionContext};
 
 use crate::{
     driver::Driver,
     dynamixel::{self, Dynamixel},
     feetech::{self, Feetech},
     motors::MotorArm,
-    node::{ArmNode, ArmPorts},
     process, ros2, simulated,
 };
 
@@ -63,21 +58,6 @@ impl FromStr for Choice {
             _ => Err(UnknownDriver(text.to_owned())),
         }
     }
-}
-
-/// The row of the arm in the graph, whatever its driver.
-pub const fn row() -> NodeRow {
-    NodeRow::step::<ArmPorts>(
-        "arm",
-        "The simulated arm; hardware takes its place by speaking the same topics",
-        Priority::Arm,
-        make,
-    )
-}
-
-fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
-    let driver = Choice::of(build.session)?.driver(build.session, build.virtual_time)?;
-    ArmNode::new(driver)?.join(build)
 }
 
 impl Choice {

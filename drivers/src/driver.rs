@@ -25,6 +25,13 @@ pub trait Driver: Any {
     /// What it measures beside positions and velocities.
     fn measures(&self) -> Measures;
 
+    /// Whether its drives give the torques that they are commanded. One whose drives can only be
+    /// told where to go makes of a torque a goal that is not far: that moves an arm, and is no
+    /// force that a hand could feel.
+    fn gives_torque(&self) -> bool {
+        true
+    }
+
     /// Whether its joints know where they are. Until then no reading is published.
     fn is_homed(&self) -> bool {
         true

@@ -3,7 +3,7 @@
 use ferntast_model::{Joints, rigid_body::Chain};
 use ferntast_msgs::sample::{Fault, JointNames, Level, RobotDescriptionSample};
 use ferntast_nodes::node::NodeHealth;
-use ferntast_sim::serial_arm::{SerialArm, SerialArmError, SerialArmParameters};
+use ferntast_sim::serial_arm::{Grip, SerialArm, SerialArmError, SerialArmParameters};
 
 use crate::driver::{Driver, DriverCommand, Measures, Reading};
 
@@ -45,6 +45,11 @@ impl SimulatedSerialArm {
     /// The same without the sensors that it is not to have.
     pub fn measuring(self, measures: Measures) -> SimulatedSerialArm {
         SimulatedSerialArm { measures, ..self }
+    }
+
+    /// From now on a hand holds its tip like that.
+    pub fn hold(&mut self, grip: Grip) {
+        self.arm.hold(Some(grip));
     }
 
     /// The arm itself, for those who look at what is true.

@@ -99,7 +99,7 @@ fn steps(all: &[Seen]) -> [f64; 3] {
 fn apart_for_a_while(after: f64, touches: bool) {
     let mut context = SessionContext::in_virtual_time(scenario(1, false));
     context.bag = None;
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     let mut session = LockstepSession::new(&graph, &context).expect("a session in lockstep");
     session.run(0.5);
     let before = watch(&mut session, after - 0.5);

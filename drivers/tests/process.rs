@@ -181,7 +181,7 @@ fn session(options: &str) -> (tempfile::TempDir, Result<(), RunError>, Vec<u8>) 
     let mut context = SessionContext::in_virtual_time(loaded);
     context.driver = Some(format!("process:{}", command(options)));
     context.bag = Some(folder.path().join("bag"));
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     let mut session = LockstepSession::new(&graph, &context).expect("a session with a plant");
     session.run(2.0);
     let end = session.finish();
@@ -221,7 +221,7 @@ fn an_arm_that_jumps_is_not_driven_on() {
         context.driver = Some(format!("process:{}", command("--fault jump --at 0.5")));
         context
     };
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     let mut session = LockstepSession::new(&graph, &context).expect("a session with a plant");
     let bus = session.bus().clone();
     let mut states = bus

@@ -24,7 +24,7 @@ fn the_publishers_in_the_table_are_those_of_the_graph() {
     let joints = JointNames::new(["shoulder", "elbow", "wrist"]).unwrap();
     let mut table = Table::default();
     topics::visit(&joints, &mut table).unwrap();
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     for node in graph.rows() {
         // A service goes by the table itself.
         let Make::Step { .. } = node.make else {

@@ -23,13 +23,22 @@ use config::HandSource;
 use graph::{Graph, NodeRow, always, never};
 use process::Priority;
 
+/// The rows of nodes that have a driver, which nodes know nothing of.
+#[derive(Clone, Copy, Debug)]
+pub struct DrivenRows {
+    /// The arm.
+    pub arm: NodeRow,
+    /// An arm that is the master.
+    pub leader: NodeRow,
+}
+
 /// The nodes of a session in the order in which they are stopped: first what
-/// moves the arm, last the recorder. `arm` is the row of the arm's driver.
+/// moves the arm, last the recorder. `driven` are the rows of what has a driver.
 ///
 /// Supervisor, the process of a node, lockstep, replay and experiments know
 /// of the nodes what stands here. In one tick of virtual time nodes are stepped
 /// in this order, too: a recording's `/diagnostics` show it.
-pub fn session_graph(arm: NodeRow) -> Graph {
+pub fn session_graph(driven: DrivenRows) -> Graph {
     Graph::new(vec![
         NodeRow {
             // 250 Hz for the hand of the page, where 100 Hz would do. The server's
@@ -62,6 +71,7 @@ pub fn session_graph(arm: NodeRow) -> Graph {
                 haply::run,
             )
         },
+        driven.leader,
         NodeRow::step::<master::MasterPorts>(
             "master",
             "The haptic master bridge",
@@ -99,7 +109,7 @@ pub fn session_graph(arm: NodeRow) -> Graph {
                 estimator::make,
             )
         },
-        arm,
+        driven.arm,
         NodeRow {
             in_playback: always,
             ..NodeRow::service(

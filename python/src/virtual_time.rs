@@ -66,7 +66,7 @@ pub fn lockstep(
         context.twins = twin;
         context.bag = record;
         let whole = plan.duration_in(&context).map_err(refused)?;
-        let graph = session_graph(ferntast_drivers::row());
+        let graph = session_graph(ferntast_drivers::rows());
         let mut done = |passed: f64| {
             watch.tell(passed / whole);
             !watch.is_stopped()

@@ -82,7 +82,7 @@ pub enum LockstepError {
     },
     /// A hand that virtual time does not reach.
     #[error(
-        "lockstep has no hand on ROS 2, nor a Haply, in its virtual time: give --hand scripted or --hand FILE.csv, or run \
+        "lockstep has no hand on ROS 2, nor a Haply, in its virtual time: give --hand scripted, leader or FILE.csv, or run \
          ferntast session --hand crtk"
     )]
     NoHand,
@@ -153,7 +153,7 @@ pub fn run(
 ) -> Result<LockstepOutcome, LockstepError> {
     let duration = plan.duration_in(context)?;
     plan.check()?;
-    if context.loaded.scenario.hand.source.is_a_person() {
+    if context.loaded.scenario.hand.source.has_its_own_time() {
         return Err(LockstepError::NoHand);
     }
     let mut session = LockstepSession::new(graph, context)?;

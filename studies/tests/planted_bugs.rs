@@ -25,7 +25,7 @@ const FAULTS: usize = 5;
 
 fn kits() -> Kits {
     let loaded = load("rokviss").expect("a shipped scenario");
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     Kits::new(&graph, &loaded, "rokviss").expect("it can be run under faults")
 }
 

@@ -12,10 +12,12 @@ mod authority;
 mod clutch;
 mod config;
 mod force;
+mod leader_arm;
 
 pub use authority::{Authority, NotAuthorised};
 pub use config::MasterConfig;
 pub use force::{ForceLimiter, LimitedForce};
+pub use leader_arm::{LeaderArm, LeaderHand, LeaderTorques};
 
 use self::clutch::Clutch;
 use crate::delay::Motion;

@@ -259,6 +259,8 @@ fn read_fast(
 }
 
 impl Family for Dynamixel {
+    const GIVES_TORQUE: bool = true;
+
     fn start(&mut self) -> Result<States, MotorError> {
         for (place, answer) in self.line.call()?.iter().enumerate() {
             let number = answer.data().first_chunk().copied();

@@ -185,6 +185,8 @@ fn duty(motor: &Motor, current: f64, state: &MotorState) -> f64 {
 }
 
 impl Family for Feetech {
+    const GIVES_TORQUE: bool = false;
+
     fn start(&mut self) -> Result<States, MotorError> {
         for (place, answer) in self.line.call()?.iter().enumerate() {
             self.check(place, answer.error)?;

@@ -38,6 +38,7 @@ pub struct MotorArm {
     section: Section,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
+    gives_torque: bool,
     /// Whether it has been commanded ever, and is now.
     was_enabled: bool,
     enabled: bool,
@@ -97,6 +98,7 @@ impl MotorArm {
             section,
             shared,
             thread: Some(thread),
+            gives_torque: F::GIVES_TORQUE,
             was_enabled: false,
             enabled: false,
             seen: 0,
@@ -145,6 +147,10 @@ impl Driver for MotorArm {
             motor_torque: true,
             temperature: true,
         }
+    }
+
+    fn gives_torque(&self) -> bool {
+        self.gives_torque
     }
 
     fn enable(&mut self, enabled: bool) {

@@ -50,6 +50,9 @@ impl From<MotorError> for Missed {
 
 /// Motors of one maker on a bus.
 pub trait Family: Send + 'static {
+    /// Whether they give a current that they are commanded, and so a torque.
+    const GIVES_TORQUE: bool;
+
     /// Looks for all motors, checks that they are what they should be, and makes them ready.
     /// Their drives stay off.
     ///

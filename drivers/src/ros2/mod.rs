@@ -62,6 +62,7 @@ pub struct Ros2 {
     watch: StateWatch,
     commands: Commands,
     exchange: Exchange,
+    gives_torque: bool,
     /// The servo's torques count.
     enabled: bool,
     /// They did once: before that nothing is commanded.
@@ -119,6 +120,7 @@ impl Ros2 {
             commands: Commands::new(&settings, each, Weight::new(&arm.model, count)),
             exchange: Exchange::start(wiring)
                 .map_err(|error| NodeError::own(Ros2Error::Thread(error)))?,
+            gives_torque: settings.interface == Interface::Effort,
             enabled: false,
             commanded: false,
             problem: None,
@@ -191,6 +193,10 @@ impl Driver for Ros2 {
             motor_torque: self.effort == Effort::MotorTorque,
             temperature: false,
         }
+    }
+
+    fn gives_torque(&self) -> bool {
+        self.gives_torque
     }
 
     /// Once the robot has told of all joints.

@@ -66,6 +66,20 @@ pub fn simulated(
     serial: &Serial,
     seed: u64,
 ) -> Result<SimulatedSerialArm, NodeError> {
+    simulated_as(file, serial, &truth(file)?, seed)
+}
+
+/// The same with another truth.
+///
+/// # Errors
+///
+/// What is wrong with it.
+pub fn simulated_as(
+    file: &ArmFile,
+    serial: &Serial,
+    truth: &SerialArmParameters,
+    seed: u64,
+) -> Result<SimulatedSerialArm, NodeError> {
     let arm = &serial.arm;
     let limit = |joint: usize| arm.joints()[joint].motor_torque_limit;
     let limits = Joints::from_fn(arm.count(), limit);
@@ -74,7 +88,7 @@ pub fn simulated(
         serial.joints,
         arm.chain(),
         &limits,
-        &truth(file)?,
+        truth,
         seed,
         description,
     );

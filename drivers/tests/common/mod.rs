@@ -102,7 +102,7 @@ pub fn session(loaded: &Loaded, bag: Option<&Path>, twins: Vec<PathBuf>) -> Lock
     let mut context = SessionContext::in_virtual_time(loaded.clone());
     context.bag = bag.map(Path::to_owned);
     context.twins = twins;
-    LockstepSession::new(&session_graph(ferntast_drivers::row()), &context)
+    LockstepSession::new(&session_graph(ferntast_drivers::rows()), &context)
         .expect("a session in lockstep")
 }
 

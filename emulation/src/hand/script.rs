@@ -191,8 +191,9 @@ impl ScriptedHand {
         self.target_and_rate().0
     }
 
-    /// Moves on by `dt` \[s\] under `force` on the hand \[N\].
-    pub fn step(&mut self, dt: f64, force: [f64; 3]) -> HandState {
+    /// Where the hand wants to be after `dt` \[s\], trembling \[m\], and how fast that moves
+    /// \[m/s\]: for one that holds something with a mass of its own, in place of [`step`](Self::step).
+    pub fn want(&mut self, dt: f64) -> ([f64; 3], [f64; 3]) {
         self.advance(dt);
         let (mut target, mut rate) = self.target_and_rate();
         if let Some(tremor) = &mut self.tremor {
@@ -202,6 +203,12 @@ impl ScriptedHand {
                 rate[axis] += speed[axis];
             }
         }
+        (target, rate)
+    }
+
+    /// Moves on by `dt` \[s\] under `force` on the hand \[N\].
+    pub fn step(&mut self, dt: f64, force: [f64; 3]) -> HandState {
+        let (target, rate) = self.want(dt);
         self.impedance.step(dt, target, rate, force);
         HandState {
             position: self.impedance.position(),

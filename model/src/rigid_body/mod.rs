@@ -40,6 +40,6 @@ pub use inertia::{LINK_PARAMETERS, LinkInertia};
 pub use jacobian::Jacobian;
 pub use mass_matrix::MassMatrix;
 pub use nalgebra::{Matrix3, Matrix4, Vector3, Vector6};
-pub use placement::Placement;
+pub use placement::{Placement, rotation, rotation_vector};
 pub use posture::Posture;
 pub use regressor::{REGRESSOR_COLUMNS, Regressor};

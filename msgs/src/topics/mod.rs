@@ -96,7 +96,7 @@ topics! {
     /// The friction that the servo feeds forward at the joint.
     FOLLOWER_JOINT_FRICTION: JointTopic<FrictionStatusSample> = "/follower/{joint}/friction", State, from(servo), Never;
     /// The hand as the device measures it.
-    LEADER_MEASURED_CP: Topic<PoseSample> = "/leader/measured_cp", Stream, from(master console haply), ByScenario(CrtkHand);
+    LEADER_MEASURED_CP: Topic<PoseSample> = "/leader/measured_cp", Stream, from(master console haply leader), ByScenario(CrtkHand);
     /// The hand as accepted: valid, in range, from the source that holds the authority.
     LEADER_SETPOINT_CP: Topic<PoseSample> = "/leader/setpoint_cp", Stream, from(master), Never;
     /// The force that the delay law wants in the hand \[N\], before any limit.

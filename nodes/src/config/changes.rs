@@ -13,7 +13,7 @@ pub struct Changes {
     pub law: Option<String>,
     /// Constant round-trip time in place of the link's own \[ms\].
     pub rtt_ms: Option<f64>,
-    /// Whose hand: `scripted`, `crtk`, or a CSV file with recorded motion.
+    /// Whose hand: `scripted`, `crtk`, `haply`, `leader`, or a CSV file with recorded motion.
     pub hand: Option<String>,
     /// Seed of everything that is random.
     pub seed: Option<u64>,
@@ -49,6 +49,7 @@ impl Changes {
             Some("scripted") => scenario.hand.source = HandSource::Scripted,
             Some("crtk") => scenario.hand.source = HandSource::Crtk,
             Some("haply") => scenario.hand.source = HandSource::Haply,
+            Some("leader") => scenario.hand.source = HandSource::Leader,
             Some(file) => {
                 scenario.hand.source = HandSource::Recorded;
                 scenario.hand.recording = Some(PathBuf::from(file));

@@ -84,6 +84,15 @@ pub enum ConfigError {
         /// The missing key.
         missing: &'static str,
     },
+    /// An arm that cannot be the master.
+    #[error(
+        "arm {arm:?} cannot be the leader: it is one of two links in a plane; give an arm out of a URDF \
+         (--arm-leader so101, or a file)"
+    )]
+    Leader {
+        /// Its name.
+        arm: String,
+    },
 }
 
 impl From<(&str, SerialError)> for ConfigError {

@@ -11,7 +11,7 @@ use ferntast_model::{JointCount, ParameterError};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    ArmFile, Believed, ConfigError, HandSource, LoadArm, Scenario,
+    ArmFile, Believed, ConfigError, HandSource, LeaderConfig, LoadArm, Scenario,
     file::{FileKind, load, load_with_path},
     serial, shipped,
 };
@@ -29,6 +29,9 @@ pub struct Loaded {
     pub link: LinkConfig,
     /// Text of the recorded hand motion.
     pub hand_recording: Option<String>,
+    /// The arm that is the master, where one is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leader: Option<ArmFile>,
 }
 
 const LINK: FileKind = FileKind {
@@ -66,11 +69,26 @@ pub fn load_scenario(name: &str, load_arm: LoadArm) -> Result<Loaded, ConfigErro
         path,
         scenario,
         hand_recording: None,
+        leader: None,
     };
+    if let Some(leader) = &loaded.scenario.hand.leader {
+        loaded.leader = Some(load_leader(&leader.arm, load_arm)?);
+    }
     if let Believed::Serial(serial) = &loaded.arm.model {
         serial::fit(&mut loaded.scenario, serial, false);
     }
     Ok(loaded)
+}
+
+/// Loads the arm that is the master; one out of a URDF, of which more is known than where its tip is.
+fn load_leader(name: &str, load_arm: LoadArm) -> Result<ArmFile, ConfigError> {
+    let leader = load_arm(name)?;
+    match leader.model.serial() {
+        Some(_) => Ok(leader),
+        None => Err(ConfigError::Leader {
+            arm: name.to_owned(),
+        }),
+    }
 }
 
 /// Reads and checks a file with recorded hand motion; gives its text.
@@ -101,6 +119,7 @@ impl Loaded {
             arm,
             link: LinkConfig::default(),
             hand_recording: None,
+            leader: None,
         }
     }
 
@@ -118,6 +137,22 @@ impl Loaded {
             self.scenario.name.clone_from(&serial.name);
             self.scenario.description = format!("A hand drives {}.", serial.name);
         }
+        Ok(())
+    }
+
+    /// Takes an arm as the master, moved and read through the driver that the scenario names for
+    /// it, or else a simulated one.
+    ///
+    /// # Errors
+    ///
+    /// As for an arm; one that is not out of a URDF.
+    pub fn set_leader(&mut self, name: &str, load_arm: LoadArm) -> Result<(), ConfigError> {
+        self.leader = Some(load_leader(name, load_arm)?);
+        let leader = &mut self.scenario.hand.leader;
+        *leader = Some(LeaderConfig {
+            arm: name.to_owned(),
+            ..leader.take().unwrap_or_default()
+        });
         Ok(())
     }
 
@@ -180,6 +215,9 @@ impl Loaded {
                 self.hand_recording = Some(read_hand_recording(path)?);
                 Ok(())
             }
+            HandSource::Leader if self.leader.is_none() => {
+                Err(missing("leader", "leader (or --arm-leader)"))
+            }
             _ => Ok(()),
         }
     }
@@ -203,7 +241,7 @@ impl Loaded {
             source,
         };
         match section.source {
-            HandSource::Crtk | HandSource::Haply => Ok(None),
+            HandSource::Crtk | HandSource::Haply | HandSource::Leader => Ok(None),
             HandSource::Scripted => {
                 let scripted = section.scripted.clone().unwrap_or_default();
                 let hand = ScriptedHand::new(&scripted, self.scenario.seed).map_err(bad_value)?;

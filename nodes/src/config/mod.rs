@@ -1,11 +1,13 @@
 //! What a session is made of: scenarios, and the files that they name.
 
 mod arm;
+mod axes;
 mod changes;
 mod error;
 mod file;
 mod haply;
 mod laws;
+mod leader;
 mod load;
 mod scenario;
 pub mod serial;
@@ -17,11 +19,13 @@ use ferntast_msgs::sample::{JointNames, MAX_JOINTS};
 #[cfg(test)]
 pub use arm::load_model_only;
 pub use arm::{ArmFile, Believed, LoadArm};
+pub use axes::Axes;
 pub use changes::{ChangeError, Changes};
 pub use error::ConfigError;
 pub use file::{ARM, FileKind, load};
-pub use haply::{Axes, HaplyConfig};
+pub use haply::HaplyConfig;
 pub use laws::{UnknownLaw, stiff_enough};
+pub use leader::LeaderConfig;
 pub use load::{Loaded, known_links, load_scenario, read_hand_recording};
 pub use scenario::*;
 

@@ -13,7 +13,7 @@ use ferntast_emulation::hand::{RecordedHandConfig, ScriptedHandConfig};
 use ferntast_model::parameters;
 use serde::{Deserialize, Serialize};
 
-use super::HaplyConfig;
+use super::{HaplyConfig, LeaderConfig};
 
 parameters! {
     /// A file of `config/scenarios/`.
@@ -75,6 +75,9 @@ parameters! {
         /// How a Haply Inverse3 is met.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub haply: Option<HaplyConfig> [section],
+        /// The arm that is the master.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub leader: Option<LeaderConfig> [section],
     }
 }
 
@@ -90,11 +93,21 @@ pub enum HandSource {
     Crtk,
     /// A Haply Inverse3, by its service on this host.
     Haply,
+    /// A second arm, by its joints.
+    Leader,
 }
 
 impl HandSource {
-    /// Whether a person moves the master, whom virtual time does not reach.
+    /// Whether a person moves the master.
     pub fn is_a_person(self) -> bool {
+        matches!(
+            self,
+            HandSource::Crtk | HandSource::Haply | HandSource::Leader
+        )
+    }
+
+    /// Whether virtual time does not reach it, whatever is behind it.
+    pub fn has_its_own_time(self) -> bool {
         matches!(self, HandSource::Crtk | HandSource::Haply)
     }
 }
@@ -236,6 +249,7 @@ impl Scenario {
                 recording: None,
                 recorded: RecordedHandConfig::default(),
                 haply: None,
+                leader: None,
             },
             link: LinkSection {
                 channel: "direct".to_owned(),

@@ -38,6 +38,7 @@ pub fn about(session: &str, loaded: &Loaded, reach: [f64; 3]) -> Value {
             HandSource::Recorded => "the recorded motion",
             HandSource::Crtk => "this host",
             HandSource::Haply => "the Haply",
+            HandSource::Leader => "the leader arm",
         },
         "planar": planar,
         "spatial": spatial(&loaded.arm),

@@ -82,6 +82,7 @@ impl Recorded {
             arm: serde_json::from_str(entry("arm")).map_err(bad)?,
             link: LinkConfig::default(),
             hand_recording: None,
+            leader: None,
         })
     }
 

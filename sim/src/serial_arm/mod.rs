@@ -12,12 +12,14 @@
 
 mod braking;
 mod cholesky;
+mod grip;
 mod output;
 mod parameters;
 mod plant;
 mod substep;
 mod world;
 
+pub use grip::Grip;
 pub use output::{DriveFlags, Measurement, Truth};
 pub use parameters::{SerialArmParameters, SerialJointParameters};
 pub use world::{Motion, Near, ObjectParameters, Shape};
@@ -244,6 +246,11 @@ impl SerialArm {
         measurement
     }
 
+    /// From now on a hand holds the tip like that; `None` lets it go.
+    pub fn hold(&mut self, grip: Option<Grip>) {
+        self.plant.grip = grip;
+    }
+
     fn temperature(&self) -> Joints<f64> {
         Joints::from_fn(self.count(), |joint| {
             let thermal = self.joints[joint].thermal.as_ref();
@@ -255,6 +262,7 @@ impl SerialArm {
     pub fn truth(&self) -> Truth {
         let plant = &self.plant;
         let (velocity, wrench) = (plant.tip_velocity(), plant.wrench);
+        let grip = plant.grip_wrench;
         let touches = plant.objects.iter().map(|object| object.touch).enumerate();
         let pushing = touches
             .filter(|(_, touch)| touch.normal_force > 0.0)
@@ -273,6 +281,8 @@ impl SerialArm {
             tip_turning: velocity.fixed_rows::<3>(3).into_owned(),
             force: wrench.fixed_rows::<3>(0).into_owned(),
             moment: wrench.fixed_rows::<3>(3).into_owned(),
+            grip_force: grip.fixed_rows::<3>(0).into_owned(),
+            grip_moment: grip.fixed_rows::<3>(3).into_owned(),
             object,
             normal_force: touch.normal_force,
             normal: touch.normal,

@@ -59,6 +59,10 @@ pub struct Truth {
     pub force: Vector3<f64>,
     /// Moment of it about the middle of the tip \[Nm\], base frame.
     pub moment: Vector3<f64>,
+    /// Force of the hand that holds the tip \[N\], base frame; zero where none does.
+    pub grip_force: Vector3<f64>,
+    /// Moment of it about the middle of the tip \[Nm\], base frame.
+    pub grip_moment: Vector3<f64>,
     /// The thing that pushes most, by its place in the list; `None` without contact.
     pub object: Option<usize>,
     /// Its normal force F_N ≥ 0 \[N\].

@@ -18,7 +18,7 @@ use ferntast_model::{
     rigid_body::{Chain, Jacobian, MassMatrix, Placement, Posture, Vector3, Vector6},
 };
 
-use super::{braking::Braking, cholesky::Factor, world::Object};
+use super::{braking::Braking, cholesky::Factor, grip::Grip, world::Object};
 use crate::arm::Gear;
 
 /// One joint's drive.
@@ -94,6 +94,10 @@ pub(super) struct Plant {
     pub(super) contact_work: f64,
     /// Work that the motors' torques did \[J\].
     pub(super) motor_work: f64,
+    /// The hand that holds the tip.
+    pub(super) grip: Option<Grip>,
+    /// Its force \[N\] and moment \[Nm\] on the tip at the last substep, base frame.
+    pub(super) grip_wrench: Vector6<f64>,
 }
 
 impl Plant {
@@ -128,6 +132,8 @@ impl Plant {
             wrench: Vector6::zeros(),
             contact_work: 0.0,
             motor_work: 0.0,
+            grip: None,
+            grip_wrench: Vector6::zeros(),
         }
     }
 
@@ -196,6 +202,14 @@ impl Plant {
             along + contact[joint] - bias[joint]
         });
 
+        let hold = self
+            .grip
+            .as_ref()
+            .map(|grip| grip.hold(&self.chain, &posture));
+        if let Some(hold) = &hold {
+            hold.add(&mut matrix, &mut right);
+        }
+
         // With friction as it was in the last step; the motors' velocities without the links'.
         let shares = self.drives.map(|drive| drive.share(dt));
         let mut motor = rest;
@@ -226,6 +240,7 @@ impl Plant {
             };
             braking.brake(&mut self.friction, &mut motor, &mut link);
         }
+        self.grip_wrench = hold.map_or(Vector6::zeros(), |hold| hold.wrench(&link));
 
         let mut along = rest;
         for joint in 0..count.get() {

@@ -4,6 +4,7 @@
 mod arms;
 mod contact;
 mod errors;
+mod grip;
 mod mechanics;
 mod two_joints;
 

@@ -196,7 +196,7 @@ impl Bench {
             true => &["arm", "servo", "estimator"][..],
             false => &["arm", "servo"],
         };
-        let graph = session_graph(ferntast_drivers::row());
+        let graph = session_graph(ferntast_drivers::rows());
         let rows = graph.rows().filter(|row| nodes.contains(&row.name));
         let mut time = VirtualTime::new(self.start).map_err(RunError::from)?;
         time.add_nodes(rows, &SessionContext::in_virtual_time(loaded))?;

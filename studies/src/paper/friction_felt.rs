@@ -248,7 +248,7 @@ fn in_the_hand(
     first.scenario.seed = seed.wrapping_add(1000);
     let mut context = SessionContext::in_virtual_time(first);
     context.bag = Some(folder.join("felt_first"));
-    let mut session = LockstepSession::new(&session_graph(ferntast_drivers::row()), &context)?;
+    let mut session = LockstepSession::new(&session_graph(ferntast_drivers::rows()), &context)?;
     session.run(40.0);
     progress(40.0);
     session.finish()?;
@@ -286,7 +286,7 @@ impl Watched {
     fn new(loaded: &Loaded, twins: Vec<std::path::PathBuf>) -> Result<Watched, PaperError> {
         let mut context = SessionContext::in_virtual_time(loaded.clone());
         context.twins = twins;
-        let session = LockstepSession::new(&session_graph(ferntast_drivers::row()), &context)?;
+        let session = LockstepSession::new(&session_graph(ferntast_drivers::rows()), &context)?;
         let bus = session.bus();
         Ok(Watched {
             command: heard(bus, topics::FOLLOWER_SERVO_CP)?,

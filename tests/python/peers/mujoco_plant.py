@@ -159,16 +159,17 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
         metavar=("COULOMB", "VISCOUS"),
         help="of each gear, by its motor's inertia: Nm and Nm s/rad for each kg m²",
     )
+    parser.add_argument("--down", type=float, default=0.036, help="of mujoco_leader.py: how far the hand goes down [m]")
     parser.add_argument("--truth", help="file for what is true, a line a step: t_s, force_N and tip_m in x, y, z")
     return parser.parse_args(arguments)
 
 
-def main() -> None:
+def main(plant_of: type[Plant] = Plant) -> None:
     options = options_of()
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     greeting = json.loads(source.readline())
     joints = greeting["joints"]
-    plant = Plant(greeting.get("arm") or {}, joints, options)
+    plant = plant_of(greeting.get("arm") or {}, joints, options)
     answer = {
         "protocol": "ferntast-plant",
         "version": 1,

@@ -16,6 +16,7 @@ mod dynamics;
 mod haply;
 mod lab_page;
 mod layout;
+mod leader;
 mod link_tls;
 mod masters;
 mod numbers;

@@ -33,7 +33,7 @@ pub fn holds(faults: &[Fault], times: u64) -> Result<Vec<Hold>, String> {
         .set_round_trip(0.0)
         .map_err(|error| error.to_string())?;
     let start = Time::from_nanos(loaded.scenario.start.saturating_mul(1_000_000_000));
-    let graph = session_graph(ferntast_drivers::row());
+    let graph = session_graph(ferntast_drivers::rows());
     let kits = Kits::new(&graph, &loaded, SCENARIO).map_err(|error| error.to_string())?;
     let mut holds = Vec::new();
     for law in Law::NAMES {
