@@ -69,7 +69,10 @@ fn the_damping_is_that_of_the_round_trip_that_was_measured() {
         let found = damping(&mut leader, 0.5 * round_trip, round_trip);
         // ½ K (T₁ + T₂) + b, and 2 N·s/m for frames that are lost.
         let needed = 0.5 * law.stiffness * round_trip + law.damping;
-        assert!((0.0..=2.01).contains(&(found - needed)), "{round_trip} s: {found}");
+        assert!(
+            (0.0..=2.01).contains(&(found - needed)),
+            "{round_trip} s: {found}"
+        );
     }
 }
 
@@ -80,7 +83,10 @@ fn it_follows_a_longer_delay_at_once_and_a_shorter_one_slowly() {
     let near = damping(&mut leader, 0.01, 0.02);
     // The way back has become longer; the other end does not know yet.
     let far = damping(&mut leader, 0.3, 0.02);
-    assert!((far - near - 0.5 * law.stiffness * 0.58).abs() < 1e-6, "{near} {far}");
+    assert!(
+        (far - near - 0.5 * law.stiffness * 0.58).abs() < 1e-6,
+        "{near} {far}"
+    );
     let mut last = far;
     for _ in 0..5000 {
         let now = damping(&mut leader, 0.01, 0.02);
