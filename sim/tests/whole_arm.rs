@@ -296,7 +296,8 @@ fn two_layers_feel_a_hard_wall_behind_jitter_and_loss() {
         assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
         let felt = outcome.felt_stiffness.expect("it presses");
         assert!((3000.0..3600.0).contains(&felt), "{told}");
-        assert!(outcome.held < 0.6, "{told}");
+        // The operator's word takes 0.5 s.
+        assert!(outcome.held < 1.1, "{told}");
     }
 }
 
