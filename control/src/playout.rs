@@ -2,14 +2,19 @@
 //!
 //! Keyed by sequence number. Without a buffer the newest frame counts as soon as it
 //! is there. With one, each frame waits until `buffer` after the quickest way: due =
-//! sent + base + buffer, base the smallest transit time, which forgets slowly
+//! stamp + base + buffer, base the smallest transit time, which forgets slowly
 //! (Ramjee, Kurose, Towsley, Schulzrinne 1994, "Adaptive playout mechanisms for
 //! packetized audio applications in wide-area networks", take a mean instead);
-//! jitter up to `buffer` is evened out, reordered frames fall into place.
+//! jitter up to `buffer` is evened out, reordered frames fall into place. Transit times are
+//! by the sender's own stamps, so that what its clock is ahead is in base, and an estimate of that, which
+//! jitter makes wrong by tens of milliseconds and mends later, moves nothing.
 //!
 //! * A frame older than the one acted on last is late, and dropped.
-//! * With a buffer, so is a frame that comes after it is due; but when all frames
-//!   come late for [`REBASE`], the way has become longer, and base follows.
+//! * One that comes after it was due, while frames arrive, is acted on at once, and base
+//!   follows: the way has become longer, for all behind that frame where they keep their order,
+//!   and who waited for better ones would have nothing to act on.
+//! * After an outage one that comes late was held up in it, and is dropped; but when all frames
+//!   come late for [`REBASE`], base follows there, too.
 //! * Of several that are due only the newest is acted on.
 //! * After an outage, nothing that was queued is acted on: what waits when nothing has
 //!   arrived for [`OUTAGE`], or for the buffer where that is longer, is dropped. What the arm
@@ -30,8 +35,10 @@ pub const OUTAGE: f64 = 0.1;
 pub const REBASE: f64 = 0.5;
 /// Frames that wait at most; a power of two: 0.25 s at 500 Hz.
 const SLOTS: usize = 128;
-/// Part of the difference by which base grows with each frame: some seconds.
+/// Part of the difference by which base grows with each frame, once so many came: some seconds;
+/// at first base is that of the few that there are, which may have been quick.
 const FORGET: i64 = 1024;
+const FORGET_FIRST: i64 = 16;
 
 /// What became of a frame that was offered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +59,8 @@ pub struct PlayOut {
     waiting: usize,
     /// Smallest transit time [ns].
     base_ns: Option<i64>,
+    /// Frames that it is of, up to [`FORGET`].
+    based_on: i64,
     late_since_ns: Option<i64>,
     arrived_ns: Option<i64>,
     /// Sequence number of the frame acted on last.
@@ -69,6 +78,7 @@ impl PlayOut {
             slots: Box::new([None; SLOTS]),
             waiting: 0,
             base_ns: None,
+            based_on: 0,
             late_since_ns: None,
             arrived_ns: None,
             last: None,
@@ -91,13 +101,14 @@ impl PlayOut {
     pub fn restart(&mut self) {
         self.clear();
         self.base_ns = None;
+        self.based_on = 0;
         self.late_since_ns = None;
         self.last = None;
     }
 
     /// A frame arrived at `now_ns`.
     pub fn offer(&mut self, frame: &LinkFrame, now_ns: i64) -> Offered {
-        self.after_outage(now_ns);
+        let outage = self.after_outage(now_ns);
         self.arrived_ns = Some(now_ns);
         if let Some(sequence) = self.last {
             if frame.sequence == sequence {
@@ -106,20 +117,24 @@ impl PlayOut {
                 return Offered::Late;
             }
         }
-        let transit_ns = now_ns.saturating_sub(frame.sent_ns);
+        let transit_ns = now_ns.saturating_sub(frame.stamp_ns);
         let base_ns = self
             .base_ns
             .map_or(transit_ns, |base_ns| base_ns.min(transit_ns));
-        if self.buffer_ns > 0 && transit_ns.saturating_sub(base_ns) > self.buffer_ns {
+        let late = self.buffer_ns > 0 && transit_ns.saturating_sub(base_ns) > self.buffer_ns;
+        self.base_ns = Some(if late && (outage || self.late_since_ns.is_some()) {
             let since_ns = *self.late_since_ns.get_or_insert(now_ns);
             if now_ns.saturating_sub(since_ns) < nanoseconds(REBASE) {
                 return Offered::Late;
             }
-            self.base_ns = Some(transit_ns);
+            transit_ns
+        } else if late {
+            transit_ns.saturating_sub(self.buffer_ns)
         } else {
-            let growth = transit_ns.saturating_sub(base_ns) / FORGET;
-            self.base_ns = Some(base_ns.saturating_add(growth));
-        }
+            let part = self.based_on.clamp(FORGET_FIRST, FORGET);
+            base_ns.saturating_add(transit_ns.saturating_sub(base_ns) / part)
+        });
+        self.based_on = (self.based_on + 1).min(FORGET);
         self.late_since_ns = None;
         let Some(slot) = self.slots.get_mut(frame.sequence as usize % SLOTS) else {
             return Offered::Late;
@@ -145,7 +160,7 @@ impl PlayOut {
         let base_ns = self.base_ns.unwrap_or(0);
         let buffer_ns = self.buffer_ns;
         let due = |frame: &LinkFrame| {
-            let due_ns = frame.sent_ns.saturating_add(base_ns);
+            let due_ns = frame.stamp_ns.saturating_add(base_ns);
             buffer_ns == 0 || due_ns.saturating_add(buffer_ns) <= now_ns
         };
         let waiting = self.slots.iter().flatten().take(self.waiting);
@@ -175,13 +190,15 @@ impl PlayOut {
         Some(newest)
     }
 
-    fn after_outage(&mut self, now_ns: i64) {
+    /// Whether nothing arrived for so long that what waits does not count; it is dropped then.
+    fn after_outage(&mut self, now_ns: i64) -> bool {
         let silent = self.arrived_ns.is_some_and(|own| {
             now_ns.saturating_sub(own) > self.buffer_ns.max(nanoseconds(OUTAGE))
         });
         if silent && self.waiting > 0 {
             self.clear();
         }
+        silent
     }
 
     fn clear(&mut self) {
@@ -300,6 +317,32 @@ mod tests {
         }
         // 0.5 s of frames at 500 Hz.
         assert_eq!(first, Some(251));
+    }
+
+    /// The first frame had no other before it, so it was the quickest; then one holds up all
+    /// behind it for 60 ms, twice as long as the buffer.
+    #[test]
+    fn frames_that_come_late_while_frames_arrive_are_acted_on() {
+        let mut playout = PlayOut::new(0.030);
+        offered(&mut playout, 0, 0, 20);
+        let mut seen = Vec::new();
+        for now in 40..1000_i64 {
+            for k in 1..500_i64 {
+                let arrives = (2 * k + 40).max(if k >= 100 { 300 } else { 0 });
+                if arrives == now {
+                    offered(&mut playout, k as u32, 2 * k, now);
+                }
+            }
+            if taken(&mut playout, now).is_some() {
+                seen.push(now);
+            }
+        }
+        let gaps = seen.windows(2).map(|own| own[1] - own[0]);
+        // What the buffer cannot bridge of the 62 ms between two arrivals, and no more.
+        let longest = gaps.max().expect("frames");
+        assert!((30..=52).contains(&longest), "{longest} ms");
+        let after = seen.iter().filter(|now| **now >= 300).count();
+        assert!(after > 300, "{after}");
     }
 
     #[test]

@@ -102,12 +102,14 @@ impl End {
     fn received(&mut self, now: i64) -> Option<Received> {
         let silence = self.meter.silence(now);
         let age = self.meter.measure(now).age;
+        let round_trip = self.meter.round_trip().unwrap_or(0.0);
         let fresh = std::mem::take(&mut self.fresh);
         self.newest.map(|packet| Received {
             packet,
             fresh,
             silence,
             age,
+            round_trip,
         })
     }
 }

@@ -5,11 +5,7 @@ use ferntast_emulation::channel::{ChannelConfig, LinkConfig};
 use ferntast_sim::teleoperation::{Environment, Outcome, Trial};
 
 fn run(name: &str, round_trip: f64, environment: Environment) -> Outcome {
-    let mut keys = String::new();
-    if name == "position_position" {
-        keys = format!("round_trip = {}", round_trip + 0.03);
-    }
-    run_with(name, &keys, round_trip, environment)
+    run_with(name, "", round_trip, environment)
 }
 
 fn run_with(name: &str, keys: &str, round_trip: f64, environment: Environment) -> Outcome {

@@ -59,14 +59,7 @@ fn a_law_whose_books_say_so_while_connected_does_so_while_frames_come() {
     for law in claiming {
         report(&failures(CASES, |seed| {
             let mut draw = Draw::of(seed);
-            // Twice the longest age of what is acted on: 1 s and what jitter,
-            // loss and queue add.
-            trial(
-                &mut draw,
-                configured(law.name(), "round_trip = 2.2"),
-                false,
-                seed,
-            )
+            trial(&mut draw, configured(law.name(), ""), false, seed)
         }));
     }
 }

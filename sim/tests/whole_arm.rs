@@ -8,7 +8,7 @@ use ferntast_control::{
     haptics::MasterConfig,
     servo::{self, ServoConfig},
 };
-use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig};
+use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig, Loss};
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 use ferntast_sim::teleoperation::{
     ArmUnderTrial, Environment, FollowerModel, Outcome, Task, Trial,
@@ -156,7 +156,7 @@ fn four_channels_hold_at_the_scale_of_a_session() {
 /// 0.1 s; a buffer of three of it evens that out.
 #[test]
 fn behind_a_jitter_buffer_hardly_anybody_holds() {
-    for name in ["model_mediated", "tdpa", "four_channel"] {
+    for name in ["model_mediated", "tdpa", "four_channel", "two_layer"] {
         let mut own = trial(name, 0.1, Environment::SoftSpring, Task::PressAndSlide);
         own.law = scaled(name, 0.05, &arm());
         let deviation = 0.05;
@@ -172,8 +172,8 @@ fn behind_a_jitter_buffer_hardly_anybody_holds() {
         let buffered = own.run().expect("a valid trial");
         let told = format!("{name}: {buffered:?}");
         assert!(buffered.stable && buffered.task_time.is_some(), "{told}");
-        // One frame in some hundreds is later than that; the operator's word takes 0.5 s.
-        assert!(buffered.held < 1.1, "{told}");
+        // One frame in some thousands is later than that; the operator's word takes 0.5 s.
+        assert!(buffered.held < 0.6, "{told}");
     }
 }
 
@@ -256,9 +256,9 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
         let told = format!("{} {round_trip} s: {outcome:?}", environment.name());
         assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
         assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
-        // The inner law's 12 N·s/m and up to 3 that fill the tank.
-        assert!((13.0..15.5).contains(&outcome.felt_damping), "{told}");
-        assert!((0.0..=0.451).contains(&outcome.force_step), "{told}");
+        // The inner law's 11 N·s/m and up to 3.9 that fill the tank.
+        assert!((13.0..15.0).contains(&outcome.felt_damping), "{told}");
+        assert!((0.0..=0.491).contains(&outcome.force_step), "{told}");
         assert!(outcome.drift < 1.2e-3, "{told}");
         let stiffness = environment.surface().0.min(3300.0);
         (
@@ -268,12 +268,36 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
     };
     for round_trip in ROUND_TRIPS {
         let (share, told) = felt(Environment::SoftSpring, round_trip);
-        assert!((0.93..1.07).contains(&share), "{told}");
+        assert!((0.97..1.03).contains(&share), "{told}");
         let (share, told) = felt(Environment::HardWall, round_trip);
-        assert!((0.8..1.1).contains(&share), "{told}");
+        assert!((0.91..1.1).contains(&share), "{told}");
         // What recedes takes energy at once, and the hand's comes a round trip later.
         let (share, told) = felt(Environment::MovingWall, round_trip);
-        assert!((0.8..1.05).contains(&share), "{told}");
+        assert!((0.87..1.06).contains(&share), "{told}");
+    }
+}
+
+/// Frames that come late are acted on, and the surface is rendered while the arm is held: a hand
+/// that was let sink into it could not be paid out again.
+#[test]
+fn two_layers_feel_a_hard_wall_behind_jitter_and_loss() {
+    let deviation = 0.05;
+    for seed in 1..=6 {
+        let mut own = trial("two_layer", 0.6, Environment::HardWall, Task::PressAndSlide);
+        own.seed = seed;
+        own.buffer = 3.0 * deviation;
+        for way in [&mut own.link.up, &mut own.link.down] {
+            way.jitter = Some(Jitter::Normal { deviation });
+            way.loss = Some(Loss::Independent { probability: 0.1 });
+        }
+        let outcome = own.run().expect("a valid trial");
+        let told = format!("seed {seed}: {outcome:?}");
+        assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
+        assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
+        let felt = outcome.felt_stiffness.expect("it presses");
+        assert!((3000.0..3600.0).contains(&felt), "{told}");
+        // The operator's word takes 0.5 s.
+        assert!(outcome.held < 1.1, "{told}");
     }
 }
 

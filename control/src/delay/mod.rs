@@ -24,6 +24,7 @@ mod four_channel;
 mod law;
 mod mapping;
 mod model_mediated;
+mod paid_force;
 mod position_force;
 mod position_position;
 mod samples;
@@ -109,6 +110,9 @@ pub struct Received {
     pub silence: f64,
     /// Time since it was sent, as far as both clocks agree \[s\].
     pub age: f64,
+    /// Forth and back as measured, with what frames wait at both ends to be played out, however
+    /// far the clocks are apart \[s\]; zero before the first measurement.
+    pub round_trip: f64,
 }
 
 /// What a step of the leader's end takes.

@@ -37,7 +37,9 @@
 //! holds still for longer than a round trip; then both ends are local loops and any delay is
 //! stable. What is felt of something that moves is old.
 //!
-//! **On loss.** No command; the leader goes on rendering the last surface, fading out.
+//! **On loss.** No command. The leader goes on rendering the last surface, which costs nobody
+//! energy, for `outlives`, and fades it out then: a hand that were let sink into the surface as
+//! soon as the other end falls silent would have to be pushed out of it again, with energy that nobody has.
 
 mod account;
 mod chord;
@@ -71,6 +73,8 @@ law_parameters! {
         pub paid_updates: bool = true,
         /// What the account that pays for updates holds at most \[J\].
         pub update_reserve: f64 [0.0..=1000.0, "J"] = 0.1,
+        /// For how long the surface is rendered after the other end was heard last \[s\].
+        pub outlives: f64 [0.0..=60.0, "s"] = 2.0,
         /// Largest stiffness that is rendered \[N/m\].
         pub largest_stiffness: f64 [10.0..=10000.0, "N/m"] = 3300.0,
         /// Largest force of the rendered surface on the hand \[N\].
@@ -146,6 +150,8 @@ pub struct ModelMediatedLeader {
     /// What is rendered.
     surface: Option<SurfaceModel>,
     received: Option<SurfaceModel>,
+    /// Time since the other end was heard, once it was [s].
+    unheard: Option<f64>,
     account: UpdateAccount,
 }
 
@@ -157,6 +163,7 @@ impl ModelMediatedLeader {
             fade: ForceRamp::default(),
             surface: None,
             received: None,
+            unheard: None,
             account: UpdateAccount::new(law.update_reserve),
         }
     }
@@ -227,7 +234,14 @@ impl Leader for ModelMediatedLeader {
             self.account.add(self.parameters.damping * square * dt);
             self.blend(dt, &hand.position.into());
         }
-        let share = self.fade.step(dt, self.mapping.force_ramp, live.is_some());
+        self.unheard = match live {
+            Some(_) => Some(0.0),
+            None => self.unheard.map(|own| own + dt),
+        };
+        let known = self
+            .unheard
+            .is_some_and(|own| own <= self.parameters.outlives);
+        let share = self.fade.step(dt, self.mapping.force_ramp, known);
         let Some(hand) = input.hand else {
             return LeaderOutput {
                 force: [0.0; 3],
@@ -470,12 +484,53 @@ mod tests {
                     fresh: true,
                     silence: 0.0,
                     age: 0.1,
+                    round_trip: 0.2,
                 }),
                 connected: true,
             };
             leader.step(1e-3, &input, Energy::default());
             leader.surface().unwrap()
         })
+    }
+
+    #[test]
+    fn a_surface_outlives_the_other_end_and_fades_then() {
+        let law = ModelMediated {
+            paid_updates: false,
+            ..ModelMediated::default()
+        };
+        let mut leader = ModelMediatedLeader::new(&law);
+        let mut force = |heard: bool| {
+            let input = LeaderInput {
+                hand: Some(crate::delay::Motion {
+                    position: [0.002, 0.0, 0.0],
+                    velocity: [0.0; 3],
+                }),
+                received: heard.then_some(crate::delay::Received {
+                    packet: packed(Some(WALL), Energy::default()),
+                    fresh: true,
+                    silence: 0.0,
+                    age: 0.1,
+                    round_trip: 0.2,
+                }),
+                connected: heard,
+            };
+            leader.step(1e-3, &input, Energy::default()).force[0]
+        };
+        // Nobody knows of it before the other end was heard.
+        assert_eq!(force(false), 0.0);
+        // 2 kN/m, 2 mm deep.
+        let whole = (0..2000).map(|_| force(true)).last().unwrap();
+        assert!((-4.01..-3.99).contains(&whole), "{whole} N");
+        let lasts = (1e3 * law.outlives) as usize;
+        for _ in 0..lasts {
+            assert_eq!(force(false), whole);
+        }
+        let fades = (1e3 * law.force_ramp) as usize;
+        let half = (0..fades / 2).map(|_| force(false)).last().unwrap();
+        assert!((0.45..0.55).contains(&(half / whole)), "{half} N");
+        let gone = (0..fades).map(|_| force(false)).last().unwrap();
+        assert_eq!(gone, 0.0);
     }
 
     #[test]

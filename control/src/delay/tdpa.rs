@@ -22,8 +22,13 @@
 //!
 //! The damping b at the hand takes in the energy of moving it, which pays for the first
 //! contact: an end that has taken in nothing may give out nothing. Each end
-//! keeps a share of what it took in, as the stores of Franken et al. 2011 do: a hand
-//! that pressed against the force is pushed back with its own energy.
+//! keeps what it can need itself, as the stores of Franken et al. 2011 do, and promises the rest:
+//! a force F moves a hand that is held with k_h by F/k_h, for which it takes ½F²/k_h; at the tip
+//! it winds the servo up, ½F²/k. So what is kept follows what is asked for; of what comes in an end
+//! promises a share at once, and of what it holds beyond its need the share Δt/`transfer_time` in each step.
+//!
+//! The force on the hand changes evenly (`paid_force.rs`): controllers that act when the energy
+//! is gone let it jump.
 //!
 //! **What it guarantees.** By its own books it gives out no more than it took in, but
 //! for what one step may overdraw, which is paid back first: for any
@@ -38,6 +43,7 @@
 use super::contact::{CommandForce, LastCommand, TouchingTip};
 use super::energy_tank::EnergyTank;
 use super::mapping::{ForceRamp, Mapping, law_ends, law_parameters, shortened};
+use super::paid_force::PaidForce;
 use super::step_velocity::StepVelocity;
 use super::{
     Energy, EnergyMeter, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput,
@@ -54,9 +60,18 @@ law_parameters! {
         pub hand_mass: f64 [0.01..=20.0, "kg"] = 0.2,
         /// Largest damping with which a debt is paid back \[N·s/m\].
         pub largest_damping: f64 [0.1..=10000.0, "N·s/m"] = 50.0,
-        /// Share of what the leader's end takes in that it promises to the
-        /// follower's, which promises the rest to one of what it takes in \[-\].
+        /// Share of what comes in through its port that an end promises to the other one at
+        /// once \[-\].
         pub promised_share: f64 [0.0..=1.0, "-"] = 0.35,
+        /// Time constant with which an end promises what it does not need to the other one \[s\].
+        pub transfer_time: f64 [0.01..=100.0, "s"] = 0.12,
+        /// k_h: how stiffly the hand is held at least \[N/m\].
+        pub hand_stiffness: f64 [1.0..=1e5, "N/m"] = 300.0,
+        /// Energy that an end needs for itself where no force is asked for, at the hand's
+        /// scale \[J\].
+        pub kept: f64 [0.0..=100.0, "J"] = 0.005,
+        /// Largest change of the force on the hand \[N/s\].
+        pub force_rate: f64 [1.0..=1e6, "N/s"] = 450.0,
         /// Energy that an end may hold, at the hand's scale; what is beyond
         /// counts as dissipated \[J\].
         pub reserve: f64 [0.0..=1000.0, "J"] = 0.1,
@@ -93,8 +108,9 @@ pub struct TdpaLeader {
     tank: EnergyTank,
     fade: ForceRamp,
     /// The newest force received, hand units [N].
-    force: Vector3<f64>,
+    wanted: Vector3<f64>,
     velocity: StepVelocity,
+    force: PaidForce,
 }
 
 impl TdpaLeader {
@@ -104,8 +120,9 @@ impl TdpaLeader {
             mapping: law.mapping(),
             tank: EnergyTank::default(),
             fade: ForceRamp::default(),
-            force: Vector3::zeros(),
+            wanted: Vector3::zeros(),
             velocity: StepVelocity::default(),
+            force: PaidForce::new(law.force_rate, law.hand_mass),
         }
     }
 }
@@ -117,12 +134,15 @@ impl Leader for TdpaLeader {
         let live = self.mapping.live(input.connected, input.received);
         if let Some(received) = live {
             self.tank.promise(f64::from(received.packet.energy[0]));
-            self.force = vector(received.packet.vector);
+            self.wanted = vector(received.packet.vector);
         }
+        let needed = own.kept + 0.5 * self.wanted.norm_squared() / own.hand_stiffness;
+        self.tank.give(dt / own.transfer_time, needed);
         self.tank.limit(own.reserve);
         let share = self.fade.step(dt, own.force_ramp, live.is_some());
         let Some(hand) = input.hand else {
             self.velocity.forget();
+            self.force.forget();
             return LeaderOutput {
                 force: [0.0; 3],
                 packet: Packet::empty(self.tank.told(energy)),
@@ -130,14 +150,13 @@ impl Leader for TdpaLeader {
         };
         let velocity = self.velocity.step(dt, &hand);
         let level = self.tank.level();
-        let mut force = self
-            .tank
-            .pays_for(dt, share * self.force, velocity, own.hand_mass);
-        force -= own.damping * Vector3::from(hand.velocity);
+        let mut taken = own.damping * Vector3::from(hand.velocity);
         let square = velocity.norm_squared();
         if level < 0.0 && square > STANDING * STANDING {
-            force -= (-level / (square * dt)).min(own.largest_damping) * velocity;
+            taken += (-level / (square * dt)).min(own.largest_damping) * velocity;
         }
+        let wanted = share * self.wanted;
+        let force = self.force.step(dt, wanted, taken, &velocity, &self.tank);
         LeaderOutput {
             force: force.into(),
             packet: Packet::new(hand.position, hand.velocity, self.tank.told(energy)),
@@ -188,11 +207,12 @@ impl Follower for TdpaFollower {
         let mean = -0.5 * (force + self.last);
         self.last = force;
         self.meter.step(mean.into(), here.map(Into::into));
-        self.tank
-            .port(self.meter.energy(), 1.0 - own.promised_share);
+        self.tank.port(self.meter.energy(), own.promised_share);
         if let Some(received) = live {
             self.tank.promise(f64::from(received.packet.energy[0]));
         }
+        let needed = own.kept + 0.5 * force.norm_squared() / self.force.stiffness();
+        self.tank.give(dt / own.transfer_time, needed);
         self.tank.limit(own.reserve);
         self.tank.add(-self.force.take_wound());
         let motion = live.zip(here).map(|(received, here)| {

@@ -7,7 +7,7 @@ use crate::frame::{self, FrameBytes, LAST_LAW_CODE, LinkFrame};
 use crate::meter::{Arrival, LinkMeasurement, LinkMeter, passed};
 use crate::operating::OperatingState;
 use crate::orientation::{Orientation, PackedOrientation};
-use crate::playout::{Offered, PlayOut};
+use crate::playout::{LONGEST_BUFFER, Offered, PlayOut};
 use crate::seconds;
 use crate::switching::{Laws, MarkedPacket, Outgoing};
 
@@ -26,8 +26,9 @@ pub(super) struct End {
     /// When the next frame is due [ns].
     send_due_ns: i64,
     play_out: PlayOut,
-    /// Whether frames that were overtaken may still fall into place.
-    buffered: bool,
+    /// So long frames may wait; where they do, those that were overtaken may still fall into
+    /// place \[s\].
+    buffer: f64,
     /// Frames that came after their time, which the meter took for good.
     late: u64,
     /// What the frame that arrived last says of arming, of whatever age: as with what is
@@ -67,7 +68,7 @@ impl End {
             sequence: 0,
             send_due_ns: 0,
             play_out: PlayOut::new(buffer),
-            buffered: buffer > 0.0,
+            buffer: buffer.clamp(0.0, LONGEST_BUFFER),
             late: 0,
             heard_arming: None,
             newest: None,
@@ -128,7 +129,7 @@ impl End {
                     self.late += 1;
                 }
             }
-            Arrival::Late if self.buffered => {
+            Arrival::Late if self.is_buffered() => {
                 self.play_out.offer(frame, arrived_ns);
             }
             Arrival::Late if frame.pace > 0 => {
@@ -146,7 +147,7 @@ impl End {
         if let Some(frame) = &taken {
             self.newest = taken;
             // One that waited for this end, which was held up, is as old as it is.
-            self.taken_ns = match self.buffered {
+            self.taken_ns = match self.is_buffered() {
                 true => now_ns,
                 false => self
                     .meter
@@ -169,10 +170,21 @@ impl End {
         self.heard_arming
     }
 
+    fn is_buffered(&self) -> bool {
+        self.buffer > 0.0
+    }
+
+    /// Forth and back \[s\]: as the echoes tell, and what waits at both ends, which have buffers
+    /// of the same length.
+    fn round_trip(&self) -> f64 {
+        let way = self.meter.round_trip().unwrap_or(0.0);
+        way + 2.0 * self.buffer
+    }
+
     /// Time since something was heard that counts \[s\]: with a buffer since a frame was played
     /// out, as those that wait bridge a gap in what arrives, else since one arrived.
     fn heard(&self, now_ns: i64) -> f64 {
-        match self.buffered {
+        match self.is_buffered() {
             true => self.silence(now_ns),
             false => self.meter.silence(now_ns),
         }
@@ -210,6 +222,7 @@ impl End {
                     fresh: own.fresh,
                     silence: self.decoder.silence(now_ns, self.heard(now_ns)),
                     age: seconds(now_ns.saturating_sub(own.sent_ns)),
+                    round_trip: self.round_trip(),
                 },
             });
         }
@@ -220,6 +233,7 @@ impl End {
                 fresh: self.fresh,
                 silence: self.heard(now_ns),
                 age: seconds(now_ns.saturating_sub(frame.sent_ns)),
+                round_trip: self.round_trip(),
             },
         })
     }

@@ -240,6 +240,11 @@ impl LinkMeter {
         })
     }
 
+    /// Round trip \[s\]: the newest measurement.
+    pub fn round_trip(&self) -> Option<f64> {
+        self.round_trip_ns.map(seconds)
+    }
+
     /// When the newest frame arrived \[ns\].
     pub fn arrived_ns(&self) -> Option<i64> {
         self.newest.map(|newest| newest.arrived_ns)

@@ -38,6 +38,7 @@ fn arrived(line: &[Outgoing]) -> Option<MarkedPacket> {
             fresh: true,
             silence: 0.0,
             age: DELAY as f64 * DT,
+            round_trip: 2.0 * DELAY as f64 * DT,
         },
     })
 }

@@ -160,8 +160,7 @@ impl Trial {
     fn run_with<'a>(&'a self, arm: Box<dyn Follower + 'a>) -> Result<Outcome, ParameterError> {
         let [forth, back] = self.delays();
         let schedule = Schedule::new(self.task, forth + back);
-        let ticks = |delay: f64| (delay / TICK).round() as usize;
-        let mut watch = Watch::new(schedule, ticks(forth), ticks(back), self.environment);
+        let mut watch = Watch::new(schedule, self.environment);
         let mut run = Run::new(self, schedule, arm)?;
         for k in 0..ticks(schedule.end) {
             watch.add(&run.step(k as i64));
@@ -234,6 +233,9 @@ struct Run<'a> {
     felt: [f64; 2],
     /// Where the tip is told to be.
     command: Option<TipCommand>,
+    buffered: bool,
+    /// Of both ways [s].
+    delays: [f64; 2],
 }
 
 impl<'a> Run<'a> {
@@ -260,6 +262,8 @@ impl<'a> Run<'a> {
             hand_work: 0.0,
             felt: [0.0; 2],
             command: None,
+            buffered: trial.buffer > 0.0,
+            delays: trial.delays(),
         })
     }
 
@@ -310,6 +314,19 @@ impl<'a> Run<'a> {
             place: self.environment.place(since).0 / mapping.position_scale,
             held: readings.state != OperatingState::Enabled,
             energy: self.hand_work + mapping.power_scale() * tip.work,
+            ago: self.ago(now_ns).map(ticks),
+        }
+    }
+
+    /// Age of what the follower's end acts on, and of what the leader's does \[s\]: where frames
+    /// wait to be played out as it is, else the delay of the link.
+    fn ago(&self, now_ns: i64) -> [f64; 2] {
+        match self.buffered {
+            true => [
+                self.follower.age(now_ns).unwrap_or(self.delays[0]),
+                self.leader.age(now_ns).unwrap_or(self.delays[1]),
+            ],
+            false => self.delays,
         }
     }
 
@@ -342,6 +359,11 @@ impl<'a> Run<'a> {
         });
         self.follower.step(now_ns, readings)
     }
+}
+
+/// \[s\] in ticks.
+fn ticks(time: f64) -> usize {
+    (time / TICK).round() as usize
 }
 
 /// Sends a frame with what a seal adds to it: a channel of limited rate counts that too.

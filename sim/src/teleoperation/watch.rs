@@ -4,7 +4,6 @@ use super::environment::Environment;
 use super::task::{Schedule, Task};
 use super::{Outcome, TICK};
 use ferntast_control::codec::Traffic;
-use std::collections::VecDeque;
 
 /// A hand or tip that moves to and fro by more than this while it is watched is
 /// not at rest [m].
@@ -35,6 +34,33 @@ pub(super) struct Tick {
     pub held: bool,
     /// True work of hand and surface since the start [J].
     pub energy: f64,
+    /// How long ago that was which the ends act on: of the hand, of the tip [ticks].
+    pub ago: [usize; 2],
+}
+
+/// What was, at every tick so far.
+#[derive(Debug)]
+struct Past<T> {
+    first: T,
+    all: Vec<T>,
+}
+
+impl<T: Copy> Past<T> {
+    fn beginning_with(first: T) -> Past<T> {
+        Past {
+            first,
+            all: Vec::new(),
+        }
+    }
+
+    /// `now`, and then what was `ago` [ticks].
+    fn add(&mut self, now: T, ago: usize) -> T {
+        self.all.push(now);
+        let place = self.all.len().checked_sub(ago + 1);
+        place
+            .and_then(|place| self.all.get(place))
+            .map_or(self.first, |own| *own)
+    }
 }
 
 /// To and fro of something that should rest. One way alone is no swing: it may
@@ -93,11 +119,9 @@ impl Square {
 #[derive(Debug)]
 pub(super) struct Watch {
     schedule: Schedule,
-    /// Hand as it was a way forward ago, contact force as it was a way back ago.
-    hands: VecDeque<[f64; 2]>,
-    forces: VecDeque<[f64; 2]>,
-    /// The surface as it was a way back ago.
-    places: VecDeque<f64>,
+    hands: Past<[f64; 2]>,
+    forces: Past<[f64; 2]>,
+    places: Past<f64>,
     position: Square,
     force: Square,
     rest: [Swing; 6],
@@ -121,18 +145,13 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// `forth` and `back`: delay each way [ticks]; what the tip meets.
-    pub(super) fn new(
-        schedule: Schedule,
-        forth: usize,
-        back: usize,
-        environment: Environment,
-    ) -> Self {
+    /// Of what the tip meets.
+    pub(super) fn new(schedule: Schedule, environment: Environment) -> Self {
         Watch {
             schedule,
-            hands: std::iter::repeat_n(schedule.start(), forth).collect(),
-            forces: std::iter::repeat_n([0.0; 2], back).collect(),
-            places: std::iter::repeat_n(0.0, back).collect(),
+            hands: Past::beginning_with(schedule.start()),
+            forces: Past::beginning_with([0.0; 2]),
+            places: Past::beginning_with(0.0),
             position: Square::default(),
             force: Square::default(),
             rest: [Swing::NONE; 6],
@@ -155,10 +174,9 @@ impl Watch {
     pub(super) fn add(&mut self, tick: &Tick) {
         let values = tick.hand.iter().chain(&tick.tip).chain(&tick.felt);
         self.finite &= values.chain(&tick.touched).all(|value| value.is_finite());
-        self.hands.push_back(tick.hand);
-        self.forces.push_back(tick.touched);
-        let sent = self.hands.pop_front().unwrap_or(tick.hand);
-        let met = self.forces.pop_front().unwrap_or(tick.touched);
+        let [forth, back] = tick.ago;
+        let sent = self.hands.add(tick.hand, forth);
+        let met = self.forces.add(tick.touched, back);
         let difference = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
         let touching = tick.touched != [0.0; 2];
         if !touching {
@@ -216,8 +234,7 @@ impl Watch {
     /// The stiffness in the hand: of the surface where it was a way back ago, as the hand
     /// cannot know of it earlier.
     fn feel(&mut self, tick: &Tick) {
-        self.places.push_back(tick.place);
-        let place = self.places.pop_front().unwrap_or(tick.place);
+        let place = self.places.add(tick.place, tick.ago[1]);
         let window = match self.environment.moves() {
             true => self.schedule.wall..self.schedule.slide,
             false => self.schedule.watch_pressed..self.schedule.retreat,

@@ -36,6 +36,7 @@ fn run(stiffness: f64, delay: usize, seconds: usize) -> Loop {
             fresh: true,
             silence: 0.0,
             age: 0.0,
+            round_trip: 0.0,
         })
     };
     let steps = seconds * 1000;
@@ -130,6 +131,7 @@ fn received(silence: f64, fresh: bool, force: f32) -> Option<Received> {
         fresh,
         silence,
         age: silence + 0.3,
+        round_trip: 0.6,
     })
 }
 

@@ -23,7 +23,7 @@ impl Default for InnerLaw {
     fn default() -> Self {
         InnerLaw::ModelMediated(ModelMediated {
             // The layer adds its own.
-            damping: 12.0,
+            damping: 11.0,
             // It keeps books itself.
             paid_updates: false,
             ..ModelMediated::default()

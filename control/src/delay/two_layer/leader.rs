@@ -4,12 +4,10 @@ use super::inside::InnerLeader;
 use super::parameters::TwoLayer;
 use crate::delay::energy_tank::EnergyTank;
 use crate::delay::mapping::Mapping;
+use crate::delay::paid_force::PaidForce;
 use crate::delay::step_velocity::StepVelocity;
 use crate::delay::{Energy, Leader, LeaderInput, LeaderOutput};
 use nalgebra::Vector3;
-
-/// The tank pays for the force on the hand so long ahead [s].
-const FORESIGHT: f64 = 0.002;
 
 /// The leader's end: sends what the inner law says, and what it promises.
 #[derive(Clone, Debug)]
@@ -19,8 +17,7 @@ pub struct TwoLayerLeader {
     inner: InnerLeader,
     tank: EnergyTank,
     velocity: StepVelocity,
-    /// Asked for at the last step [N].
-    force: Vector3<f64>,
+    force: PaidForce,
 }
 
 impl TwoLayerLeader {
@@ -31,23 +28,8 @@ impl TwoLayerLeader {
             inner: law.inside.between(&law.mapping()).bare_leader(),
             tank: EnergyTank::default(),
             velocity: StepVelocity::default(),
-            force: Vector3::zeros(),
+            force: PaidForce::new(law.force_rate, law.hand_mass),
         }
-    }
-}
-
-impl TwoLayerLeader {
-    /// The force along `force` that the tank can let go of [N]: falling to zero at a rate r, f
-    /// gives a hand of mass m that lets go the impulse p = f²/2r, and where that moves along with
-    /// the force at v already the energy p v + p²/2m ≤ E.
-    fn releasable(&self, force: &Vector3<f64>, velocity: &Vector3<f64>) -> f64 {
-        let own = &self.parameters;
-        let speed = force
-            .try_normalize(1e-9)
-            .map_or(0.0, |along| velocity.dot(&along));
-        let energy = self.tank.level().max(0.0);
-        let fastest = (speed * speed + 2.0 * energy / own.hand_mass).sqrt();
-        (2.0 * own.force_rate * own.hand_mass * (fastest - speed)).sqrt()
     }
 }
 
@@ -64,22 +46,19 @@ impl Leader for TwoLayerLeader {
         let packet = self.tank.told_in(wanted.packet, energy);
         let Some(hand) = input.hand else {
             self.velocity.forget();
-            self.force = Vector3::zeros();
+            self.force.forget();
             return LeaderOutput {
                 force: [0.0; 3],
                 packet,
             };
         };
         let velocity = self.velocity.step(dt, &hand);
-        let force = self
-            .tank
-            .pays_for(FORESIGHT, wanted.force.into(), velocity, own.hand_mass);
-        let force = force.cap_magnitude(self.releasable(&force, &velocity));
         let lacking = 1.0 - (self.tank.level() / own.level.max(1e-9)).clamp(0.0, 1.0);
         let damping = own.largest_damping * lacking * Vector3::from(hand.velocity);
-        self.force += (force - damping - self.force).cap_magnitude(own.force_rate * dt);
+        let wanted = wanted.force.into();
+        let force = self.force.step(dt, wanted, damping, &velocity, &self.tank);
         LeaderOutput {
-            force: self.force.into(),
+            force: force.into(),
             packet,
         }
     }

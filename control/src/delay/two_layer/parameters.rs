@@ -11,25 +11,25 @@ law_parameters! {
         pub inside: InnerLaw [section] = InnerLaw::default(),
         /// Share of what comes in through its port that an end gives to the other one at
         /// once \[-\].
-        pub promised_share: f64 [0.0..=1.0, "-"] = 0.5,
+        pub promised_share: f64 [0.0..=1.0, "-"] = 0.8,
         /// Time constant with which an end gives what it does not need to the other one \[s\].
-        pub transfer_time: f64 [0.01..=100.0, "s"] = 0.12,
+        pub transfer_time: f64 [0.01..=100.0, "s"] = 0.06,
         /// Energy that the hand's end needs for itself \[J\].
-        pub kept_at_hand: f64 [0.0..=100.0, "J"] = 0.04,
+        pub kept_at_hand: f64 [0.0..=100.0, "J"] = 0.1,
         /// Energy that the tip's end needs for itself, at the hand's scale \[J\].
         pub kept_at_tip: f64 [0.0..=100.0, "J"] = 0.005,
         /// Energy with which the tip's end begins, at the hand's scale: it lets the arm set out
         /// before the hand has paid for that \[J\].
-        pub credit: f64 [0.0..=1.0, "J"] = 0.008,
+        pub credit: f64 [0.0..=1.0, "J"] = 0.006,
         /// Energy that an end may hold, at the hand's scale; what is beyond counts as
         /// dissipated \[J\].
         pub reserve: f64 [0.0..=1000.0, "J"] = 0.3,
         /// Below this energy the hand is damped \[J\].
-        pub level: f64 [0.0..=100.0, "J"] = 0.05,
+        pub level: f64 [0.0..=100.0, "J"] = 0.2,
         /// Largest damping at the hand that fills the tank \[N·s/m\].
-        pub largest_damping: f64 [0.0..=1000.0, "N·s/m"] = 3.0,
+        pub largest_damping: f64 [0.0..=1000.0, "N·s/m"] = 3.9,
         /// Largest change of the force on the hand \[N/s\].
-        pub force_rate: f64 [1.0..=1e6, "N/s"] = 450.0,
+        pub force_rate: f64 [1.0..=1e6, "N/s"] = 490.0,
         /// m_h: lightest mass of hand and handle \[kg\].
         pub hand_mass: f64 [0.01..=20.0, "kg"] = 0.2,
         /// m: mass of arm and motors at the tip \[kg\].

@@ -26,6 +26,7 @@ fn received(position: f64, force_or_speed: f64, promised: f64) -> Option<Receive
         fresh: true,
         silence: 0.0,
         age: 0.0,
+        round_trip: 0.0,
     })
 }
 
@@ -81,7 +82,7 @@ impl Hand {
             self.energy,
         );
         let change = step.force[0] - self.force;
-        assert!(change.abs() <= 0.45 + 1e-9, "{step:?}");
+        assert!(change.abs() <= 1e-3 * law().force_rate + 1e-9, "{step:?}");
         self.force = step.force[0];
     }
 }

@@ -6,8 +6,8 @@ use std::fs;
 use ferntast_tests::{Session, ask_python, number, run};
 use serde_json::{Value, json};
 
-/// Without the line `arm`: the tip that the reference has too. What is older than half of
-/// `round_trip` is not acted on by position_position, so it is above the longest one here.
+/// Without the line `arm`: the tip that the reference has too. The reference damps
+/// position_position for `round_trip` whatever the delay is; ours measures, and has it as the least.
 const SIMPLE_TIP: &str = r#"
 description = "The light tip, whose contact force is known at once."
 rtt_ms = [20, 100, 300]
@@ -94,7 +94,7 @@ fn the_laws_are_those_of_their_papers_or_differ_as_told() {
     what_is_unstable_swings_alike(&ours, &theirs);
     four_channel_has_the_servo_in_series(&ours, &theirs);
     waves_are_as_soft_as_their_delay(&ours, &theirs);
-    tdpa_pays_for_its_passivity_with_depth(&ours, &theirs);
+    tdpa_pays_for_its_passivity_on_stiff_walls(&ours, &theirs);
 }
 
 /// Where ours is what the paper says: stable alike, felt stiffness and drag within some percent.
@@ -191,14 +191,14 @@ fn waves_are_as_soft_as_their_delay(ours: &Rows, theirs: &Rows) {
 }
 
 /// The papers' controllers act when the energy is gone: a hard wall feels stiff, bounces from
-/// 100 ms on and gives energy. Ours keeps some back: it holds and is soft.
-fn tdpa_pays_for_its_passivity_with_depth(ours: &Rows, theirs: &Rows) {
+/// 100 ms on and gives energy. Ours keeps back what it can need: a soft spring is felt as by the
+/// paper's, a hard wall holds and is soft.
+fn tdpa_pays_for_its_passivity_on_stiff_walls(ours: &Rows, theirs: &Rows) {
     for rtt_ms in ROUND_TRIPS {
         let felt = ours.felt("tdpa", "soft_spring", rtt_ms);
         let expected = theirs.felt("tdpa_drift", "soft_spring", rtt_ms);
         assert!(near(expected, in_series(SOFT, SERVO), 0.01), "{expected}");
-        let share = felt / expected;
-        assert!((0.40..0.60).contains(&share), "{rtt_ms}: {share}");
+        assert!(near(felt, expected, 0.02), "{rtt_ms}: {felt}, {expected}");
         let energy = |rows: &Rows, law| number(rows.row(law, "hard_wall", rtt_ms), "true_energy_J");
         assert!(ours.stable("tdpa", "hard_wall", rtt_ms));
         assert!(energy(ours, "tdpa") > -1e-6);
