@@ -2,7 +2,8 @@
 //!
 //! Not where a hand's orientation is counts, but how it changes: the tool turns about the same axes
 //! of the base frame by as much, from where it was when the arm was armed,
-//! R = R_hand R_hand,0⁻¹ R_tool,0. So nothing turns at arming. A hand that says nothing of how
+//! R = R_hand R_hand,0⁻¹ R_tool,0. So nothing turns at arming, and after a pause the tool goes to
+//! where it belongs, as the tip does. A hand that says nothing of how
 //! it is turned holds the tool as it is, and where it never said so as at home; so does one that
 //! is somewhere else at once, as no hand turns: what it does from there on counts. The tool
 //! turns no faster than [`SPEED`].
