@@ -7,8 +7,9 @@ quaternions takes part. Prints JSON: `delay_s`, by which the tool is behind the 
 difference then, and `turned_rad`, how far the tool turned.
 
 With `live` the times are counted from the hand's first message, and only those count in which the arm followed: ENABLED, and
-not on its way to a hand that it lost for a moment. Then `followed_s` is how long that was altogether, and `end_error_rad` the
-difference when the hand ends, which rests by then.
+not on its way to a hand that it lost for a moment. Then `followed_s` is how long that was altogether, `end_error_rad` the
+difference when the hand ends, which rests by then, and `paused` how often the arm was paused. Hand and tool belong together as
+they are when the arm is armed, at first and after a fault, not after a pause.
 """
 
 import json
@@ -43,8 +44,8 @@ def main() -> None:
     positions, _ = places(model, asked["joints"])
     tip, base = body(model, asked["tip"]), body(model, asked["base"]) if asked.get("base") else 0
     hand, tool, begin, hand_began = {}, {}, None, None
-    # When the arm began to follow, or ceased to.
-    changes = [(0.0, False)]
+    # When the arm began to follow, or ceased to; when it was armed, and how often it was paused.
+    changes, armed, state, paused = [(0.0, False)], [], "", 0
     with AnyReader([Path(asked["bag"])]) as reader:
         for connection, time, raw in reader.messages():
             begin = time if begin is None else begin
@@ -55,6 +56,10 @@ def main() -> None:
             elif connection.topic == "/follower/operating_state":
                 message = reader.deserialize(raw, connection.msgtype)
                 changes.append(((time - begin) / 1e9, message.state == "ENABLED" and not message.is_busy))
+                if message.state == "ENABLED" and state not in ("ENABLED", "PAUSED"):
+                    armed.append((time - begin) / 1e9)
+                paused += message.state == "PAUSED" and state != "PAUSED"
+                state = message.state
             elif connection.topic == "/follower/measured_js":
                 message = reader.deserialize(raw, connection.msgtype)
                 at = dict(zip(message.name, message.position))
@@ -66,8 +71,12 @@ def main() -> None:
     live = asked.get("live", False)
     since = (hand_began - begin) / 1e9 if live else 0.0
     counts = times[(times >= since + asked["from"]) & (times < since + asked["to"])][::5]
-    first_tool, first_hand = tool[times[np.searchsorted(times, since)]], hand[hands[0]]
+    first = [(times[0], tool[times[0]], hand[hands[0]])]
     if live:
+        first = [
+            (at, tool[times[np.searchsorted(times, at)]], hand[hands[max(np.searchsorted(hands, at) - 1, 0)]])
+            for at in (max(own, since) for own in armed)
+        ]
         began, follows = map(np.array, zip(*changes, strict=True))
         counts = counts[follows[np.searchsorted(began, counts, side="right") - 1]]
 
@@ -75,17 +84,19 @@ def main() -> None:
         worst = 0.0
         for time in at:
             then = hands[max(np.searchsorted(hands, time - delay, side="right") - 1, 0)]
+            _, first_tool, first_hand = next((own for own in reversed(first) if own[0] <= time), first[0])
             worst = max(worst, angle(tool[time] @ first_tool.T, hand[then] @ first_hand.T))
         return worst
 
     errors = [error(delay) for delay in DELAYS]
     best = int(np.argmin(errors))
-    turned = max((angle(tool[time], first_tool) for time in counts), default=0.0)
+    turned = max((angle(tool[time], first[0][1]) for time in counts), default=0.0)
     found = {"delay_s": DELAYS[best], "error_rad": errors[best], "turned_rad": turned}
     if live:
         end = times[times <= hands[-1]][-1:]
         found["followed_s"] = len(counts) * 5e-3
         found["end_error_rad"] = error(0.0, end)
+        found["paused"] = paused
     print(json.dumps(found))
 
 
