@@ -23,6 +23,8 @@ from rosbags.highlevel import AnyReader
 
 # Delays that are tried [s].
 DELAYS = np.arange(0.0, 0.1, 1e-3)
+# An arm that is held up by its computer says so afterwards, by no more than this [s].
+HELD_UP = 0.3
 
 
 def rotation(orientation) -> np.ndarray:
@@ -55,7 +57,9 @@ def main() -> None:
                 hand[(time - begin) / 1e9] = rotation(message.pose.orientation)
             elif connection.topic == "/follower/operating_state":
                 message = reader.deserialize(raw, connection.msgtype)
-                changes.append(((time - begin) / 1e9, message.state == "ENABLED" and not message.is_busy))
+                follows = message.state == "ENABLED" and not message.is_busy
+                if follows != changes[-1][1]:
+                    changes.append(((time - begin) / 1e9, follows))
                 if message.state == "ENABLED" and state not in ("ENABLED", "PAUSED"):
                     armed.append((time - begin) / 1e9)
                 paused += message.state == "PAUSED" and state != "PAUSED"
@@ -77,8 +81,10 @@ def main() -> None:
             (at, tool[times[np.searchsorted(times, at)]], hand[hands[max(np.searchsorted(hands, at) - 1, 0)]])
             for at in (max(own, since) for own in armed)
         ]
-        began, follows = map(np.array, zip(*changes, strict=True))
-        counts = counts[follows[np.searchsorted(began, counts, side="right") - 1]]
+        began, on = map(np.array, zip(*changes, strict=True))
+        place = np.searchsorted(began, counts, side="right")
+        until = np.append(began, np.inf)[place]
+        counts = counts[on[place - 1] & (until - counts > HELD_UP)]
 
     def error(delay: float, at: np.ndarray = counts) -> float:
         worst = 0.0
