@@ -33,7 +33,7 @@ pub const LONGEST_BUFFER: f64 = 0.2;
 pub const OUTAGE: f64 = 0.1;
 /// When all frames are late for this long, base follows \[s\].
 pub const REBASE: f64 = 0.5;
-/// Frames that wait at most; a power of two: 0.25 s at 500 Hz.
+/// Frames that wait at most, as many as there are bits: 0.25 s at 500 Hz.
 const SLOTS: usize = 128;
 /// Part of the difference by which base grows with each frame, once so many came: some seconds;
 /// at first base is that of the few that there are, which may have been quick.
@@ -56,7 +56,8 @@ pub enum Offered {
 pub struct PlayOut {
     buffer_ns: i64,
     slots: Box<[Option<LinkFrame>; SLOTS]>,
-    waiting: usize,
+    /// A bit for each slot in which a frame waits.
+    waiting: u128,
     /// Smallest transit time [ns].
     base_ns: Option<i64>,
     /// Frames that it is of, up to [`FORGET`].
@@ -94,7 +95,7 @@ impl PlayOut {
 
     /// Frames that wait.
     pub fn waiting(&self) -> usize {
-        self.waiting
+        self.waiting.count_ones() as usize
     }
 
     /// The sender was started anew, or is another one: what waits is dropped.
@@ -136,15 +137,14 @@ impl PlayOut {
         });
         self.based_on = (self.based_on + 1).min(FORGET);
         self.late_since_ns = None;
-        let Some(slot) = self.slots.get_mut(frame.sequence as usize % SLOTS) else {
-            return Offered::Late;
-        };
+        let place = frame.sequence as usize % SLOTS;
+        let slot = &mut self.slots[place];
         match slot {
             Some(own) if own.sequence == frame.sequence => return Offered::Replayed,
             // Further ahead than there is room: the older one gives way.
             Some(own) if behind(frame.sequence, own.sequence) => return Offered::Late,
             Some(_) => {}
-            None => self.waiting += 1,
+            None => self.waiting |= 1 << place,
         }
         *slot = Some(*frame);
         Offered::Waiting
@@ -163,7 +163,7 @@ impl PlayOut {
             let due_ns = frame.stamp_ns.saturating_add(base_ns);
             buffer_ns == 0 || due_ns.saturating_add(buffer_ns) <= now_ns
         };
-        let waiting = self.slots.iter().flatten().take(self.waiting);
+        let waiting = places(self.waiting).filter_map(|place| self.slots[place].as_ref());
         let mut newest: Option<&LinkFrame> = None;
         for frame in waiting.filter(|frame| due(frame)) {
             if newest.is_none_or(|own| behind(own.sequence, frame.sequence)) {
@@ -172,10 +172,8 @@ impl PlayOut {
         }
         let newest = *newest?;
         self.content = None;
-        for slot in self.slots.iter_mut() {
-            if self.waiting == 0 {
-                break;
-            }
+        for place in places(self.waiting) {
+            let slot = &mut self.slots[place];
             let Some(own) = slot.filter(|own| !behind(newest.sequence, own.sequence)) else {
                 continue;
             };
@@ -184,7 +182,7 @@ impl PlayOut {
                 self.content = Some(own);
             }
             *slot = None;
-            self.waiting -= 1;
+            self.waiting &= !(1 << place);
         }
         self.last = Some(newest.sequence);
         Some(newest)
@@ -205,6 +203,16 @@ impl PlayOut {
         *self.slots = [None; SLOTS];
         self.waiting = 0;
     }
+}
+
+/// The slots whose bits are set, in order.
+fn places(mut bits: u128) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let place = bits.trailing_zeros() as usize;
+        // Takes the lowest bit that is set.
+        bits &= bits.wrapping_sub(1);
+        (place < SLOTS).then_some(place)
+    })
 }
 
 #[cfg(test)]

@@ -13,6 +13,8 @@ pub struct SimulatedSerialArm {
     arm: SerialArm,
     measures: Measures,
     description: Option<RobotDescriptionSample>,
+    /// Its brakes are on while its drives are off.
+    brakes: bool,
 }
 
 impl SimulatedSerialArm {
@@ -39,7 +41,22 @@ impl SimulatedSerialArm {
                 temperature: true,
             },
             description,
+            brakes: false,
         })
+    }
+
+    /// The same, whose brakes are on while its drives are off: without them, it falls then.
+    pub fn braked(mut self) -> SimulatedSerialArm {
+        self.brakes = true;
+        self.arm.brake(true);
+        self
+    }
+
+    /// The same driver of another arm like it, such as this one at another time.
+    pub fn with(mut self, arm: SerialArm) -> SimulatedSerialArm {
+        self.arm = arm;
+        self.arm.brake(self.brakes);
+        self
     }
 
     /// The same without the sensors that it is not to have.
@@ -65,6 +82,12 @@ impl Driver for SimulatedSerialArm {
 
     fn measures(&self) -> Measures {
         self.measures
+    }
+
+    fn enable(&mut self, enabled: bool) {
+        if self.brakes {
+            self.arm.brake(!enabled);
+        }
     }
 
     fn write(&mut self, command: &DriverCommand, health: &mut NodeHealth) {

@@ -118,6 +118,7 @@ impl Arm {
         self.inertia_at(q.y.cos())
     }
 
+    #[inline]
     fn inertia_at(&self, cosine: f64) -> Matrix2<f64> {
         let mixed = self.coupling * cosine;
         let off_diagonal = self.distal + mixed;
@@ -134,6 +135,7 @@ impl Arm {
         self.coriolis_at(q.y.sin(), qd)
     }
 
+    #[inline]
     fn coriolis_at(&self, sine: f64, qd: &Vector2<f64>) -> Vector2<f64> {
         let h = self.coupling * sine;
         Vector2::new(-h * (2.0 * qd.x + qd.y) * qd.y, h * qd.x * qd.x)
@@ -160,8 +162,22 @@ impl Arm {
         q: &Vector2<f64>,
         qd: &Vector2<f64>,
     ) -> (Matrix2<f64>, Vector2<f64>) {
+        let (inertia, bias) = self.inertia_and_biases(q);
+        (inertia, bias(qd))
+    }
+
+    /// M(q), and C(q, q̇) q̇ + g(q) of any q̇ there, for loops that need that of several.
+    #[inline]
+    pub fn inertia_and_biases<'a>(
+        &'a self,
+        q: &Vector2<f64>,
+    ) -> (
+        Matrix2<f64>,
+        impl Fn(&Vector2<f64>) -> Vector2<f64> + use<'a>,
+    ) {
         let (sine, cosine) = q.y.sin_cos();
-        let bias = self.coriolis_at(sine, qd) + self.gravity(q);
+        let gravity = self.gravity(q);
+        let bias = move |qd: &Vector2<f64>| self.coriolis_at(sine, qd) + gravity;
         (self.inertia_at(cosine), bias)
     }
 
@@ -204,6 +220,7 @@ impl Arm {
 ///
 /// Written out because the general decompositions of nalgebra cost several
 /// times as much at this size, in the innermost loop.
+#[inline]
 pub fn solve_symmetric(matrix: &Matrix2<f64>, right: &Vector2<f64>) -> Vector2<f64> {
     let determinant = matrix.m11 * matrix.m22 - matrix.m12 * matrix.m12;
     Vector2::new(

@@ -88,6 +88,7 @@ pub struct Feature {
 
 impl Feature {
     /// Unit tangent: the normal turned by −90° about z; x of the contact frame.
+    #[inline]
     pub fn tangent(&self) -> Vector2<f64> {
         Vector2::new(self.normal.y, -self.normal.x)
     }
@@ -106,16 +107,19 @@ impl Feature {
     }
 
     /// Φ(r) \[m\]: distance of `tip` from the front's line, negative inside.
+    #[inline]
     pub fn distance(&self, tip: &Vector2<f64>) -> f64 {
         (tip - self.center).dot(&self.normal)
     }
 
     /// Where `tip` is along the front \[m\], from its middle, along the tangent.
+    #[inline]
     pub fn along(&self, tip: &Vector2<f64>) -> f64 {
         (tip - self.center).dot(&self.tangent())
     }
 
     /// Whether `tip` is in front of (or behind) the front, not beside it.
+    #[inline]
     pub fn faces(&self, tip: &Vector2<f64>) -> bool {
         self.along(tip).abs() <= self.half_length
     }

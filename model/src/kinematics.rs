@@ -101,22 +101,26 @@ impl Kinematics {
     }
 
     /// Elbow (axis of joint 2), base frame \[m\].
+    #[inline]
     pub fn elbow(&self, q: &Vector2<f64>) -> Vector2<f64> {
         let (sine, cosine) = q.x.sin_cos();
         Vector2::new(self.lengths[0] * cosine, self.lengths[0] * sine)
     }
 
     /// Stylus tip r_ee, base frame \[m\].
+    #[inline]
     pub fn forward(&self, q: &Vector2<f64>) -> Vector2<f64> {
         self.forward_and_jacobian(q).0
     }
 
     /// J = ∂r_ee/∂q \[m/rad\], 2 × 2; ṙ_ee = J q̇ and τ = Jᵀ F.
+    #[inline]
     pub fn jacobian(&self, q: &Vector2<f64>) -> Matrix2<f64> {
         self.forward_and_jacobian(q).1
     }
 
     /// Tip \[m\] and Jacobian \[m/rad\] at once, for loops that need both.
+    #[inline]
     pub fn forward_and_jacobian(&self, q: &Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>) {
         let elbow = self.elbow(q);
         let (sine, cosine) = (q.x + q.y).sin_cos();
@@ -190,6 +194,7 @@ impl Kinematics {
 
     /// Solves Jᵀ F = `torque` \[Nm\] for the force at the tip \[N\], base frame.
     /// `None` when [`manipulability`](Self::manipulability) is below `least`.
+    #[inline]
     pub fn tip_force(
         &self,
         q: &Vector2<f64>,

@@ -26,7 +26,7 @@ use crate::{
     error::{CreateError, PublishError},
     types::{Depth, Received, SubscriberCounts, type_name},
 };
-use ring::Ring;
+use ring::{Published, Ring};
 
 /// Longest queue of a subscriber.
 pub const MAX_QUEUE: usize = 1 << 20;
@@ -205,14 +205,13 @@ impl<M: Message> MemorySubscriber<M> {
         if self.channel.end() <= from {
             return None;
         }
-        let ring = lock(&self.channel.ring);
+        let mut ring = lock(&self.channel.ring);
         let mut number = ring.newest_before(now, from, u64::MAX)?;
         self.next = number + 1;
         loop {
-            let (published, message) = ring.get(number)?;
-            if self.counts.valid(message) {
-                self.counts.delivered += 1;
-                return Some(received(*published, *message));
+            let found = ring.get(number)?;
+            if self.counts.takes(found) {
+                return Some(received(found));
             }
             number = ring.newest_before(now, from, number)?;
         }
@@ -223,7 +222,7 @@ impl<M: Message> MemorySubscriber<M> {
         if self.channel.end() <= self.next {
             return None;
         }
-        let ring = lock(&self.channel.ring);
+        let mut ring = lock(&self.channel.ring);
         loop {
             let newest = ring.newest_before(now, self.next, u64::MAX)?;
             // Only `depth` messages wait: what is older was dropped.
@@ -233,10 +232,9 @@ impl<M: Message> MemorySubscriber<M> {
                 self.counts.overflowed += number - self.next;
             }
             self.next = number + 1;
-            let (published, message) = ring.get(number)?;
-            if self.counts.valid(message) {
-                self.counts.delivered += 1;
-                return Some(received(*published, *message));
+            let found = ring.get(number)?;
+            if self.counts.takes(found) {
+                return Some(received(found));
             }
         }
     }
@@ -247,10 +245,19 @@ impl<M: Message> MemorySubscriber<M> {
     }
 }
 
-fn received<M>(published: Time, message: M) -> Received<M> {
+impl SubscriberCounts {
+    /// Whether `found` can be acted on; counted either way.
+    fn takes<M: Message>(&mut self, found: &mut Published<M>) -> bool {
+        let takes = found.is_valid() || self.valid(&found.message);
+        self.delivered += u64::from(takes);
+        takes
+    }
+}
+
+fn received<M: Message>(found: &Published<M>) -> Received<M> {
     Received {
-        message,
-        received: published,
+        message: found.message,
+        received: found.at,
         source: 0,
     }
 }

@@ -2,17 +2,36 @@
 
 use std::collections::VecDeque;
 
-use ferntast_msgs::Time;
+use ferntast_msgs::{Message, Time};
 
 /// Places beyond the longest queue, for messages published at times that the
 /// readers have not come to yet (the present tick's, and some more for
 /// readers whose time lags behind).
 const AHEAD: usize = 64;
 
+/// A message as it was published.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Published<M> {
+    /// When.
+    pub(super) at: Time,
+    /// The message.
+    pub(super) message: M,
+    /// Whether it can be acted on, once somebody looked: looking takes longer than reading.
+    valid: Option<bool>,
+}
+
+impl<M: Message> Published<M> {
+    /// Whether it can be acted on; found once, whoever asks.
+    pub(super) fn is_valid(&mut self) -> bool {
+        let message = &self.message;
+        *self.valid.get_or_insert_with(|| message.check().is_ok())
+    }
+}
+
 /// The last messages of one topic.
 #[derive(Debug)]
 pub(super) struct Ring<M> {
-    messages: VecDeque<(Time, M)>,
+    messages: VecDeque<Published<M>>,
     places: usize,
     /// Number of the oldest message kept.
     first: u64,
@@ -42,7 +61,11 @@ impl<M: Copy> Ring<M> {
             self.messages.pop_front();
             self.first += 1;
         }
-        self.messages.push_back((now, *message));
+        self.messages.push_back(Published {
+            at: now,
+            message: *message,
+            valid: None,
+        });
     }
 
     /// Number of the oldest message kept.
@@ -67,7 +90,7 @@ impl<M: Copy> Ring<M> {
         let mut number = self.end().min(end);
         while number > from {
             number -= 1;
-            if self.get(number)?.0 < now {
+            if self.messages.get(self.index(number)?)?.at < now {
                 return Some(number);
             }
         }
@@ -75,8 +98,12 @@ impl<M: Copy> Ring<M> {
     }
 
     /// The message of that number, when it is kept.
-    pub(super) fn get(&self, number: u64) -> Option<&(Time, M)> {
-        let index = number.checked_sub(self.first)?;
-        self.messages.get(usize::try_from(index).ok()?)
+    pub(super) fn get(&mut self, number: u64) -> Option<&mut Published<M>> {
+        let index = self.index(number)?;
+        self.messages.get_mut(index)
+    }
+
+    fn index(&self, number: u64) -> Option<usize> {
+        usize::try_from(number.checked_sub(self.first)?).ok()
     }
 }

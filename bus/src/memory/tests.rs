@@ -93,3 +93,31 @@ fn a_state_waits_for_late_joiners() {
     assert_eq!(stamp(late.newest(at(3))), Some(2));
     assert_eq!(stamp(late.newest(at(3))), None);
 }
+
+/// Looked at once, and refused by everybody who reads it.
+#[test]
+fn what_cannot_be_acted_on_is_counted_by_each_reader() {
+    let bus = MemoryBus::new();
+    let mut publisher = bus.publisher(STREAM).unwrap();
+    let mut readers = [Depth::Newest, Depth::Queue(4)].map(|depth| {
+        let reader = bus.subscriber(STREAM, depth);
+        reader.unwrap()
+    });
+    let bad = sample(2).with_position([f64::NAN]);
+    for message in [sample(1), bad, sample(3), bad] {
+        publisher.publish(at(1), &message).unwrap();
+    }
+    let [newest, queue] = &mut readers;
+    assert_eq!(stamp(newest.newest(at(2))), Some(3));
+    assert_eq!(stamp(queue.next(at(2))), Some(1));
+    assert_eq!(stamp(queue.next(at(2))), Some(3));
+    assert_eq!(stamp(queue.next(at(2))), None);
+    let counts = readers.map(|own| *own.counts());
+    assert_eq!(counts.map(|own| own.delivered), [1, 2]);
+    assert_eq!(counts.map(|own| own.invalid), [1, 2]);
+    assert!(
+        counts
+            .iter()
+            .all(|own| own.last_refusal.as_str().contains("position"))
+    );
+}

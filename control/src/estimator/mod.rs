@@ -174,20 +174,23 @@ impl ContactEstimator {
         }
         let uncertainty = &self.parameters.uncertainty;
         let alike = self.intake.alike();
-        let zeros = self.zeroing.standard_error(alike, uncertainty.torque_zero);
-        let gains = match &self.calibration {
-            Some(own) => own.calibration().errors(&felt),
-            None => independent_gains(&torque, uncertainty.torque_gain),
+        let (zeroing, calibration) = (&self.zeroing, self.calibration.as_ref());
+        let errors = || {
+            let zeros = zeroing.standard_error(alike, uncertainty.torque_zero);
+            let gains = match calibration {
+                Some(own) => own.calibration().errors(&felt),
+                None => independent_gains(&torque, uncertainty.torque_gain),
+            };
+            let zeros = planar(&zeros).unwrap_or_else(Vector2::zeros);
+            sensor_errors(&kinematics, &q, &zeros, &gains, singularity)
         };
-        let zeros = planar(&zeros).unwrap_or_else(Vector2::zeros);
-        let errors = sensor_errors(&kinematics, &q, &zeros, &gains, singularity);
         let motion = Motion {
             tip,
-            errors,
+            errors: &errors,
             velocity: tip_velocity,
             present_velocity: jacobian * present_qd,
             delay: self.intake.delay(),
-            calibration: self.calibration.as_ref(),
+            calibration,
             undetermined,
         };
         let last = self.last;

@@ -32,7 +32,7 @@ pub(super) struct Motion<'a> {
     /// How late forces and filtered velocity are \[s\].
     pub(super) delay: f64,
     /// What the torque sensors may have wrong of the force \[N\].
-    pub(super) errors: SensorErrors<Vector2<f64>>,
+    pub(super) errors: &'a dyn Fn() -> SensorErrors<Vector2<f64>>,
     /// What is known of how edges are turned.
     pub(super) calibration: Option<&'a SelfCalibration>,
     /// A joint's friction, and so the force, is not determined.
@@ -187,7 +187,7 @@ impl Split {
             let index = estimate.feature.unwrap_or(usize::MAX);
             let turn = motion.calibration.and_then(|own| own.turn(index));
             let errors = split_errors(
-                &motion.errors,
+                &(motion.errors)(),
                 &feature.normal,
                 &feature.tangent(),
                 estimate.contact_force,

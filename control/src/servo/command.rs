@@ -214,6 +214,8 @@ pub struct CommandCheck {
     /// Stamp of the newest command acted on, kept when re-armed.
     newest_ns: i64,
     last: Option<Accepted>,
+    /// How the tool turned with the hand before it was re-armed, and by a command of when \[ns\].
+    turned: (Turning, i64),
 }
 
 impl CommandCheck {
@@ -238,13 +240,23 @@ impl CommandCheck {
             seen: None,
             newest_ns: 0,
             last: None,
+            turned: Default::default(),
         })
     }
 
     /// Forgets where the last command was: the next one may be anywhere in
-    /// the workspace (the servo approaches it on a ramp).
+    /// the workspace (the servo approaches it on a ramp). How hand and tool belong together
+    /// stays, as where hand and tip do.
     pub fn rearm(&mut self) {
+        if let Some(last) = self.last.take() {
+            self.turned = (last.turning, last.stamp_ns);
+        }
+    }
+
+    /// The same, and from now on hand and tool belong together as they are then.
+    pub fn begin(&mut self) {
         self.last = None;
+        self.turned = Default::default();
     }
 
     /// Whether `command` is another one than at the last call; it counts as
@@ -329,11 +341,15 @@ impl CommandCheck {
                 let last = self.last.as_ref();
                 let from = last.map_or(posture, |own| &own.led.joints);
                 let passed = turning::passed(last.map(|own| own.stamp_ns), command.stamp_ns);
-                turning = last.map_or(turning, |own| own.turning).next(
-                    passed,
-                    command.target.orientation(),
-                    || model.orientation(from),
-                );
+                let hand = command.target.orientation();
+                let before = match last {
+                    Some(own) => own.turning,
+                    None => {
+                        let (turned, at_ns) = self.turned;
+                        turned.resumed(seconds(command.stamp_ns.saturating_sub(at_ns)), hand)
+                    }
+                };
+                turning = before.next(passed, hand, || model.orientation(from));
                 let turn = turning.turn(passed);
                 let last = last.map(|own| &own.led);
                 let led = model.joints(&tip, turn.as_ref(), posture, last)?;

@@ -128,16 +128,18 @@ impl FeedForward {
             days: 0.0,
         };
         let known = self.known(&state, self.seen_now());
-        let part = |at_rest: bool| {
-            let terms = self.terms.iter().flatten();
-            terms
-                .filter(move |fed| fed.term.effect.acts_at_rest() == at_rest)
-                .map(move |fed| fed.torque_as_known(fed.term.values, &state, &known))
+        let mut fed = FedTorque {
+            sliding: -0.0,
+            standing: -0.0,
         };
-        FedTorque {
-            sliding: part(false).sum(),
-            standing: part(true).fold(-0.0, |sum, torque| sum + torque),
+        for own in self.terms.iter().flatten() {
+            let part = match own.term.effect.acts_at_rest() {
+                true => &mut fed.standing,
+                false => &mut fed.sliding,
+            };
+            *part += own.torque_as_known(own.term.values, &state, &known);
         }
+        fed
     }
 
     /// v_s while it is led over \[rad/s\].

@@ -311,6 +311,9 @@ impl Servo {
                     if was != OperatingState::Enabled {
                         self.last_command_ns = None;
                         self.was_held_up = !fresh;
+                        if was != OperatingState::Paused {
+                            self.commands.begin();
+                        }
                         self.begin(measured);
                     } else if self.was_held_up || self.is_stale(measured, now_ns) {
                         // Until it is measured again: where it was measured last.

@@ -2,7 +2,9 @@
 //!
 //! Not where a hand's orientation is counts, but how it changes: the tool turns about the same axes
 //! of the base frame by as much, from where it was when the arm was armed,
-//! R = R_hand R_hand,0⁻¹ R_tool,0. So nothing turns at arming. A hand that says nothing of how
+//! R = R_hand R_hand,0⁻¹ R_tool,0. So nothing turns at arming, and after a pause the tool goes to
+//! where it belongs, as the tip does, unless the hand turned further than the tool could have
+//! followed. A hand that says nothing of how
 //! it is turned holds the tool as it is, and where it never said so as at home; so does one that
 //! is somewhere else at once, as no hand turns: what it does from there on counts. The tool
 //! turns no faster than [`SPEED`].
@@ -64,6 +66,20 @@ impl Turning {
             (_, Some(hand)) => tool().map_or(Turning::Home, |tool| begin(hand, tool)),
             (Turning::Follows { .. }, None) => tool().map_or(Turning::Home, Turning::Held),
             (held, None) => held,
+        }
+    }
+
+    /// The same after a pause of `pause` \[s\] with a hand that is turned so: what the tool could
+    /// have followed meanwhile is no jump.
+    pub(super) fn resumed(self, pause: f64, hand: Option<&Orientation>) -> Turning {
+        match (self, hand) {
+            (Turning::Follows { from_hand, hand }, Some(now))
+                if now.angle_to(&hand) <= SPEED * pause + SLACK =>
+            {
+                let hand = *now;
+                Turning::Follows { from_hand, hand }
+            }
+            (own, _) => own,
         }
     }
 
@@ -133,6 +149,14 @@ mod tests {
         assert!(off(on, about_z(0.1) * tool()) < 1e-9);
         let jumped = on.next(1e-3, Some(&hand(-1.0)), || Some(tool()));
         assert!(off(jumped, tool()) < 1e-9);
+        // Over a pause it may turn as far as the tool would have followed.
+        let now = hand(0.2);
+        let resumed = |pause| {
+            let resumed = jumped.resumed(pause, Some(&now));
+            resumed.next(1e-3, Some(&now), || Some(tool()))
+        };
+        assert!(off(resumed(0.6), about_z(1.2) * tool()) < 1e-9);
+        assert!(off(resumed(0.5), tool()) < 1e-9);
         // An arm that cannot turn its tool.
         let none = home.next(1e-3, Some(&hand(0.5)), || None);
         assert!(none.turn(1e-3).is_none());

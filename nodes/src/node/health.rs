@@ -88,6 +88,11 @@ impl HealthMeter {
         }
     }
 
+    /// Whether a step at `now` gives a sample.
+    pub fn is_due(&self, now: Time) -> bool {
+        !self.window_start.is_valid() || now >= self.next
+    }
+
     /// Notes a step at `now` that began `late_nanos` \[ns\] after it was due
     /// and skipped `missed` periods. Gives a sample when one is due.
     pub fn step(
@@ -118,7 +123,7 @@ impl HealthMeter {
             self.window_start = now;
             self.steps = 1;
         }
-        if now < self.next {
+        if !self.is_due(now) {
             return None;
         }
         self.next = now.plus_nanos(PERIOD_NANOS);

@@ -42,7 +42,7 @@ impl InputWatch {
     }
 
     /// Adds to `health` what `inputs` tells of each input: its topic and its
-    /// counts. Raises a fault for each message that was refused since the
+    /// counts. Raises a fault for each topic of which a message was refused since the
     /// last call. What the node itself has to say goes before.
     pub fn note(
         &mut self,

@@ -66,7 +66,10 @@ impl<P: Ports> Ticking for Runner<P> {
         self.unsent += self.ports.write(now, &self.output);
         let health = self.output.health();
         health.lost += self.unsent;
-        self.watch.note(|each| self.ports.counts(each), health);
+        // What was refused is told when the health is, and counted until then.
+        if self.meter.is_due(now) {
+            self.watch.note(|each| self.ports.counts(each), health);
+        }
         if let Some(sample) = self.meter.step(now, late_nanos, missed, health)
             && self.diagnostics.publish(now, &sample).is_err()
         {

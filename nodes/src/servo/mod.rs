@@ -264,7 +264,7 @@ impl ServoNode {
         fault: Fault,
         output: &mut ServoOutput,
     ) -> Option<JointSample> {
-        let sample = newest.message?;
+        let sample = newest.message.as_ref()?;
         let own = sample.in_order_of(&self.joints);
         if own.is_none() && newest.fresh {
             output.health.raise(fault, Level::WARN);

@@ -112,6 +112,23 @@ pub(crate) struct Gear {
 }
 
 impl Gear {
+    /// A brake that slips at that torque \[Nm\].
+    pub(crate) fn brake_of(torque: f64) -> Gear {
+        Gear {
+            friction: TrueFriction {
+                b_0: torque,
+                b_0t: 0.0,
+                b_1: 0.0,
+                b_2: 0.0,
+                b_3: 0.0,
+                linear_from: 1.0,
+                temperature: None,
+                wear: None,
+            },
+            temperature: None,
+        }
+    }
+
     /// Velocity \[rad/s\] after friction has acted for `dt` \[s\] on the motor of
     /// `inertia` \[kg m²\], which would have `velocity` without it; joint torque
     /// `load` \[Nm\], `temperature` \[degC\].

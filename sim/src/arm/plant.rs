@@ -161,10 +161,10 @@ impl Plant {
         let drive = torque + jacobian.tr_mul(&self.force);
         // Coriolis torques are quadratic in q̇: taken once with the velocity
         // at the beginning, once with the one in the middle.
-        let (inertia, bias) = self.arm.inertia_and_bias(&self.q, &self.qd);
-        let middle = self.qd + solve_symmetric(&inertia, &(drive - bias)) * half;
-        let (_, bias) = self.arm.inertia_and_bias(&self.q, &middle);
-        self.qd += solve_symmetric(&inertia, &(drive - bias)) * dt;
+        let (inertia, bias) = self.arm.inertia_and_biases(&self.q);
+        let middle = self.qd + solve_symmetric(&inertia, &(drive - bias(&self.qd))) * half;
+        let changed = solve_symmetric(&inertia, &(drive - bias(&middle))) * dt;
+        self.qd += changed;
 
         let mut heat = [0.0; JOINTS];
         for joint in 0..JOINTS {

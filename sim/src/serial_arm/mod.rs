@@ -29,7 +29,7 @@ use ferntast_model::{
     rigid_body::{Chain, ChainError, Vector3},
 };
 
-use crate::arm::{Encoder, LONGEST_ADVANCE, Noise, Thermal, TorqueSensor, sensors};
+use crate::arm::{Encoder, Gear, LONGEST_ADVANCE, Noise, Thermal, TorqueSensor, sensors};
 use plant::{Drive, Plant};
 use substep::substep;
 use world::Object;
@@ -82,6 +82,8 @@ pub struct SerialArm {
     motor_torque: Joints<f64>,
     friction_heat: f64,
     since_measurement: f64,
+    /// Friction of the gears while no brake is on.
+    gears: Joints<Option<Gear>>,
 }
 
 impl SerialArm {
@@ -137,6 +139,7 @@ impl SerialArm {
             motor_torque: Joints::filled(count, 0.0),
             friction_heat: 0.0,
             since_measurement: 0.0,
+            gears: plant.drives.map(|drive| drive.friction),
             plant,
         })
     }
@@ -249,6 +252,18 @@ impl SerialArm {
     /// From now on a hand holds the tip like that; `None` lets it go.
     pub fn hold(&mut self, grip: Option<Grip>) {
         self.plant.grip = grip;
+    }
+
+    /// Puts the brakes of all motors on, or takes them off. Each holds, and slips under, the
+    /// largest torque of its drive.
+    pub fn brake(&mut self, on: bool) {
+        for (joint, part) in self.joints.iter().enumerate() {
+            let friction = match on {
+                true => Some(Gear::brake_of(part.torque_limit)),
+                false => self.gears[joint],
+            };
+            self.plant.set_friction(joint, friction);
+        }
     }
 
     fn temperature(&self) -> Joints<f64> {

@@ -141,6 +141,14 @@ impl Plant {
         self.q.count()
     }
 
+    /// From now on that is the friction of a drive; none leaves nothing of the last step's.
+    pub(super) fn set_friction(&mut self, joint: usize, friction: Option<Gear>) {
+        self.drives[joint].friction = friction;
+        if friction.is_none() {
+            self.friction[joint] = 0.0;
+        }
+    }
+
     pub(super) fn tip(&self) -> Placement {
         self.chain.forward(&self.q)
     }

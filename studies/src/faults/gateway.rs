@@ -2,6 +2,7 @@
 
 use ferntast_bus::{Bus, CreateError, MemoryBus, Publisher};
 use ferntast_control::planted::Planted;
+use ferntast_model::MAX_JOINTS;
 use ferntast_msgs::{
     Message, Text, Time,
     sample::{
@@ -76,6 +77,15 @@ impl Gateway {
         }
     }
 
+    /// A number for each joint, zero behind the last one.
+    fn each(&self, number: impl Fn(usize) -> f64) -> [f64; MAX_JOINTS] {
+        let joints = self.joints.len();
+        std::array::from_fn(|joint| match joint < joints {
+            true => number(joint),
+            false => 0.0,
+        })
+    }
+
     /// What came in and cannot be acted on.
     pub fn refusable(&self) -> u64 {
         self.refusable
@@ -123,7 +133,7 @@ impl Gateway {
             action,
             ..RecorderCommandSample::new(stamp, RecorderAction::MARK, "")
         };
-        let joints = JointSample::empty(self.joints, stamp).with_position([number; 2]);
+        let joints = JointSample::empty(self.joints, stamp).with_position(self.each(|_| number));
         let pose = PoseSample {
             source: 0xbad,
             ..PoseSample::at(stamp, Frame::LEADER_BASE, [number, 0.0, 0.0])
@@ -161,8 +171,13 @@ impl Gateway {
         scenario: &Scenario,
     ) -> Result<(), CreateError> {
         let at = now.plus_nanos(-1);
-        let joints = JointSample::empty(self.joints, now).with_position([0.6, 1.2]);
-        let torque = JointSample::empty(self.joints, now).with_effort([15.0, -15.0]);
+        let joints = JointSample::empty(self.joints, now)
+            .with_position(self.each(|joint| 0.6 * (joint + 1) as f64));
+        let torque =
+            JointSample::empty(self.joints, now).with_effort(self.each(|joint| match joint % 2 {
+                0 => 15.0,
+                _ => -15.0,
+            }));
         let pose = PoseSample::at(now, Frame::FOLLOWER_BASE, tip);
         let hand = PoseSample {
             source: 0xbad,

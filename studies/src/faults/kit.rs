@@ -1,8 +1,9 @@
 //! What schedules are made from: the scenario, read once.
 
 use ferntast_control::planted::Planted;
-use ferntast_drivers::simulated;
+use ferntast_drivers::simulated::{self, serial::truth};
 use ferntast_emulation::{channel::LinkConfig, hand::Motion};
+use ferntast_model::ParameterError;
 use ferntast_nodes::{
     config::{ConfigError, HandSource, Loaded, UnknownLaw},
     graph::{Graph, NodeRow, UnknownNode},
@@ -10,7 +11,7 @@ use ferntast_nodes::{
 };
 use ferntast_sim::arm::ArmConfig;
 
-use super::{facts::Facts, fault::Node};
+use super::{arm::TrueArm, facts::Facts, fault::Node};
 
 /// How many times as fast as in its scenario a scripted hand works, so that a
 /// schedule of 2.5 s has reaching, pressing and sliding in it.
@@ -41,11 +42,13 @@ pub enum KitError {
         /// The scenario's file.
         path: String,
     },
-    /// Not an arm of two joints.
-    #[error("{path}: invariants are written for an arm of two joints")]
-    Joints {
+    /// An arm or a tuning that no servo takes.
+    #[error("{path}: {source}")]
+    Arm {
         /// The scenario's file.
         path: String,
+        /// What is wrong.
+        source: ParameterError,
     },
 }
 
@@ -56,7 +59,7 @@ pub struct Kit {
     /// Channels of the scenario.
     pub link: LinkConfig,
     /// The arm.
-    pub arm: ArmConfig,
+    pub arm: TrueArm,
     /// Limits.
     pub facts: Facts,
     /// Nodes of the control path.
@@ -83,16 +86,19 @@ impl Kit {
             }
         }
         let link = std::mem::take(&mut loaded.link);
-        let facts = Facts::new(&loaded).ok_or(KitError::Joints { path })?;
-        let mut arm: ArmConfig = loaded.arm.whole()?;
-        let usual = arm.truth.substep;
-        for substep in SUBSTEPS {
-            arm.truth.substep = usual.max(substep);
-            if arm.validate().is_ok() {
-                break;
+        let arm = match loaded.arm.model.serial() {
+            None => TrueArm::Planar(Box::new(quicker(loaded.arm.whole()?))),
+            Some(_) => TrueArm::Serial(Box::new(truth(&loaded.arm)?)),
+        };
+        let stiffest = match &arm {
+            TrueArm::Planar(_) => 0.0,
+            TrueArm::Serial(truth) => {
+                let each = truth.object.iter().map(|own| own.surface.stiffness);
+                each.fold(0.0, f64::max)
             }
-            arm.truth.substep = usual;
-        }
+        };
+        let facts =
+            Facts::new(&loaded, stiffest).map_err(|source| KitError::Arm { path, source })?;
         let mut rows = Vec::with_capacity(Node::ALL.len());
         for node in Node::ALL {
             rows.push(*graph.row(node.name())?);
@@ -128,6 +134,19 @@ impl Kit {
         }
         context
     }
+}
+
+/// The arm of two joints with steps of its mechanics that are as long as they may be.
+fn quicker(mut arm: ArmConfig) -> ArmConfig {
+    let usual = arm.truth.substep;
+    for substep in SUBSTEPS {
+        arm.truth.substep = usual.max(substep);
+        if arm.validate().is_ok() {
+            break;
+        }
+        arm.truth.substep = usual;
+    }
+    arm
 }
 
 /// Loads a scenario for the simulated arm.

@@ -12,6 +12,7 @@
 //! this module's. The same schedule gives the same bytes.
 
 mod arm;
+mod body;
 mod clock;
 mod digest;
 mod draw;
@@ -30,6 +31,9 @@ mod schedule;
 mod seen;
 mod shrink;
 mod summary;
+#[cfg(test)]
+mod tests;
+mod truth;
 mod wire;
 mod world;
 

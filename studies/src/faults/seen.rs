@@ -1,6 +1,7 @@
 //! What is seen in a step: what was published, and what is true.
 
 use ferntast_bus::{Bus, CreateError, Depth, Subscriber};
+use ferntast_model::Joints;
 use ferntast_msgs::{
     Message, Time,
     sample::{
@@ -9,9 +10,8 @@ use ferntast_msgs::{
     },
     topics::{self, Topic},
 };
-use ferntast_sim::arm::Truth;
 
-use super::wire::Arrivals;
+use super::{truth::Truth, wire::Arrivals};
 
 /// The client that takes the master over, as sources are told apart.
 pub const CLIENT: u64 = 0xa;
@@ -71,11 +71,11 @@ pub struct Seen {
     /// The master.
     pub leader: DeviceState,
     /// Motor torques \[Nm\].
-    pub torque: Option<[f64; 2]>,
+    pub torque: Option<Joints<f64>>,
     /// Setpoint \[rad\], \[rad/s\].
-    pub setpoint: Option<([f64; 2], [f64; 2])>,
+    pub setpoint: Option<(Joints<f64>, Joints<f64>)>,
     /// What the arm measures, positions \[rad\].
-    pub measured: Option<[f64; 2]>,
+    pub measured: Option<Joints<f64>>,
     /// When, by the clock of its host.
     pub measured_at: Time,
     /// The tip that the link commands \[m\].
@@ -91,7 +91,7 @@ pub struct Seen {
     /// What is true of the arm.
     pub truth: Truth,
     /// Torques of the motors, from their currents \[Nm\].
-    pub driven: [f64; 2],
+    pub driven: Joints<f64>,
     /// Frames to the arm.
     pub forth: Arrivals,
     /// Frames to the operator.
@@ -161,11 +161,13 @@ impl ArmTaps {
     /// Reads what was published at `now`.
     pub fn read(&mut self, now: Time, seen: &mut Seen) {
         state(&mut self.state, now, &mut seen.follower);
-        seen.torque = self.torque.take(now).map(|own| own.effort());
+        let count = seen.truth.position.count();
+        let of = |places| Joints::from_places(count, places);
+        seen.torque = self.torque.take(now).map(|own| of(own.effort));
         let setpoint = self.setpoint.take(now);
-        seen.setpoint = setpoint.map(|own| (own.position(), own.velocity()));
+        seen.setpoint = setpoint.map(|own| (of(own.position), of(own.velocity)));
         let measured = self.measured.take(now);
-        seen.measured = measured.map(|own| own.position());
+        seen.measured = measured.map(|own| of(own.position));
         seen.measured_at = measured.map_or(seen.measured_at, |own| own.stamp);
         seen.tip_command = self.tip_command.take(now).map(|own| own.position);
         link(&mut self.link, now, seen.tick, &mut seen.link_told[1]);
@@ -279,7 +281,7 @@ impl Seen {
             reflected: false,
             hand_force: None,
             truth,
-            driven: [0.0; 2],
+            driven: truth.position.map(|_| 0.0),
             forth: Arrivals::default(),
             back: Arrivals::default(),
             link_told: [Told::default(); 2],

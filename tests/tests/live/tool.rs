@@ -4,7 +4,10 @@ use std::{fs, path::Path};
 
 use ferntast_model::rigid_body::Vector3;
 use ferntast_msgs::{sample::WrenchSample, topics};
-use ferntast_tests::{Session, ask_python, messages, number, peer, python, root, run};
+use ferntast_tests::{
+    PATIENCE, Process, Session, arm_state, ask_python, await_enabled, messages, number, operated,
+    peer, python, recording, root, run, start,
+};
 use serde_json::{Value, json};
 
 const JOINTS: [&str; 7] = [
@@ -96,6 +99,67 @@ fn the_tool_of_a_hand_without_an_orientation_stays() {
     let turned = turned(&session.folder().join("run"));
     println!("{turned}");
     assert!(number(&turned, "turned_rad") < 0.005, "{turned}");
+}
+
+/// A stock rclpy client leads a panda in space, by where its hand is and how it is turned: to and fro,
+/// then down to the table, where it feels what it presses. How fast it comes to the tool: over the gateway,
+/// 10 ms of the link, and the servo.
+#[test]
+fn rclpy_leads_the_tool_in_space() {
+    let session = Session::new();
+    let mut process = start(&session, &["--arm", "panda", "--hand", "crtk"]);
+    await_enabled(&session, &mut process);
+    // The table is 30 mm below the tip at home.
+    let state = arm_state(&session);
+    let arguments = ["--deep", "0.033", "--arm-state", &state];
+    let mut operator = Process::spawn(session.peer("ros_tool.py", &arguments));
+    operator.await_stderr("ready", PATIENCE);
+    let sent = operated(&session, operator).success().json();
+    process.interrupt();
+    let summary = process.wait(PATIENCE).success().json();
+    println!("{sent:#} {summary:#}");
+
+    assert_eq!(sent["interrupted"], false);
+    let force = &sent["force"];
+    assert_eq!(number(force, "not_finite"), 0.0);
+    // 3 mm into 20 kN/m with a servo that gives way, scaled as the law has it.
+    assert!(number(force, "nonzero") > 50.0, "{sent:#} {summary:#}");
+    assert!(number(force, "peak_force_N") > 0.3, "{sent:#} {summary:#}");
+    let pressed = number(&summary, "contact.peak_normal_force_N");
+    assert!((5.0..60.0).contains(&pressed), "{summary:#}");
+
+    // 12 s of going to and fro, as far as the machine lets the arm follow.
+    let bag = recording(&session);
+    let asked = json!({
+        "bag": bag, "urdf": root().join("config/arms/panda.urdf"), "joints": JOINTS, "tip": "stylus_tip",
+        "from": 2.0, "to": 16.0, "live": true,
+    });
+    let turned = ask_python(&peer("tool_turns.py"), &asked);
+    println!("{turned}");
+    assert!(number(&turned, "followed_s") > 1.0, "{turned}");
+    assert!(number(&turned, "turned_rad") > 0.3, "{turned}");
+    assert!(number(&turned, "error_rad") < 0.05, "{turned}");
+    assert!(number(&turned, "delay_s") < 0.08, "{turned}");
+    // However often it was held up: hand and tool belong together as when the arm was armed.
+    assert!(number(&turned, "end_error_rad") < 0.02, "{turned}");
+    let spread = |positions: Vec<[f64; 3]>, axis: usize| {
+        let most = positions
+            .iter()
+            .map(|own| own[axis])
+            .fold(f64::MIN, f64::max);
+        most - positions
+            .iter()
+            .map(|own| own[axis])
+            .fold(f64::MAX, f64::min)
+    };
+    let tip: Vec<_> = messages(&bag, topics::FOLLOWER_MEASURED_CP)
+        .iter()
+        .map(|own| own.message.position)
+        .collect();
+    for (axis, way) in [0.06, 0.06, 0.03].into_iter().enumerate() {
+        let gone = spread(tip.clone(), axis);
+        assert!(gone > 0.9 * way, "axis {axis}: {gone} m");
+    }
 }
 
 const REST: &str = r#"{ label = "rest", kind = "hold", duration = 20.0 }"#;

@@ -40,6 +40,20 @@ fn a_session_holds_under_seeded_faults() {
     }
 }
 
+/// Arms of seven and six joints in space, by their own limits.
+#[test]
+fn arms_in_space_hold_under_seeded_faults() {
+    for (arm, seeds) in [("panda", "0..30"), ("ur5", "30..50"), ("xarm7", "50..70")] {
+        let session = Session::new();
+        let json = faults(&session, &[arm, "--seeds", seeds, "-o", "found"]);
+        let found = json["violations"].as_array();
+        assert!(found.is_some_and(Vec::is_empty), "{arm}: {json:#}");
+        assert!(number(&json, "schedules") >= 20.0, "{json:#}");
+        let count = |name: &str| json["faults"][name].as_u64().unwrap_or_default();
+        assert!(count("crash") > 2 && count("word") > 5, "{arm}: {json:#}");
+    }
+}
+
 const ONE: &str = r#"
 scenario = "rokviss"
 seed = 5

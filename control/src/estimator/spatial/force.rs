@@ -6,7 +6,7 @@
 
 use ferntast_model::Joints;
 use ferntast_model::rigid_body::Jacobian;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// As large as the arm, about: what makes the tip's mobility a number \[m\].
 pub(super) const LENGTH: f64 = 0.5;
@@ -35,6 +35,30 @@ fn lever(jacobian: &Jacobian, joint: usize) -> Vector3<f64> {
     )
 }
 
+/// Whether every eigenvalue of a symmetric `matrix` is surely above `least`: exactly then it
+/// has a Cholesky factor when so much is taken from its diagonal. A hundredth more is taken, so
+/// that rounding does not count. `false` says nothing. Some tenths of what eigenvalues cost.
+pub(super) fn exceeds<const N: usize>(matrix: &SMatrix<f64, N, N>, least: f64) -> bool {
+    let mut left = *matrix;
+    for row in 0..N {
+        left[(row, row)] -= 1.01 * least;
+    }
+    for column in 0..N {
+        let pivot = left[(column, column)];
+        // Not where it is no number, either.
+        if pivot.is_nan() || pivot <= 1e-9 * matrix[(column, column)] {
+            return false;
+        }
+        for row in column + 1..N {
+            let share = left[(row, column)] / pivot;
+            for other in column + 1..=row {
+                left[(row, other)] -= share * left[(other, column)];
+            }
+        }
+    }
+    true
+}
+
 /// Forces by torques in one posture.
 pub(super) struct TipForce<'a> {
     jacobian: &'a Jacobian,
@@ -55,13 +79,17 @@ impl<'a> TipForce<'a> {
             plain += square;
             weighted += square * *weight;
         }
-        let mut squares: [f64; 3] = plain.symmetric_eigenvalues().into();
-        squares.sort_by(|a, b| b.total_cmp(a));
-        let rank = weights.len().min(3);
-        let mobility = squares[rank - 1].max(0.0).sqrt() / LENGTH;
+        let least = (singularity * LENGTH).powi(2);
+        let moves = weights.len() >= 3 && exceeds(&plain, least) || {
+            let mut squares: [f64; 3] = plain.symmetric_eigenvalues().into();
+            squares.sort_by(|a, b| b.total_cmp(a));
+            let rank = weights.len().min(3);
+            // Not where it is no number, either.
+            squares[rank - 1].max(0.0).sqrt() / LENGTH >= singularity
+        };
         let damped = weighted + Matrix3::identity() * (DAMPING * DAMPING);
         let inverse = damped.try_inverse();
-        let singular = mobility.is_nan() || mobility < singularity || inverse.is_none();
+        let singular = !moves || inverse.is_none();
         Self {
             jacobian,
             weights,

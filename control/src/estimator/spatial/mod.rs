@@ -142,14 +142,16 @@ impl SpatialEstimator {
             );
         }
         let uncertainty = &self.parameters.uncertainty;
-        let zeros = self
-            .zeroing
-            .standard_error(self.intake.alike(), uncertainty.torque_zero);
-        let alone = |joint: usize, error: f64| solver.of_joint(joint, error);
-        let none = Vector3::zeros();
+        let (zeroing, alike) = (&self.zeroing, self.intake.alike());
+        let errors = || {
+            let zeros = zeroing.standard_error(alike, uncertainty.torque_zero);
+            let alone = |joint: usize, error: f64| solver.of_joint(joint, error);
+            let none = Vector3::zeros();
+            SensorErrors::new(&torque, &zeros, uncertainty.torque_gain, none, alone)
+        };
         let motion = Motion {
             tip: tip.translation,
-            errors: SensorErrors::new(&torque, &zeros, uncertainty.torque_gain, none, alone),
+            errors: &errors,
             velocity,
             present_velocity: force::velocity(&jacobian, &motion.present_velocity),
             delay: self.intake.delay(),

@@ -20,7 +20,7 @@ const FAINT_TIME: f64 = 0.2;
 const TURN_DELAYS: f64 = 5.0;
 
 /// How the tip moves, base frame.
-pub(super) struct Motion {
+pub(super) struct Motion<'a> {
     /// Newest position \[m\].
     pub(super) tip: Vector3<f64>,
     /// Filtered velocity \[m/s\], as late as the forces.
@@ -30,7 +30,7 @@ pub(super) struct Motion {
     /// How late forces and filtered velocity are \[s\].
     pub(super) delay: f64,
     /// What the torque sensors may have wrong of the force \[N\].
-    pub(super) errors: SensorErrors<Vector3<f64>>,
+    pub(super) errors: &'a dyn Fn() -> SensorErrors<Vector3<f64>>,
     /// A joint's friction, and so the force, is not determined.
     pub(super) undetermined: bool,
 }
@@ -96,7 +96,7 @@ impl Split {
         parameters: &EstimatorParameters,
         last: &SpatialEstimate,
         dt: f64,
-        motion: &Motion,
+        motion: &Motion<'_>,
         force: &Vector3<f64>,
         estimate: &mut SpatialEstimate,
     ) {
@@ -158,7 +158,7 @@ impl Split {
         estimate.near_rest =
             present < parameters.rest_speed || turned_lately || corner || motion.undetermined;
         if let Some(surface) = surface {
-            self.identify(parameters, dt, surface, &motion.errors, estimate);
+            self.identify(parameters, dt, surface, motion.errors, estimate);
         }
     }
 
@@ -169,7 +169,7 @@ impl Split {
         dt: f64,
         normal: &Vector3<f64>,
         other: bool,
-        motion: &Motion,
+        motion: &Motion<'_>,
     ) {
         let sliding = motion.velocity - normal * normal.dot(&motion.velocity);
         let speed = sliding.norm();
@@ -192,7 +192,7 @@ impl Split {
         parameters: &EstimatorParameters,
         dt: f64,
         surface: usize,
-        sensors: &SensorErrors<Vector3<f64>>,
+        sensors: &dyn Fn() -> SensorErrors<Vector3<f64>>,
         estimate: &mut SpatialEstimate,
     ) {
         let direction = self.direction;
@@ -205,7 +205,7 @@ impl Split {
             // A plane turned by δ about the axis across the motion: see the planar split.
             let turn = parameters.uncertainty.contour_turn;
             let of = |error: &Vector3<f64>| [error.dot(&normal), -error.dot(&direction)];
-            let errors = sensors.split(of, [turn * t, -turn * n]);
+            let errors = sensors().split(of, [turn * t, -turn * n]);
             let (memory, cut_off) = (parameters.friction_memory, parameters.cut_off);
             own.coefficient.step(n, t, &errors, dt, memory, cut_off);
         }

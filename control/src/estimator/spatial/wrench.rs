@@ -7,7 +7,7 @@
 //! leaves of the joints' torques is more than their sensors may have wrong. Then the one is led
 //! over to the other within some tenths of a second.
 
-use super::force::{LENGTH, TipForce};
+use super::force::{self, LENGTH, TipForce};
 use ferntast_model::Joints;
 use ferntast_model::rigid_body::Jacobian;
 use nalgebra::{Matrix6, SVector, Vector3, Vector6};
@@ -105,9 +105,9 @@ pub(super) fn whole(
         weighted += square * *weight;
         sum += lever * (*weight * *torque);
     }
-    let least = plain.symmetric_eigenvalues().min();
     // Not where it is no number, either.
-    let told = least >= singularity * singularity;
+    let told = force::exceeds(&plain, singularity * singularity)
+        || plain.symmetric_eigenvalues().min() >= singularity * singularity;
     let mut whole = weighted.cholesky().filter(|_| told)?.solve(&sum);
     whole.fixed_rows_mut::<3>(0).scale_mut(1.0 / LENGTH);
     whole.iter().all(|own| own.is_finite()).then_some(whole)

@@ -1,7 +1,11 @@
+use super::super::{CartesianModel, Command, CommandCheck, ServoConfig, Target};
 use super::*;
+use crate::orientation::Orientation;
 use ferntast_model::friction::FrictionParameters;
 use ferntast_model::joint::JointParameters;
-use ferntast_model::rigid_body::{ChainJoint, JointKind, LinkInertia, PositionLimits};
+use ferntast_model::rigid_body::{
+    ChainJoint, JointKind, LinkInertia, PositionLimits, rotation_vector,
+};
 use std::collections::BTreeMap;
 
 fn joint() -> JointParameters {
@@ -224,4 +228,43 @@ fn what_is_not_finite_or_of_other_joints_leads_nowhere() {
     let home = arm.home_tip().translation;
     let refused = tip.joints(&home, None, &[0.0; 3].into(), None);
     assert!(matches!(refused, Err(CommandRefusal::NoTipModel)));
+}
+
+/// How far the tool is turned in the end \[rad\] whose hand turned by 0.1 rad, and by 0.15 rad while
+/// the arm was paused; `arms` is what is done to go on.
+fn turned_over_a_pause(arms: fn(&mut CommandCheck)) -> f64 {
+    let arm = arm(7);
+    let config = ServoConfig {
+        workspace_lower: [-5.0; 2],
+        workspace_upper: [5.0; 2],
+        ..ServoConfig::default()
+    };
+    let limits = Joints::filled(arm.count(), [-2.5, 2.5]);
+    let mut check = CommandCheck::new(CartesianModel::Serial(&arm), limits, &config).unwrap();
+    let tip = arm.home_tip();
+    let (mut joints, mut stamp_ns) = (*arm.home(), 1_000_000_000);
+    let mut lead = |check: &mut CommandCheck, angle: f64| {
+        let hand = UnitQuaternion::from_scaled_axis(Vector3::x() * (0.5 + angle));
+        let hand = Orientation::given(hand.coords.into()).unwrap();
+        for _ in 0..300 {
+            stamp_ns += 1_000_000;
+            let target = Target::Pose(tip.translation.into(), hand);
+            let command = Command { stamp_ns, target };
+            joints = check.check(&command, stamp_ns, &joints).unwrap();
+        }
+        let turned = arm.chain().forward(&joints).rotation * tip.rotation.transpose();
+        rotation_vector(&turned).x
+    };
+    assert!(lead(&mut check, 0.0).abs() < 1e-5);
+    assert!((lead(&mut check, 0.1) - 0.1).abs() < 1e-5);
+    arms(&mut check);
+    lead(&mut check, 0.25)
+}
+
+#[test]
+fn a_tool_belongs_to_its_hand_over_a_pause_and_anew_where_the_arm_is_armed_anew() {
+    let resumed = turned_over_a_pause(CommandCheck::rearm);
+    assert!((resumed - 0.25).abs() < 1e-5, "{resumed} rad");
+    let armed = turned_over_a_pause(CommandCheck::begin);
+    assert!((armed - 0.1).abs() < 1e-5, "{armed} rad");
 }

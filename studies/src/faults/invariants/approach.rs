@@ -1,9 +1,9 @@
 //! The way to the first command is slow.
 
-use ferntast_model::{Vector2, kinematics::Elbow};
+use ferntast_model::{Joints, MAX_JOINTS};
 
 use super::{
-    super::{facts::Facts, log::Log, seen::Seen},
+    super::{body::Leading, facts::Facts, log::Log, seen::Seen},
     Invariant,
 };
 
@@ -24,30 +24,40 @@ const ROUNDING: f64 = 1.001;
 pub struct SlowApproach {
     approaching: bool,
     began: i64,
-    command: Option<[f64; 3]>,
+    leading: Option<Leading>,
+    /// Where the newest command since the beginning puts the joints \[rad\].
+    command: Option<Joints<f64>>,
     /// Where the joints were commanded to be \[rad\], and how fast \[rad/s\].
-    goal: Option<[f64; 2]>,
-    hand: [f64; 2],
-}
-
-/// Where the joints are with the tip there, bent as at `position` \[rad\].
-fn joints(facts: &Facts, tip: [f64; 3], position: [f64; 2]) -> Option<[f64; 2]> {
-    let elbow = Elbow::of(&Vector2::from(position));
-    let joints = facts
-        .kinematics
-        .inverse(&Vector2::new(tip[0], tip[1]), elbow);
-    joints.ok().map(Into::into)
+    goal: Option<Joints<f64>>,
+    hand: [f64; MAX_JOINTS],
+    /// The setpoint \[rad\].
+    position: Option<Joints<f64>>,
 }
 
 impl SlowApproach {
-    /// Notes how fast the hand goes, of which a step says that it is at `tip`.
-    fn follow(&mut self, facts: &Facts, tip: Option<[f64; 3]>, position: [f64; 2]) {
-        let goal = tip.and_then(|tip| joints(facts, tip, position));
+    /// Where the tip command of this step, if there is one, puts the joints \[rad\].
+    fn commanded(&mut self, seen: &Seen, facts: &Facts) -> Option<Joints<f64>> {
+        if self.leading.is_none() {
+            // Facts are of an arm that the servo takes.
+            self.leading = facts.body.leading().ok();
+        }
+        let leading = self.leading.as_mut()?;
+        if seen.begins() && leading.begin() {
+            self.goal = None;
+        }
+        let position = self.position.unwrap_or(seen.truth.motor_position);
+        leading.joints(seen.tick, seen.tip_command?, &position)
+    }
+
+    /// Notes how fast the hand goes, of which a step says that the joints belong there.
+    fn follow(&mut self, goal: Option<Joints<f64>>) {
         let before = self.goal;
         self.goal = goal.or(before);
-        let (now, before) = (self.goal.unwrap_or_default(), before.or(goal));
-        for (joint, hand) in self.hand.iter_mut().enumerate() {
-            let travel = before.map_or(0.0, |before| (now[joint] - before[joint]).abs() * 1e3);
+        let Some((now, before)) = self.goal.zip(before.or(goal)) else {
+            return;
+        };
+        for (joint, hand) in self.hand.iter_mut().enumerate().take(now.len()) {
+            let travel = (now[joint] - before[joint]).abs() * 1e3;
             *hand += (travel - *hand) / AVERAGED;
         }
     }
@@ -63,28 +73,34 @@ impl Invariant for SlowApproach {
             self.approaching = true;
             self.began = seen.tick;
             self.command = None;
-            self.hand = [0.0; 2];
+            self.hand = [0.0; MAX_JOINTS];
         }
         if !seen.follower.enabled() {
             self.approaching = false;
         }
+        let goal = self.commanded(seen, facts);
         // What is published in this step is acted on in the next.
         let before = self.command;
-        self.command = seen.tip_command.or(before);
+        if seen.tip_command.is_some() {
+            self.command = goal;
+        }
         let (position, velocity) = seen.setpoint?;
-        self.follow(facts, seen.tip_command, position);
+        self.position = Some(position);
+        self.follow(goal);
         if !self.approaching {
             return None;
         }
-        let command = joints(facts, before?, position)?;
-        if (0..2).all(|joint| (position[joint] - command[joint]).abs() < THERE) {
+        let command = before?;
+        let mut both = position.iter().zip(command.iter());
+        if both.all(|(at, to)| (at - to).abs() < THERE) {
             self.approaching = false;
         }
         // Who has not come to the hand in two seconds may hurry.
         let late = (seen.tick - self.began - PATIENCE).max(0) as f64 * 1e-3;
         let energies = |hand: f64| facts.approach_speed.hypot(hand);
         let allowed = self.hand.map(|hand| energies(hand) + HURRY * late);
-        let joint = (0..2).find(|&joint| velocity[joint].abs() > allowed[joint] * ROUNDING)?;
+        let mut joints = 0..velocity.len();
+        let joint = joints.find(|&joint| velocity[joint].abs() > allowed[joint] * ROUNDING)?;
         self.approaching.then(|| {
             format!(
                 "the setpoint of joint {} goes to the first command at {:.3} rad/s, \

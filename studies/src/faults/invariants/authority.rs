@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::{
-    super::{facts::Facts, fault::Word, log::Log, seen::Seen},
+    super::{facts::Facts, fault::Word, log::Log, seen::Seen, truth::length},
     Invariant,
 };
 
@@ -24,14 +24,14 @@ const ROUNDING: f64 = 1e-6;
 /// the clutch, that moves no further than the hand from one step to the next, and counts in its place.
 #[derive(Default)]
 pub struct Authority {
-    hands: VecDeque<[f64; 2]>,
+    hands: VecDeque<[f64; 3]>,
     /// The hand, and what was accepted, when both were told last.
     last: Option<[[f64; 3]; 2]>,
 }
 
-/// How far apart two places are in the plane \[m\].
+/// How far apart two places are \[m\].
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    length([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
 }
 
 impl Authority {
@@ -82,18 +82,17 @@ impl Invariant for Authority {
             "position_force" if !log.law_switched => PLAIN,
             _ => SHAPED,
         };
-        let far = |hand: &[f64; 2]| (hand[0] - command[0]).hypot(hand[1] - command[1]);
         // From the newest: mostly it is there within a few steps.
         let mut nearest = f64::INFINITY;
         for hand in self.hands.iter().rev() {
-            nearest = nearest.min(far(hand));
+            nearest = nearest.min(apart(*hand, command));
             if nearest <= allowed {
                 return None;
             }
         }
         Some(format!(
-            "the tip is commanded to ({:.4}, {:.4}) m, {nearest:.4} m from where the hand was",
-            command[0], command[1]
+            "the tip is commanded to ({:.4}, {:.4}, {:.4}) m, {nearest:.4} m from where the hand was",
+            command[0], command[1], command[2]
         ))
     }
 }

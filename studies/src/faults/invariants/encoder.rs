@@ -1,5 +1,6 @@
 //! An arm that is measured where it cannot be is not driven.
 
+use ferntast_model::Joints;
 use ferntast_msgs::Time;
 
 use super::{
@@ -17,7 +18,7 @@ const IN_TIME: i64 = 3;
 /// ago its host's clock says: one that jumps in the same moment hides as much of the way.
 #[derive(Default)]
 pub struct EncoderWatched {
-    before: Option<([f64; 2], i64, Time)>,
+    before: Option<(Joints<f64>, i64, Time)>,
     jumped: Option<i64>,
 }
 
@@ -35,7 +36,7 @@ impl EncoderWatched {
         };
         let by_clock = seen.measured_at.seconds_since(at);
         let passed = by_clock.max((seen.tick - tick) as f64 * 1e-3);
-        (0..2).any(|joint| {
+        (0..measured.len()).any(|joint| {
             (measured[joint] - before[joint]).abs() > facts.overspeed[joint] * passed + BEYOND
         })
     }

@@ -57,11 +57,11 @@ impl Invariant for Energy {
             return None;
         }
         let (before, now) = (before?, seen.hand?);
-        let at_hand: f64 = (0..2)
+        let at_hand: f64 = (0..3)
             .map(|axis| force[axis] * (now[axis] - before[axis]))
             .sum();
         let truth = &seen.truth;
-        let power: f64 = (0..2)
+        let power: f64 = (0..3)
             .map(|axis| -truth.force[axis] * truth.tip_velocity[axis])
             .sum();
         self.left += at_hand + facts.mapping.power_scale() * power * 1e-3;

@@ -36,9 +36,8 @@ impl Invariant for HoldInTime {
         (since > allowed).then(|| {
             let any = seen.tick - seen.forth.genuine.unwrap_or(0);
             format!(
-                "the setpoint moves at {:.4} and {:.4} rad/s {since} ms after the last valid frame \
-                 ({any} ms after the last one of the other end; {allowed} ms are allowed)",
-                velocity[0], velocity[1]
+                "the setpoint moves at {velocity:.4?} rad/s {since} ms after the last valid frame \
+                 ({any} ms after the last one of the other end; {allowed} ms are allowed)"
             )
         })
     }

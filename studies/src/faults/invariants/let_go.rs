@@ -1,5 +1,7 @@
 //! Who falls silent lets go.
 
+use ferntast_model::Joints;
+
 use super::{
     super::{facts::Facts, log::Log, seen::Seen},
     Invariant,
@@ -10,8 +12,6 @@ use super::{
 const HAND: i64 = 30 + 12;
 /// The drives are off after so long without a torque \[steps\].
 const DRIVES: i64 = 13;
-/// Noise of the motors' currents, as torque \[Nm\].
-const NOISE: f64 = 3.0;
 /// An arm that holds stays within this of where it was \[rad\], springs of gears and
 /// servo included.
 const STAYS: f64 = 0.03;
@@ -63,16 +63,17 @@ impl Invariant for DrivesOff {
         "drives_off"
     }
 
-    fn step(&mut self, seen: &Seen, _: &Log, _: &Facts) -> Option<String> {
+    fn step(&mut self, seen: &Seen, _: &Log, facts: &Facts) -> Option<String> {
         if seen.torque.is_some() {
             self.spoke = seen.tick;
         }
         let silent = seen.tick - self.spoke;
-        let driven = seen.driven.iter().any(|torque| torque.abs() > NOISE);
+        let mut both = seen.driven.iter().zip(facts.noise.iter());
+        let driven = both.any(|(torque, noise)| torque.abs() > *noise);
         (seen.arm_stepped && silent > DRIVES && driven).then(|| {
             format!(
-                "motors have {:.1} and {:.1} Nm {silent} ms after the servo fell silent",
-                seen.driven[0], seen.driven[1]
+                "motors have {:.1?} Nm {silent} ms after the servo fell silent",
+                seen.driven
             )
         })
     }
@@ -81,7 +82,7 @@ impl Invariant for DrivesOff {
 /// An arm that is paused stays where it was paused.
 #[derive(Default)]
 pub struct StaysPut {
-    at: Option<([f64; 2], i64)>,
+    at: Option<(Joints<f64>, i64)>,
 }
 
 impl Invariant for StaysPut {
@@ -96,8 +97,10 @@ impl Invariant for StaysPut {
             return None;
         }
         let (began, since) = *self.at.get_or_insert((position, seen.tick));
-        let far = |joint: usize| (position[joint] - began[joint]).abs();
-        let farthest = far(0).max(far(1));
+        let both = position.iter().zip(began.iter());
+        let farthest = both
+            .map(|(now, began)| (now - began).abs())
+            .fold(0.0, f64::max);
         (farthest > STAYS && seen.tick - since > RESTS).then(|| {
             format!(
                 "a joint is {farthest:.3} rad from where the arm was paused {} ms ago",

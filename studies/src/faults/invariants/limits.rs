@@ -2,8 +2,10 @@
 
 use std::collections::VecDeque;
 
+use ferntast_model::MAX_JOINTS;
+
 use super::{
-    super::{facts::Facts, log::Log, seen::Seen},
+    super::{body::Speeds, facts::Facts, log::Log, seen::Seen, truth::length},
     Invariant,
 };
 
@@ -12,22 +14,15 @@ const ROUNDING: f64 = 1.0 + 1e-6;
 /// How long the servo may take to see that a joint is too fast, and the joint to
 /// lose speed then \[steps\].
 const REACTION: i64 = 10;
-/// What presses at most \[N\]: the limit of what presses (20 Nm) and the friction that is
-/// fed forward (20 Nm) at the shorter lever of 0.35 m.
-const PRESSING: f64 = 40.0 / 0.35;
-/// Force on the tip that is always allowed \[N\]: that, and two fifths more for what
-/// impact there is at the speed of a contact that is sought.
-const CONTACT: f64 = 1.4 * PRESSING;
-/// A motor that stops at a surface adds its speed times this \[N s/rad\]: the wave
-/// impedance √(J k) at the lever, of J = 0.5 kg m² behind gear (4900 Nm/rad) and surface
-/// (4·10⁴ N/m at 0.35 m) in series.
-const IMPACT: f64 = 100.0;
+/// Force on the tip that is always allowed \[-\]: what presses at most, and two fifths more for
+/// what impact there is at the speed of a contact that is sought.
+const CONTACT: f64 = 1.4;
 /// While a measurement is wrong there is no telling a joint whose sensor is stuck from
 /// one that stands: it comes to a surface as fast as it is driven, which is bounded by
 /// itself. What it presses with stays. A tenth for what the formula leaves out.
 const BLIND_MARGIN: f64 = 1.1;
-/// And where a joint is not where the servo believes, its lever is another \[N\].
-const BLIND_LEAST: f64 = 220.0;
+/// And where a joint is not where the servo believes, its lever is another \[-\].
+const BLIND_LEAST: f64 = 1.925;
 /// For so long after it was wrong \[steps\].
 const BLIND: i64 = 500;
 /// How long an impact lasts \[steps\].
@@ -42,7 +37,7 @@ impl Invariant for ArmLimits {
     }
 
     fn step(&mut self, seen: &Seen, _: &Log, facts: &Facts) -> Option<String> {
-        for joint in 0..2 {
+        for joint in 0..facts.torque.len() {
             let number = joint + 1;
             if let Some(torque) = seen.torque.map(|own| own[joint])
                 && exceeds(torque.abs(), facts.torque[joint] * ROUNDING)
@@ -73,7 +68,7 @@ impl Invariant for ArmLimits {
             }
         }
         if let Some((position, _)) = seen.setpoint.filter(|_| seen.follower.enabled()) {
-            let tip = facts.tip(position);
+            let tip = facts.body.tip(&position);
             let [lower, upper] = facts.workspace;
             // The way between two commands leaves the box by the arc of the joints.
             let margin = 0.02;
@@ -93,9 +88,9 @@ impl Invariant for ArmLimits {
 /// The tip never presses harder than this, and no joint stays too fast.
 #[derive(Default)]
 pub struct ContactForce {
-    fast: [i64; 2],
-    /// Speeds of the motors, both together, of the last steps \[rad/s\].
-    speeds: VecDeque<f64>,
+    fast: [i64; MAX_JOINTS],
+    /// Of the last steps.
+    speeds: VecDeque<Speeds>,
 }
 
 impl Invariant for ContactForce {
@@ -104,26 +99,36 @@ impl Invariant for ContactForce {
     }
 
     fn step(&mut self, seen: &Seen, log: &Log, facts: &Facts) -> Option<String> {
-        let force = seen.truth.force[0].hypot(seen.truth.force[1]);
+        let truth = &seen.truth;
+        let force = truth.pressing();
         let blind = seen.tick.saturating_sub(BLIND) < log.sensor_wrong;
         if self.speeds.len() == IMPACT_LASTS {
             self.speeds.pop_front();
         }
-        let speed = seen.truth.motor_velocity.iter().map(|own| own.abs()).sum();
-        self.speeds.push_back(speed);
-        let fastest = self.speeds.iter().copied().fold(0.0, f64::max);
-        let hit = PRESSING + IMPACT * fastest;
+        let setpoint = seen.setpoint.map(|(_, velocity)| fastest(&velocity));
+        self.speeds.push_back(Speeds {
+            motors: truth.motor_velocity.iter().map(|own| own.abs()).sum(),
+            tip: length(truth.tip_velocity),
+            setpoint: setpoint.unwrap_or(0.0),
+        });
+        let most = |part: fn(&Speeds) -> f64| self.speeds.iter().map(part).fold(0.0, f64::max);
+        let speeds = Speeds {
+            motors: most(|own| own.motors),
+            tip: most(|own| own.tip),
+            setpoint: most(|own| own.setpoint),
+        };
+        let [pressing, hit] = facts.body.contact(&truth.position, truth.force, &speeds);
         let allowed = match blind {
-            false => CONTACT.max(hit),
-            true => BLIND_LEAST.max(BLIND_MARGIN * hit),
+            false => (CONTACT * pressing).max(hit),
+            true => (BLIND_LEAST * pressing).max(BLIND_MARGIN * hit),
         };
         if exceeds(force, allowed) {
             return Some(format!(
                 "{force:.1} N on the tip, {allowed:.1} N are allowed"
             ));
         }
-        for joint in 0..2 {
-            let speed = seen.truth.motor_velocity[joint];
+        for joint in 0..truth.motor_velocity.len() {
+            let speed = truth.motor_velocity[joint];
             // Of a joint whose sensor is stuck nobody knows its speed: friction bounds it.
             let margin = if blind { BLIND_MARGIN } else { 1.0 };
             let too_fast = exceeds(speed.abs(), margin * facts.overspeed[joint]);
@@ -178,6 +183,11 @@ impl Invariant for HandLimits {
             format!("the force on the hand changed by {change:.2} N in a step, {allowed:.2} N are allowed")
         })
     }
+}
+
+/// The largest of these speeds.
+fn fastest(velocity: &[f64]) -> f64 {
+    velocity.iter().fold(0.0, |most, own| own.abs().max(most))
 }
 
 /// Whether `value` is beyond `limit`, or no number.

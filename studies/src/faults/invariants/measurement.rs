@@ -32,11 +32,7 @@ impl Invariant for MeasurementWatched {
         let running = seen.tick - seen.arm_side_stalled > 6;
         let torque = seen.torque?;
         let driven = torque.iter().any(|torque| *torque != 0.0);
-        (silent > facts.measurement_watchdog + BEYOND && running && driven).then(|| {
-            format!(
-                "{:.2} and {:.2} Nm {silent} ms after the last valid measurement",
-                torque[0], torque[1]
-            )
-        })
+        (silent > facts.measurement_watchdog + BEYOND && running && driven)
+            .then(|| format!("{torque:.2?} Nm {silent} ms after the last valid measurement"))
     }
 }

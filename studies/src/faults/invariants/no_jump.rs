@@ -1,5 +1,7 @@
 //! Motion and torque begin where they are.
 
+use ferntast_model::Joints;
+
 use super::{
     super::{facts::Facts, log::Log, seen::Seen},
     Invariant,
@@ -8,9 +10,6 @@ use super::{
 /// Distance of the setpoint from the measured position at the start \[rad\]: what
 /// the arm moves in the step between.
 const POSITION: f64 = 2e-3;
-/// Largest change of a motor torque in a step after the start \[Nm\]: the spring that
-/// held a paused arm against a surface is let go of at once, which is up to 7 Nm.
-const TORQUE: f64 = 8.0;
 /// For so long after the start torques are watched \[steps\].
 const WATCHED: i64 = 30;
 
@@ -18,19 +17,19 @@ const WATCHED: i64 = 30;
 /// at the torque before.
 #[derive(Default)]
 pub struct NoJump {
-    measured: Option<[f64; 2]>,
-    torque: Option<[f64; 2]>,
+    measured: Option<Joints<f64>>,
+    torque: Option<Joints<f64>>,
     began: Option<i64>,
 }
 
 impl NoJump {
-    fn judge(&mut self, seen: &Seen, log: &Log) -> Option<String> {
+    fn judge(&mut self, seen: &Seen, log: &Log, facts: &Facts) -> Option<String> {
         if seen.begins() {
             self.began = Some(seen.tick);
             let (setpoint, _) = seen.setpoint?;
             // A sensor that is wrong moves where it begins.
             if let Some(measured) = self.measured.filter(|_| seen.tick > log.sensor_wrong) {
-                for joint in 0..2 {
+                for joint in 0..setpoint.len() {
                     let far = (setpoint[joint] - measured[joint]).abs();
                     if far > POSITION {
                         return Some(format!(
@@ -46,9 +45,9 @@ impl NoJump {
             return None;
         }
         let (before, now) = (self.torque?, seen.torque?);
-        for joint in 0..2 {
+        for joint in 0..now.len() {
             let step = (now[joint] - before[joint]).abs();
-            if step > TORQUE {
+            if step > facts.jump[joint] {
                 return Some(format!(
                     "the torque of joint {} changed by {step:.2} Nm in a step, {} ms after enabling",
                     joint + 1,
@@ -65,8 +64,8 @@ impl Invariant for NoJump {
         "no_jump"
     }
 
-    fn step(&mut self, seen: &Seen, log: &Log, _: &Facts) -> Option<String> {
-        let told = self.judge(seen, log);
+    fn step(&mut self, seen: &Seen, log: &Log, facts: &Facts) -> Option<String> {
+        let told = self.judge(seen, log, facts);
         self.measured = seen.measured.or(self.measured);
         self.torque = seen.torque;
         told

@@ -1,14 +1,12 @@
 //! What presses is limited.
 
+use ferntast_model::{Joints, MAX_JOINTS};
+
 use super::{
-    super::{facts::Facts, log::Log, seen::Seen},
+    super::{body::STANDS, facts::Facts, log::Log, seen::Seen},
     Invariant,
 };
 
-/// What presses may be 20 Nm, and the friction that is fed forward as much \[Nm\].
-const PRESSING: f64 = 40.0;
-/// A joint stands, and so does its setpoint, at less than this \[rad/s\].
-const STANDS: f64 = 0.02;
 /// For so long: then what damps and what accelerates is over \[steps\].
 const LASTING: u32 = 30;
 
@@ -17,9 +15,11 @@ const LASTING: u32 = 30;
 #[derive(Default)]
 pub struct PressingLimited {
     /// For how long each joint has stood \[steps\].
-    stood: [u32; 2],
+    stood: [u32; MAX_JOINTS],
     /// Sum of its torques meanwhile \[Nm\].
-    sum: [f64; 2],
+    sum: [f64; MAX_JOINTS],
+    /// Where the servo last measured the joints \[rad\].
+    measured: Option<Joints<f64>>,
 }
 
 impl Invariant for PressingLimited {
@@ -27,9 +27,13 @@ impl Invariant for PressingLimited {
         "pressing_limited"
     }
 
-    fn step(&mut self, seen: &Seen, _: &Log, _: &Facts) -> Option<String> {
+    fn step(&mut self, seen: &Seen, _: &Log, facts: &Facts) -> Option<String> {
+        // What is measured in this step is acted on in the next.
+        let measured = self.measured;
+        self.measured = seen.measured.or(measured);
         let (torque, (_, setpoint)) = seen.torque.zip(seen.setpoint)?;
-        for joint in 0..2 {
+        let weight = facts.body.weight(&measured?);
+        for joint in 0..torque.len() {
             let speed = setpoint[joint]
                 .abs()
                 .max(seen.truth.motor_velocity[joint].abs());
@@ -38,15 +42,16 @@ impl Invariant for PressingLimited {
                 continue;
             }
             self.stood[joint] += 1;
-            self.sum[joint] += torque[joint];
+            self.sum[joint] += torque[joint] - weight[joint];
             if self.stood[joint] < LASTING {
                 continue;
             }
             let mean = self.sum[joint] / f64::from(self.stood[joint]);
             (self.stood[joint], self.sum[joint]) = (0, 0.0);
-            if mean.abs() > PRESSING {
+            let most = facts.body.pressing(joint);
+            if mean.abs() > most {
                 return Some(format!(
-                    "joint {} presses with {mean:.1} Nm, {PRESSING} Nm are allowed",
+                    "joint {} presses with {mean:.1} Nm, {most:.1} Nm are allowed",
                     joint + 1
                 ));
             }

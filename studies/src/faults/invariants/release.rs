@@ -37,7 +37,7 @@ impl Invariant for Release {
         }
         self.misled |= seen.tick <= log.sensor_wrong;
         let since = *self.silent.get_or_insert(seen.tick);
-        let force = seen.truth.force[0].hypot(seen.truth.force[1]);
+        let force = seen.truth.pressing();
         let length = seen.tick - since;
         // What is said goes there by the way forth, which is no longer than this.
         let allowed = RELEASE + facts.buffer + log.channel_delay + 100;

@@ -189,7 +189,7 @@ impl World<'_> {
                     let now = self.host(side).clock.now(tick);
                     let scenario = &self.session.loaded.scenario;
                     let offset = self.kit.facts.mapping.workspace_offset;
-                    let tip = [offset[0] - 0.04, offset[1] + 0.03, 0.0];
+                    let tip = [offset[0] - 0.04, offset[1] + 0.03, offset[2]];
                     if let Some(gateways) = &mut self.gateways {
                         gateways[side as usize].stranger(now, tip, scenario)?;
                     }

@@ -18,10 +18,9 @@ use ferntast_nodes::{
     graph::Build,
     process::{NodeError, SessionContext},
 };
-use ferntast_sim::arm::SimulatedArmError;
 
 use super::{
-    arm::Mechanics,
+    arm::{Mechanics, MechanicsError},
     digest::{Digest, DigestError},
     fault::{Device, Fault, Node, Side, Word},
     gateway::Gateway,
@@ -65,7 +64,7 @@ pub enum WorldError {
     Channel(#[from] ParameterError),
     /// The arm.
     #[error(transparent)]
-    Arm(#[from] SimulatedArmError),
+    Arm(#[from] MechanicsError),
     /// The recording cannot be written.
     #[error("recording: {0}")]
     Recording(String),
@@ -138,7 +137,7 @@ impl<'a> World<'a> {
         let mut forth = WireWay::new(kit.link.up.clone(), schedule.seed)?;
         let mut back = WireWay::new(kit.link.down.clone(), schedule.seed ^ 0xb)?;
         let mut keys = Keys::new(session, schedule.seed, 1);
-        let mechanics = Mechanics::new(&kit.arm, scenario.seed)?;
+        let mechanics = Mechanics::new(&kit.arm, session)?;
         let joints = session.joints();
 
         let has = |wanted: &dyn Fn(&Fault) -> bool| {
@@ -187,7 +186,7 @@ impl<'a> World<'a> {
             let mut open = |sends| Ok(open(&mut forth, &mut back, &mut keys, sends));
             match (node, node.side()) {
                 (Node::Arm, _) => {
-                    let make = Box::new(move |build: Build| mechanics.driver(build));
+                    let make = Box::new(move |build: Build| mechanics.driver(build, &kit.arm));
                     arm.add(row, Some(make), &mut open)?;
                 }
                 (_, Side::Operator) => operator.add(row, None, &mut open)?,
