@@ -1,6 +1,7 @@
 //! `ferntast challenge`.
 
 use std::{
+    collections::BTreeMap,
     path::{Path, PathBuf},
     process::ExitCode,
     sync::atomic::{AtomicBool, Ordering},
@@ -9,7 +10,9 @@ use std::{
 use clap::Subcommand;
 use ferntast_nodes::process::stop_on_signals;
 use ferntast_studies::{
-    challenge::{self, Answered, Asked, BlindAnswer, BlindTest, Count, Coverage, LawPlan, Plan},
+    challenge::{
+        self, Answered, Asked, BlindAnswer, BlindTest, Count, Coverage, LawPlan, Plan, RealLikeRow,
+    },
     shard::Placed,
 };
 use indicatif::ProgressBar;
@@ -90,6 +93,19 @@ enum Action {
         #[arg(long)]
         two: Option<usize>,
 
+        /// Recordings of each kind that is like real ones: no torque sensor but a load by a
+        /// model that is off (uncertain_load), a few moves over and over (little_excitation),
+        /// one_session, a drive that ends within the motion or not (limited_drive),
+        /// coarse_encoder, 100 to 1000 Hz (other_rate), friction that no catalogue has
+        /// (unnamed_friction); half of each hide an effect
+        /// [default: 10; 0 with --hide, --contact, --intervals-only].
+        #[arg(long, value_name = "COUNT")]
+        real_like: Option<usize>,
+
+        /// Only this kind of those (can be given several times).
+        #[arg(long, value_name = "KIND")]
+        kind: Vec<String>,
+
         /// Diagnose nothing: fit the true models, and print how often their 95 % intervals
         /// hold the true values, parameter by parameter.
         #[arg(long)]
@@ -158,6 +174,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             hide,
             nothing,
             two,
+            real_like,
+            kind,
             intervals_only,
             seed,
             parts,
@@ -170,6 +188,11 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
                 strengths,
                 nothing: nothing.unwrap_or(of_all(400)),
                 two: two.unwrap_or(if intervals_only { 0 } else { of_all(40) }),
+                real_like: match (contact, intervals_only) {
+                    (false, false) => real_like.unwrap_or(of_all(10)),
+                    _ => 0,
+                },
+                kinds: kind,
                 only: hide,
                 intervals_only,
             };
@@ -336,7 +359,7 @@ pub fn tell_blind(
 
 fn print(test: &BlindTest) {
     let strengths: Vec<&String> = test.right_first.keys().rev().collect();
-    let row = |name: &str, counts: &std::collections::BTreeMap<String, Count>| {
+    let row = |name: &str, counts: &BTreeMap<String, Count>| {
         print!("{name:<34}");
         for strength in &strengths {
             let count = counts.get(*strength).copied().unwrap_or_default();
@@ -376,6 +399,7 @@ fn print(test: &BlindTest) {
         "two hidden at once, by adding what is named: both {}/{}, at least one {}/{}",
         both.found, both.tried, one.found, one.tried
     );
+    print_real_like(&test.real_like);
     print_coverage(&test.coverage);
     println!();
     for (effect, counts) in &test.by_effect {
@@ -416,6 +440,44 @@ fn print(test: &BlindTest) {
             (own.over_true - 1.0) * 100.0
         );
     }
+}
+
+fn print_real_like(rows: &BTreeMap<String, RealLikeRow>) {
+    if rows.is_empty() {
+        return;
+    }
+    println!(
+        "\n{:<28} {:>10} {:>12} {:>12} {:>18}",
+        "like real ones", "recordings", "right first", "in family", "false names"
+    );
+    for (kind, row) in rows {
+        let of = |count: Count| format!("{}/{}", count.found, count.tried);
+        println!(
+            "{kind:<28} {:>10} {:>12} {:>12} {:>9} {:>6.1} %",
+            row.recordings,
+            of(row.right_first),
+            of(row.in_family),
+            of(row.false_names),
+            row.false_names.share() * 100.0
+        );
+        for miss in &row.misses {
+            let there = match miss.there.as_slice() {
+                [] => "nothing".to_owned(),
+                there => there.join(", "),
+            };
+            let alike = if miss.in_family {
+                " (told as indistinguishable)"
+            } else {
+                ""
+            };
+            println!(
+                "  seed {:<9} {} named where there is {there}{alike}",
+                miss.seed,
+                miss.named.as_deref().unwrap_or("-")
+            );
+        }
+    }
+    println!();
 }
 
 fn print_coverage(coverage: &Coverage) {

@@ -22,6 +22,14 @@ pub enum BenchError {
         /// What there is, separated by commas.
         known: String,
     },
+    /// No kind of recording like a real one has this id.
+    #[error("there is no kind of recording \"{id}\": choose one of {known}")]
+    UnknownRealLike {
+        /// What was asked for.
+        id: String,
+        /// What there is, separated by commas.
+        known: String,
+    },
     /// A value is out of bounds.
     #[error("{key} = {value} is out of bounds: choose {low} to {high}")]
     OutOfBounds {

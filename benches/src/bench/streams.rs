@@ -12,6 +12,8 @@ pub(crate) enum Stream {
     Motion = 4,
     Session = 5,
     Noise = 6,
+    /// How a recording is like a real one.
+    RealLike = 7,
 }
 
 /// The random numbers of an element of a stream.

@@ -31,6 +31,7 @@ mod law;
 mod motion;
 mod parameters;
 mod plant;
+mod real_like;
 mod recording;
 mod residual;
 mod sensors;
@@ -44,11 +45,13 @@ pub use crate::bench::{BenchError, Hideable, LOG_PERIOD};
 pub use config::BenchConfig;
 pub use effect::HiddenEffect;
 pub use motion::Motion;
+pub use real_like::{RealLike, RealLikeBench};
 pub use recording::{BenchRecording, BenchSession, TrueParameter, TrueSignals};
 pub use residual::Residual;
 
 use effect::Effect;
 use parameters::JointParameters;
+use real_like::Surroundings;
 
 use crate::bench::{Conditions, SECONDS_A_DAY, Stream, random};
 
@@ -72,6 +75,7 @@ pub struct Bench {
     plain: JointParameters,
     effects: Vec<Box<dyn Effect>>,
     believed: Believed,
+    surroundings: Surroundings,
 }
 
 impl Bench {
@@ -99,6 +103,7 @@ impl Bench {
             plain: joint.as_equation_4(&drawn),
             joint,
             effects,
+            surroundings: Surroundings::default(),
         })
     }
 

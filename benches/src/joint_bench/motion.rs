@@ -73,6 +73,22 @@ impl Motion {
     }
 }
 
+/// A joint at its work: the same few moves over and over, at one speed, with rests.
+pub(super) fn routine(random: &mut Random) -> Programme {
+    let mut programme = Programme::default();
+    programme.rest(0.3);
+    let speed = DEGREE * (8.0 + 10.0 * random.uniform());
+    let places: [f64; 4] = std::array::from_fn(|n| 0.14 * n as f64 - 0.1 + 0.06 * random.uniform());
+    let rest = 0.6 + 0.6 * random.uniform();
+    for _ in 0..12 {
+        for place in [places[0], places[2], places[1], places[3]] {
+            programme.to(place, speed, 2.0);
+            programme.rest(rest);
+        }
+    }
+    programme
+}
+
 const DEGREE: f64 = PI / 180.0;
 
 fn standard(programme: &mut Programme, random: &mut Random) {

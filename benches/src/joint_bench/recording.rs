@@ -43,12 +43,14 @@ impl TrueSignals {
     }
 }
 
-/// One session's log: all channels one after another every
+/// One session's log: all channels one after another every `period`, by default
 /// [`LOG_PERIOD`](super::LOG_PERIOD), all of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BenchSession {
     /// Since the first session's start \[s\].
     pub start: f64,
+    /// Between two log entries \[s\].
+    pub period: f64,
     /// What it ran; none only for an empty session.
     pub motion: Option<Motion>,
     /// Since this session's start \[s\].

@@ -7,7 +7,7 @@ use super::effect::Reading;
 /// Standard deviation of each reading's noise, and a position of 20 bits a
 /// turn. Assumed: the paper gives no noise.
 const POSITION: f64 = 5e-6;
-const POSITION_QUANTUM: f64 = std::f64::consts::TAU / (1u64 << 20) as f64;
+pub(super) const POSITION_QUANTUM: f64 = std::f64::consts::TAU / (1u64 << 20) as f64;
 const MOTOR_TORQUE: f64 = 0.35;
 /// Noise of the current that outlasts a sample, and what is left of it after one.
 const MOTOR_TORQUE_SLOW: f64 = 0.18;
@@ -20,14 +20,17 @@ const TEMPERATURE_QUANTUM: f64 = 1.0 / 16.0;
 #[derive(Clone, Debug)]
 pub(super) struct Sensors {
     noise: f64,
+    /// What a position is a multiple of \[rad\].
+    position_quantum: f64,
     slow: f64,
     random: Random,
 }
 
 impl Sensors {
-    pub(super) fn new(noise: f64, random: Random) -> Self {
+    pub(super) fn new(noise: f64, position_quantum: f64, random: Random) -> Self {
         Sensors {
             noise,
+            position_quantum,
             slow: 0.0,
             random,
         }
@@ -50,7 +53,7 @@ impl Sensors {
         let quantised = |value: f64, quantum: f64| (value / quantum).round() * quantum;
         (
             Reading {
-                position: quantised(logged.position, POSITION_QUANTUM),
+                position: quantised(logged.position, self.position_quantum),
                 ..logged
             },
             quantised(temperature, TEMPERATURE_QUANTUM),
@@ -64,7 +67,7 @@ mod tests {
 
     #[test]
     fn noise_has_the_documented_size() {
-        let mut sensors = Sensors::new(1.0, Random::new(4));
+        let mut sensors = Sensors::new(1.0, POSITION_QUANTUM, Random::new(4));
         let count = 20_000;
         let (mut position, mut motor, mut joint, mut warmth) = (0.0, 0.0, 0.0, 0.0);
         for _ in 0..count {
@@ -83,7 +86,7 @@ mod tests {
 
     #[test]
     fn without_noise_readings_are_exact() {
-        let mut sensors = Sensors::new(0.0, Random::new(4));
+        let mut sensors = Sensors::new(0.0, POSITION_QUANTUM, Random::new(4));
         let reading = Reading {
             position: 0.123_456_789,
             motor_torque: 1.5,

@@ -5,8 +5,8 @@ use super::plant::{self, Plant, friction};
 use super::sensors::Sensors;
 use super::servo::Servo;
 use super::without_hidden::{self, WithoutHidden};
-use super::{Bench, BenchError, BenchSession, Motion};
-use crate::bench::{Conditions, MILLISECONDS_A_LOG, SECONDS_A_DAY, Stream, random};
+use super::{Bench, BenchError, BenchSession, Motion, motion};
+use crate::bench::{Conditions, SECONDS_A_DAY, Stream, random};
 
 /// Nothing on the bench turns further \[rad\].
 const FARTHEST: f64 = 10.0;
@@ -20,7 +20,12 @@ impl Bench {
         conditions: &Conditions,
     ) -> Result<BenchSession, BenchError> {
         let config = &self.config;
-        let programme = motion.programme(&mut random(config.seed, Stream::Motion, index));
+        let here = &self.surroundings;
+        let mut moves = random(config.seed, Stream::Motion, index);
+        let programme = match here.is_routine {
+            true => motion::routine(&mut moves),
+            false => motion.programme(&mut moves),
+        };
         let mut scatter = random(config.seed, Stream::Session, index);
         let joint = self.joint.scattered(config.scatter, &mut scatter);
         let factor = 1.0 + 0.01 * config.scatter * scatter.normal().clamp(-3.0, 3.0);
@@ -28,14 +33,20 @@ impl Bench {
         effects.iter_mut().for_each(|effect| effect.reset());
 
         let servo = Servo::new(self.believed.inertia);
-        let mut sensors = Sensors::new(config.noise, random(config.seed, Stream::Noise, index));
+        let mut sensors = Sensors::new(
+            config.noise,
+            here.position_quantum,
+            random(config.seed, Stream::Noise, index),
+        );
         let mut plant = Plant::new(joint, motion.has_springs(), factor);
         let milliseconds = (programme.duration() * 1000.0) as usize;
-        let mut session = BenchSession::with_capacity(milliseconds / MILLISECONDS_A_LOG + 1);
+        let entries = milliseconds / here.log_milliseconds + 1;
+        let mut session = BenchSession::with_capacity(entries);
         session.start = conditions.start;
+        session.period = here.log_milliseconds as f64 / 1000.0;
         session.motion = Some(motion);
         let mut without = WithoutHidden::new(&self.joint, &self.plain, &effects);
-        let mut excesses = Vec::with_capacity(milliseconds / MILLISECONDS_A_LOG + 1);
+        let mut excesses = Vec::with_capacity(entries);
 
         let mut cursor = 0;
         // Command and motor torque of the millisecond before.
@@ -56,15 +67,23 @@ impl Bench {
                     time,
                 });
             }
-            let command = servo.torque(programme.at(time, &mut cursor), position, velocity);
+            let asked = servo.torque(programme.at(time, &mut cursor), position, velocity);
+            let given = here
+                .drive
+                .map_or(asked, |drive| asked.clamp(-drive.limit, drive.limit));
+            let logs_command = here.drive.is_some_and(|drive| drive.logs_command);
+            let command = if logs_command { asked } else { given };
             let motor_torque = effects
                 .iter()
-                .fold(command, |torque, effect| effect.motor_torque(torque));
+                .fold(given, |torque, effect| effect.motor_torque(torque));
             // A torque is held for a millisecond. The state that a log entry shows
             // lies between what was held before and what is held from there on.
             let middle = |before: f64, now: f64| 0.5 * (before + now);
             let logged_command = middle(before.0, command);
-            let logged_torque = middle(before.1, motor_torque);
+            let logged_torque = match logs_command {
+                true => logged_command,
+                false => middle(before.1, motor_torque),
+            };
             before = (command, motor_torque);
             let (position, velocity) = plant.measured();
             let state = *plant.state();
@@ -85,8 +104,11 @@ impl Bench {
             let scatter = actual - nominal;
             let misread = without.misread(logged_command - scatter, logged_torque - scatter);
             let plain = without.friction(&state);
-            if millisecond % MILLISECONDS_A_LOG == 0 {
-                let (logged, temperature) = sensors.log(&reading, state.temperature);
+            if millisecond % here.log_milliseconds == 0 {
+                let (mut logged, temperature) = sensors.log(&reading, state.temperature);
+                if let Some([gain, offset]) = here.modelled_load {
+                    logged.joint_torque = gain * reading.joint_torque + offset;
+                }
                 session.push(time, &logged, temperature);
                 session.truth.push(&reading, velocity, state.temperature);
                 session.truth.push_friction(actual, scatter);
@@ -102,7 +124,8 @@ impl Bench {
                 excesses.push(excess);
             }
         }
-        without_hidden::take_inertia(&excesses, &mut session.without_hidden.motor_torque);
+        let torques = &mut session.without_hidden.motor_torque;
+        without_hidden::take_inertia(&excesses, session.period, torques);
         Ok(session)
     }
 }

@@ -12,7 +12,6 @@
 use super::effect::{Effect, Friction, Reading, State};
 use super::parameters::JointParameters;
 use super::plant::friction;
-use crate::bench::LOG_PERIOD;
 
 /// Follows a session, millisecond by millisecond.
 pub(super) struct WithoutHidden<'a> {
@@ -71,10 +70,10 @@ impl<'a> WithoutHidden<'a> {
 }
 
 /// Takes from `motor_torque` \[Nm\] what accelerates the inertia that is hidden, of
-/// which `excesses` is Σ J q \[kg m²·rad\], both at each log entry. Acceleration is
+/// which `excesses` is Σ J q \[kg m²·rad\], both at each log entry, `period` \[s\] apart. Acceleration is
 /// that between entries, as it is for a model: teeth that meet are faster.
-pub(super) fn take_inertia(excesses: &[f64], motor_torque: &mut [f64]) {
+pub(super) fn take_inertia(excesses: &[f64], period: f64, motor_torque: &mut [f64]) {
     for (torque, around) in motor_torque.iter_mut().skip(1).zip(excesses.windows(3)) {
-        *torque -= (around[0] - 2.0 * around[1] + around[2]) / (LOG_PERIOD * LOG_PERIOD);
+        *torque -= (around[0] - 2.0 * around[1] + around[2]) / (period * period);
     }
 }

@@ -178,6 +178,7 @@ fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
         table::parameters(parameters, &[]);
     }
     tell_held(&comparison.held_possible);
+    table::varies_together(&comparison.varies_together);
     for name in &opened.dataset.joints {
         if let Some(own) = comparison.joints.get(name) {
             println!();
@@ -200,6 +201,7 @@ fn tell_held(names: &[String]) {
 fn print_diagnosis(diagnosis: &ArmDiagnosis, unit: &str) {
     println!("{}", diagnosis.verdict.name());
     println!("{} variants tried", diagnosis.tried);
+    table::varies_together(&diagnosis.varies_together);
     println!();
     println!("{:<26} {:<12} {:>12}", "joint", "", "held out");
     for (name, own) in &diagnosis.joints {

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use ferntast_identification::{
     Comparison, Diagnosis, Discovery, Formula, Usage, Verdict,
-    comparison::residual_map::ResidualMap,
+    comparison::{VariesTogether, residual_map::ResidualMap},
     diagnosis::NamedCandidate,
     fit::{Parameter, Soundness},
 };
@@ -48,6 +48,13 @@ pub fn soundness(soundness: &Soundness) {
         println!("warning: {}", own.text());
     }
     for pair in &soundness.inseparable {
+        println!("warning: {}", pair.text());
+    }
+}
+
+/// Signals and conditions that vary together.
+pub fn varies_together(pairs: &[VariesTogether]) {
+    for pair in pairs {
         println!("warning: {}", pair.text());
     }
 }
@@ -98,6 +105,7 @@ pub fn comparison(comparison: &Comparison, unit: &str) {
     println!();
     parameters(&comparison.parameters, &comparison.not_excited);
     soundness(&comparison.soundness);
+    varies_together(&comparison.varies_together);
     for map in &comparison.residual_maps {
         println!();
         residual_map(map, unit);
@@ -281,6 +289,7 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
         );
     }
     soundness(&diagnosis.soundness);
+    varies_together(&diagnosis.varies_together);
     if !diagnosis.candidates.is_empty() {
         println!();
     }

@@ -11,6 +11,7 @@ use axum::{
 };
 use ferntast_identification::{
     Comparison, Diagnosis,
+    comparison::VariesTogether,
     fit::{Implausible, Pair},
 };
 use ferntast_lab::{
@@ -120,7 +121,7 @@ struct Compared {
     comparison: Comparison,
     /// What of the samples is left out: reason in words, share.
     left_out: Vec<(&'static str, f64)>,
-    /// What has to be known of the parameters, as sentences.
+    /// What has to be known of signals and parameters, as sentences.
     warnings: Vec<String>,
     drawings: Vec<Drawing>,
 }
@@ -140,11 +141,12 @@ pub async fn compare(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> R
             let soundness = &comparison.soundness;
             let implausible = soundness.implausible.iter().map(Implausible::text);
             let pairs = soundness.inseparable.iter().map(Pair::text);
+            let together = comparison.varies_together.iter().map(VariesTogether::text);
             Ok(Compared {
                 left_out: left_out
                     .map(|(reason, samples)| (reason.text(), share(samples)))
                     .collect(),
-                warnings: implausible.chain(pairs).collect(),
+                warnings: together.chain(implausible).chain(pairs).collect(),
                 comparison,
                 drawings,
             })

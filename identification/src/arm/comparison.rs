@@ -8,7 +8,7 @@ use super::data::{ArmDataset, ArmError, ArmSession, ArmSpec};
 use super::prepared::{ArmJoint, PreparedArm};
 use super::shared::{self, ArmColumns, SharedFit, weighted};
 use super::trial::{self, weights_of};
-use crate::comparison::{Comparison, compare_prepared};
+use crate::comparison::{Comparison, VariesTogether, compare_prepared};
 use crate::effects::{COUPLING, JointCoupling};
 use crate::fit::{Parameter, Rms};
 
@@ -30,6 +30,8 @@ pub struct ArmComparison {
     /// Those of them whose free fit is no body that can exist (negative mass, or an inertia
     /// that no shape has): they are at the nearest that can.
     pub held_possible: Vec<String>,
+    /// Signals and conditions that vary together from session to session.
+    pub varies_together: Vec<VariesTogether>,
     /// Every joint.
     pub joints: BTreeMap<String, Comparison>,
 }
@@ -54,6 +56,7 @@ pub fn compare(dataset: &ArmDataset, spec: &ArmSpec) -> Result<ArmComparison, Ar
         rms: rms(&fit),
         arm: of_arm(&arm),
         held_possible: arm.held_possible(),
+        varies_together: varies_together(&arm.joints),
         joints,
     })
 }
@@ -62,6 +65,14 @@ pub fn compare(dataset: &ArmDataset, spec: &ArmSpec) -> Result<ArmComparison, Ar
 pub(super) fn fit(arm: &PreparedArm<'_>) -> SharedFit {
     let columns = ArmColumns::new(arm, &arm.effects());
     shared::fit(&arm.joints, &columns, &arm.weights())
+}
+
+/// What varies together in the sessions, which the joints have in common.
+pub(super) fn varies_together(joints: &[ArmJoint]) -> Vec<VariesTogether> {
+    let first = joints.first();
+    first.map_or_else(Vec::new, |joint| {
+        crate::comparison::varies_together::find(&joint.dataset)
+    })
 }
 
 /// Samples of the sessions that are fitted.

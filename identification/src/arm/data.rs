@@ -1,6 +1,6 @@
 //! What is known of an arm: recordings of all its joints, and the model that is believed.
 
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
 
 use ferntast_model::rigid_body::{Chain, JointKind, Vector3};
 
@@ -22,6 +22,8 @@ pub struct ArmSession {
     pub position: Vec<Vec<f64>>,
     /// τ_m of each joint, on the joint side of the gear \[Nm\] or \[N\].
     pub motor_torque: Vec<Vec<f64>>,
+    /// Conditions that stay as they are during the session, by name.
+    pub conditions: BTreeMap<String, f64>,
 }
 
 /// The recordings of an arm.

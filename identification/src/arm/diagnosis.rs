@@ -9,14 +9,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::comparison::{fit, name_partner, samples, used};
+use super::comparison::{fit, name_partner, samples, used, varies_together};
 use super::contest::{Contender, Contest};
 use super::data::{ArmDataset, ArmError, ArmSpec, ArmTerm};
 use super::effects::ArmEffect;
 use super::prepared::{ArmJoint, PreparedArm};
 use super::shared::{SharedFit, weighted, weighted_decrease};
 use super::trial::{Tried, try_all, try_one};
-use crate::comparison::{Usage, noise_floor::NoiseFloor};
+use crate::comparison::{Usage, VariesTogether, noise_floor::NoiseFloor};
 use crate::data::Term;
 use crate::diagnosis::dependence::Dependence;
 use crate::diagnosis::{self, Diagnosis, NamedCandidate, Suspect, Verdict};
@@ -99,6 +99,9 @@ pub struct ArmDiagnosis {
     pub suspected: Vec<ArmSuspect>,
     /// Signals on which residuals depend, strongest first.
     pub residual_depends_on: Vec<ArmDependence>,
+    /// Signals and conditions that vary together from session to session: an effect of one
+    /// cannot be told from an effect of the other.
+    pub varies_together: Vec<VariesTogether>,
     /// Every joint.
     pub joints: BTreeMap<String, JointDiagnosis>,
     /// Effects that these recordings cannot show, whatever the verdict.
@@ -195,6 +198,7 @@ pub fn diagnose(
         },
         candidates,
         residual_depends_on: depends_on(&arm, &each),
+        varies_together: varies_together(&arm.joints),
         joints,
         not_tested: match all.len() > 1 {
             true => Vec::new(),

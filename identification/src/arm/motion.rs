@@ -49,6 +49,7 @@ impl Motion {
             .map(|session| ArmSession {
                 name: session.name.clone(),
                 start: session.start,
+                conditions: session.conditions.clone(),
                 period: session.period * by as f64,
                 position: session.position.iter().map(|own| thin(own, by)).collect(),
                 motor_torque: (session.motor_torque.iter())

@@ -173,6 +173,7 @@ impl<'a> PreparedArm<'a> {
                 joint_torque: torques.get(joint).cloned(),
                 torque_is_modelled: true,
                 extra,
+                conditions: session.conditions.clone(),
                 ..RecordedSession::default()
             }
         });

@@ -64,6 +64,7 @@ fn recording(seed: u64, more: impl Fn(&State) -> [f64; 2]) -> ArmDataset {
             period: 0.005,
             position: vec![Vec::new(); 2],
             motor_torque: vec![Vec::new(); 2],
+            ..ArmSession::default()
         };
         for i in 0..4000 {
             let t = 0.005 * f64::from(i);

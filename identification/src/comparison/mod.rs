@@ -6,6 +6,7 @@ pub mod parts;
 pub mod residual_map;
 pub mod simulation;
 pub mod usage;
+pub mod varies_together;
 
 use std::collections::BTreeMap;
 
@@ -23,6 +24,7 @@ use noise_floor::NoiseFloor;
 use residual_map::{Residual, ResidualMap, Window};
 use simulation::{Simulation, simulate};
 pub use usage::{HeldOutBy, Reason, Usage};
+pub use varies_together::VariesTogether;
 
 /// Largest number of points of a session in [`Comparison::series`].
 const MAX_DRAWN_POINTS: usize = 2000;
@@ -50,6 +52,8 @@ pub struct Comparison {
     /// `implausible`.
     #[serde(flatten)]
     pub soundness: Soundness,
+    /// Signals and conditions that vary together from session to session.
+    pub varies_together: Vec<VariesTogether>,
     /// RMS between repeats, and variation between sessions \[Nm\].
     pub noise: NoiseFloor,
     /// Residual over each signal.
@@ -155,6 +159,7 @@ pub(crate) fn compare_prepared(
         relative_error: fitted.train / torque,
         relative_error_held_out: fitted.held_out / torque_rms(shown),
         held_out_by: HeldOutBy::of(prepared, &design),
+        varies_together: varies_together::find(dataset),
         noise: noise_floor::find(prepared, &design, LeftOut::of_folds(&design).rms()),
         residual_maps: residual_map::maps(&residuals, &prepared.facts),
         worst: residual_map::worst(&residuals),

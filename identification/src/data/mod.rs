@@ -40,6 +40,10 @@ pub struct RecordedSession {
     /// Other signals by name: searched for dependences of the residual, usable in
     /// expressions.
     pub extra: BTreeMap<String, Vec<f64>>,
+    /// Conditions that stay as they are during the session, by name, in units of their own: a
+    /// gain, a mass. They enter no model; what varies together with them is told.
+    #[serde(default)]
+    pub conditions: BTreeMap<String, f64>,
     /// Whether the session is known to be free of load: beyond the torque sensor
     /// there is nothing but the link, so that the sensor's zero can be read.
     #[serde(default)]

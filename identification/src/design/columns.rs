@@ -1,18 +1,69 @@
 //! Columns of an effect on a session.
 
+use std::sync::Arc;
+
 use crate::effects::{
     BoundTerm, EffectHandle, Exact, ExactSignal, MAX_COLUMNS, constant_of, parts_of,
 };
 use crate::numerics::filter::Kernel;
-use crate::signals::{Filters, Signals};
+use crate::signals::{Columns, Filters, Key, Point, Signals};
 
 /// Columns of an effect at the working rate, not filtered; in the unit of the torque
 /// over that of the coefficient.
 #[must_use]
 pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<Vec<f64>> {
-    if let Some(columns) = effect.whole(shape, &signals.points) {
-        return columns;
+    let whole = match effect.is_of_motion() {
+        true => {
+            let points = || signals.points.iter().map(Point::friction_state).collect();
+            effect.of_states(shape, &signals.kept.states(points))
+        }
+        false => effect.whole(shape, &signals.points),
+    };
+    whole.unwrap_or_else(|| evaluated(signals, effect, shape, |point| *point))
+}
+
+/// The same of a term of a model, kept where it is of the motion alone.
+#[must_use]
+pub fn kept(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Columns {
+    match effect.is_of_motion() {
+        true => {
+            let key = Key::new(&effect.description().id, shape, 0.0);
+            (signals.kept).working(key, || working(signals, effect, shape))
+        }
+        false => Arc::new(working(signals, effect, shape)),
     }
+}
+
+/// The same with another `velocity` at each point.
+#[must_use]
+pub fn at_velocity(
+    signals: &Signals,
+    effect: &EffectHandle,
+    shape: &[f64],
+    velocity: impl Fn(&Point) -> f64,
+) -> Columns {
+    if !effect.reads_velocity() {
+        return kept(signals, effect, shape);
+    }
+    let changed = |point: &Point| Point {
+        velocity: velocity(point),
+        ..*point
+    };
+    let points = || signals.points.iter().map(changed).collect::<Vec<Point>>();
+    let whole = match effect.is_of_motion() {
+        true => None,
+        false => effect.whole(shape, &points()),
+    };
+    Arc::new(whole.unwrap_or_else(|| evaluated(signals, effect, shape, changed)))
+}
+
+/// Columns of an effect that is a function of each point by itself, as it is `changed`.
+fn evaluated(
+    signals: &Signals,
+    effect: &EffectHandle,
+    shape: &[f64],
+    changed: impl Fn(&Point) -> Point,
+) -> Vec<Vec<f64>> {
     let count = effect.columns().min(MAX_COLUMNS);
     let mut columns = vec![Vec::with_capacity(signals.points.len()); count];
     let extras: Vec<&[f64]> = effect
@@ -27,7 +78,8 @@ pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<V
         for (value, signal) in extra.iter_mut().zip(&extras) {
             *value = signal.get(at).copied().unwrap_or(0.0);
         }
-        effect.evaluate_with(shape, point, &extra, &mut memory, &mut values[..count]);
+        let point = changed(point);
+        effect.evaluate_with(shape, &point, &extra, &mut memory, &mut values[..count]);
         for (column, value) in columns.iter_mut().zip(&values) {
             column.push(*value);
         }
@@ -80,21 +132,39 @@ pub fn filtered_term(
     inertia: f64,
     term: &BoundTerm,
     rows: &[usize],
-) -> Vec<Vec<f64>> {
+) -> Columns {
+    let (effect, shape) = (&term.effect, &term.shape);
     if term.compensated.is_empty() {
-        return filtered(signals, filters, inertia, &term.effect, &term.shape, rows);
+        let make = || filtered(signals, filters, inertia, effect, shape, rows);
+        if !effect.is_of_motion() {
+            return Arc::new(make());
+        }
+        let key = Key::new(&effect.description().id, shape, inertia);
+        return signals.kept.filtered(rows, key, make);
     }
-    match signals.jacobians.get(&term.effect.description().id) {
+    Arc::new(match signals.jacobians.get(&effect.description().id) {
         Some(columns) => (columns.iter())
             .map(|column| signals.column.at_samples(column, rows))
             .collect(),
-        None => vec![vec![0.0; rows.len()]; term.effect.columns()],
-    }
+        None => vec![vec![0.0; rows.len()]; effect.columns()],
+    })
 }
 
 /// y = τ_m − τ − J q̈ \[Nm\] at the working samples `rows`, through the column filter.
 #[must_use]
 pub fn measured(signals: &Signals, filters: &Filters, inertia: f64, rows: &[usize]) -> Vec<f64> {
+    let key = Key::new("", &[], inertia);
+    let make = || vec![filtered_balance(signals, filters, inertia, rows)];
+    let kept = signals.kept.filtered(rows, key, make);
+    kept.first().cloned().unwrap_or_default()
+}
+
+fn filtered_balance(
+    signals: &Signals,
+    filters: &Filters,
+    inertia: f64,
+    rows: &[usize],
+) -> Vec<f64> {
     let smooth = &signals.column;
     let torque = smooth.at_samples(&signals.raw.motor_torque, rows);
     let load = smooth.at_samples(&signals.raw.joint_torque, rows);

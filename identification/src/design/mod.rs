@@ -264,7 +264,7 @@ impl SessionDesign {
                 let taken = measured.iter_mut().zip(column);
                 taken.for_each(|(measured, value)| *measured += coefficient * value);
             }
-            base.extend(own);
+            base.extend(own.iter().cloned());
         }
         let blocks = blocks(rows.len(), count);
         let views: Vec<&[f64]> = base.iter().map(Vec::as_slice).collect();

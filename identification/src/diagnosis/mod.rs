@@ -21,7 +21,7 @@ mod verdict;
 
 use std::collections::BTreeMap;
 
-use crate::comparison::{noise_floor, usage};
+use crate::comparison::{noise_floor, usage, varies_together};
 use crate::data::check::check;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, ModelSpec, RecordedSession};
@@ -133,6 +133,7 @@ fn describe_all(dataset: &Dataset, found: &Examination) -> Diagnosis {
         runners_up: runners_up(trial, passing),
         verdict_at_other_cutoffs: Vec::new(),
         soundness: base.soundness.clone(),
+        varies_together: varies_together::find(dataset),
         residual_depends_on: depends_on,
         tried: trial.variants + trial.variants_between,
         not_tested: match prepared.coupling().is_some() || dataset.joint.is_contact() {

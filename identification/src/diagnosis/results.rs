@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::dependence::Dependence;
 use crate::comparison::noise_floor::NoiseFloor;
 use crate::comparison::usage::Usage;
+use crate::comparison::varies_together::VariesTogether;
 use crate::fit::{Parameter, Rms, Soundness};
 
 /// What a residual says of the model, on the samples that are used.
@@ -153,6 +154,9 @@ pub struct Diagnosis {
     /// `condition`, `inseparable`, `implausible`.
     #[serde(flatten)]
     pub soundness: Soundness,
+    /// Signals and conditions that vary together from session to session: an effect of one
+    /// cannot be told from an effect of the other.
+    pub varies_together: Vec<VariesTogether>,
     /// Signals on which the residual depends, strongest first.
     pub residual_depends_on: Vec<Dependence>,
     /// Effects and shapes tried.

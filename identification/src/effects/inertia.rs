@@ -76,6 +76,10 @@ impl Effect for Inertia {
         columns.fill(point.acceleration);
     }
 
+    fn is_of_motion(&self) -> bool {
+        true
+    }
+
     fn unavailable(&self, facts: &Facts) -> Option<String> {
         (facts.inertia.is_none()).then(|| "the inertia is fitted already".to_owned())
     }

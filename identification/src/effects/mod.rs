@@ -29,10 +29,10 @@ mod torque_sensor_offset;
 
 use std::sync::Arc;
 
-use ferntast_model::friction::EffectParameter;
 pub use ferntast_model::friction::{
     ANGLE, AtReversal, ConstantOf, Direction, Exact, Facts, Part, Row, Unit, logarithmic, sign,
 };
+use ferntast_model::friction::{EffectParameter, FrictionState};
 
 use crate::data::Subject;
 use crate::signals::Channels;
@@ -145,6 +145,24 @@ pub trait Effect: Send + Sync {
     fn freedom(&self) -> usize {
         let own = self.row().freedom;
         own.unwrap_or_else(|| self.columns() + self.description().shape.len())
+    }
+
+    /// Whether its columns are functions of the measured motion, temperature and date
+    /// alone, so that they stay the same whatever is known of the load.
+    fn is_of_motion(&self) -> bool {
+        false
+    }
+
+    /// Whether its columns change with the velocity.
+    fn reads_velocity(&self) -> bool {
+        true
+    }
+
+    /// Columns over a whole session by `states`, for an effect that is a function of these
+    /// alone.
+    fn of_states(&self, shape: &[f64], states: &[FrictionState]) -> Option<Vec<Vec<f64>>> {
+        let _ = (shape, states);
+        None
     }
 
     /// Names of extra signals that the effect reads, see [`Self::evaluate_with`].

@@ -69,7 +69,7 @@ pub(crate) fn add_to(
     effect: &Term,
 ) -> Result<(Addition, PreparedModel), PrepareError> {
     let model = with(spec, effect)?;
-    let extended = filtered.bind(&model)?;
+    let extended = filtered.bind_to_fit(&model)?;
     // Both on the rows that the new model is fitted to.
     let same = |of: fn(&PreparedModel) -> Vec<&[usize]>| of(prepared) == of(&extended);
     let refitted = match same(rows) && same(unjudged_rows) {

@@ -8,6 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::gram::dot;
 use super::statistics::quantile_or_zero;
 
 /// A finite impulse response, centred.
@@ -166,7 +167,7 @@ impl Kernel {
         if at >= radius
             && let Some(window) = signal.get(at - radius..at + radius + 1)
         {
-            return self.taps.iter().zip(window).map(|(t, x)| t * x).sum();
+            return dot(&self.taps, window);
         }
         let last = signal.len().saturating_sub(1);
         self.taps

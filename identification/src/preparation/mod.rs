@@ -58,6 +58,16 @@ impl<'a> Filtered<'a> {
 
     /// Binds a model whose numbers have been checked.
     pub(crate) fn bind(&self, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
+        self.bind_for(spec, true)
+    }
+
+    /// The same, to be fitted and no more: where no term needs the model's own prediction,
+    /// none is made, and no effect that needs one can be tried.
+    pub(crate) fn bind_to_fit(&self, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
+        self.bind_for(spec, false)
+    }
+
+    fn bind_for(&self, spec: &ModelSpec, predict: bool) -> Result<PreparedModel, PrepareError> {
         let mut prepared = self.without_terms(spec);
         prepared.terms = prepared.bind(spec)?;
         let mut terms = prepared.terms.iter();
@@ -69,10 +79,17 @@ impl<'a> Filtered<'a> {
         if rows < 20 + 5 * parameters {
             return Err(PrepareError::NothingExcited { rows, parameters });
         }
-        prepared.model_load();
+        // Shapes are not searched by a load on which no term depends.
+        let of_motion = prepared.is_of_motion();
+        if !of_motion {
+            prepared.model_load();
+        }
         prepared.find_shapes();
         prepared.model_load();
-        prepared.predict();
+        let mut terms = prepared.terms.iter();
+        if predict || terms.any(|term| term.effect.row().needs_prediction) {
+            prepared.predict();
+        }
         prepared.compensate();
         prepared.refine_shapes_on_determined_rows();
         Ok(prepared)

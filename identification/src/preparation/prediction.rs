@@ -5,7 +5,7 @@ use nalgebra::DVector;
 
 use crate::design::{Design, PreparedModel, columns};
 use crate::effects::{BoundTerm, EffectHandle, Point, Row, with_columns};
-use crate::signals::Signals;
+use crate::signals::{Columns, Signals};
 
 /// Fits of a model whose effects act on its own prediction, at most, …
 const MAX_FITS: usize = 20;
@@ -21,7 +21,9 @@ impl PreparedModel {
         if self.facts.joint_torque || self.facts.joint.is_contact() {
             return;
         }
-        for _ in 0..2 {
+        // Where nothing is fitted by the load, once is enough.
+        let rounds = if self.is_of_motion() { 1 } else { 2 };
+        for _ in 0..rounds {
             let coefficients = Design::new(self).shared;
             let (inertia, terms) = (self.facts.inertia, &self.terms);
             for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
@@ -40,6 +42,11 @@ impl PreparedModel {
                 }
             }
         }
+    }
+
+    /// Whether no term of the model depends on the load, or on the model's own prediction.
+    pub(super) fn is_of_motion(&self) -> bool {
+        self.terms.iter().all(|term| term.effect.is_of_motion())
     }
 
     /// Makes the prediction for effects that act on it. These effects are fitted
@@ -109,13 +116,12 @@ impl PreparedModel {
         let nudge = 1e-3 * self.facts.speed[1];
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             let friction = working(signals, terms, coefficients, is_friction);
-            let total = working(signals, terms, coefficients, |_| true);
-            let mut other = signals.clone();
-            let mut friction_at = |velocity: fn(&Point, f64) -> f64| {
-                for (point, measured) in other.points.iter_mut().zip(&signals.points) {
-                    point.velocity = velocity(measured, nudge);
-                }
-                working(&other, terms, coefficients, is_friction)
+            let inertial = working(signals, terms, coefficients, |effect| !is_friction(effect));
+            let friction_at = |velocity: fn(&Point, f64) -> f64| {
+                sum_of(signals, terms, coefficients, is_friction, |term| {
+                    let velocity = |point: &Point| velocity(point, nudge);
+                    columns::at_velocity(signals, &term.effect, &term.shape, velocity)
+                })
             };
             let faster = friction_at(|point, nudge| point.velocity + nudge * point.sign());
             let slowest = friction_at(|point, nudge| nudge * point.sign());
@@ -129,8 +135,10 @@ impl PreparedModel {
                 } else {
                     0.0
                 };
-                point.motor_predicted =
-                    total[at] + given * point.acceleration + if sensor { point.load } else { 0.0 };
+                point.motor_predicted = friction[at]
+                    + inertial[at]
+                    + given * point.acceleration
+                    + if sensor { point.load } else { 0.0 };
             }
         }
     }
@@ -143,9 +151,22 @@ pub(super) fn working(
     coefficients: &DVector<f64>,
     which: impl Fn(&EffectHandle) -> bool,
 ) -> Vec<f64> {
+    sum_of(signals, terms, coefficients, which, |term| {
+        columns::kept(signals, &term.effect, &term.shape)
+    })
+}
+
+/// The same of columns as they are told.
+fn sum_of(
+    signals: &Signals,
+    terms: &[BoundTerm],
+    coefficients: &DVector<f64>,
+    which: impl Fn(&EffectHandle) -> bool,
+    columns_of: impl Fn(&BoundTerm) -> Columns,
+) -> Vec<f64> {
     let mut sum = vec![0.0; signals.points.len()];
     for (term, places) in with_columns(terms).filter(|(term, _)| which(&term.effect)) {
-        for (k, column) in places.zip(columns::working(signals, &term.effect, &term.shape)) {
+        for (k, column) in places.zip(columns_of(term).iter()) {
             let c = coefficients.get(k).copied().unwrap_or(0.0);
             sum.iter_mut().zip(column).for_each(|(s, x)| *s += c * x);
         }

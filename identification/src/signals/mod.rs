@@ -1,6 +1,7 @@
 //! A session made ready: smoothed, differentiated, thinned, masked.
 
 mod filters;
+mod kept;
 mod point;
 mod sliding;
 
@@ -12,6 +13,7 @@ use crate::numerics::filter::{Kernel, thin};
 
 pub use filters::Filters;
 pub(crate) use filters::RESOLVED;
+pub(crate) use kept::{Columns, Kept, Key};
 pub use point::Point;
 pub(crate) use sliding::{Motion, Sliding};
 use sliding::{rows_clear_of_bad_samples, touches_and_moves};
@@ -28,6 +30,8 @@ pub struct Signals {
     pub period: f64,
     /// Smoothing filter on columns of the regression that are not differentiated.
     pub column: Kernel,
+    /// Columns of terms that a model needs again and again.
+    pub(crate) kept: Arc<Kept>,
     /// States at the working rate, smoothed only as far as their signs and
     /// derivatives need.
     pub points: Vec<Point>,
@@ -99,6 +103,7 @@ impl Signals {
             name: session.name.clone(),
             period,
             column: filters.column_kernel(period),
+            kept: Arc::default(),
             points,
             extra: session
                 .extra
@@ -125,6 +130,7 @@ impl Signals {
     /// samples of the channels are invalid.
     pub(crate) fn replace_channels(&mut self, channels: Channels, lost: usize, filters: &Filters) {
         let channels = Arc::new(channels);
+        self.kept = Arc::default();
         self.raw = channels.clone();
         self.derive(filters, &channels.joint_torque, lost);
     }

@@ -1,6 +1,6 @@
 //! The state of the joint at one sample, which effects are functions of.
 
-use ferntast_model::friction::sign;
+use ferntast_model::friction::{FrictionState, sign};
 
 /// State of the joint at one sample. For a prismatic joint read m for rad and N
 /// for Nm. For a contact, too: then q is the place along the contour, τ_m and
@@ -48,6 +48,18 @@ impl Point {
     #[must_use]
     pub fn sign(&self) -> f64 {
         sign(self.velocity)
+    }
+
+    /// What static laws of friction are functions of.
+    #[must_use]
+    pub fn friction_state(&self) -> FrictionState {
+        FrictionState {
+            position: self.position,
+            velocity: self.velocity,
+            load: self.load,
+            temperature: self.temperature,
+            days: self.days,
+        }
     }
 
     /// Travel since the sample before \[rad\], which q̇ alone would tell half a

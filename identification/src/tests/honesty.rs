@@ -56,6 +56,30 @@ fn stated_filters_are_told_with_what_they_leave_out() {
     assert!(slow.filter(|(v, used)| v.abs() < 0.05 && **used).count() < 10);
 }
 
+/// Temperatures of these recordings are out of order with their dates, until they are sorted.
+#[test]
+fn temperature_that_rises_with_the_date_is_said_of_comparison_and_diagnosis() {
+    let believed = model(&["coulomb", "viscous"]);
+    let mut data = recording(3, plain);
+    assert_eq!(compared(&data, &believed).varies_together, []);
+    let mut temperatures: Vec<_> = (data.sessions.iter_mut())
+        .map(|session| session.temperature.take().unwrap())
+        .collect();
+    temperatures.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    for (session, own) in data.sessions.iter_mut().zip(temperatures) {
+        session.temperature = Some(own);
+    }
+    let found = compared(&data, &believed).varies_together;
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].signals, ["temperature", "date"]);
+    assert!(
+        found[0].correlation > 0.95 && found[0].sessions == 6,
+        "{found:?}"
+    );
+    let told = diagnose(&data, &believed, &mut |_| ()).unwrap();
+    assert_eq!(told.varies_together, found);
+}
+
 /// The same column twice: only the sum of both coefficients is determined.
 #[test]
 fn terms_that_cannot_be_told_apart_are_flagged_as_a_pair() {

@@ -39,13 +39,33 @@ pub(super) enum Recordings {
     Many(Vec<Files>),
 }
 
+/// One recording: a file, or several that are joined, with its conditions or without.
+#[derive(Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a path, a list of files to be joined, or { file = \"…\", conditions = { kp = 100 } }"
+)]
+pub(super) enum Files {
+    One(String),
+    Joined(Vec<String>),
+    Stated(Stated),
+}
+
+/// A recording, and the conditions that it was made under.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Stated {
+    pub(super) file: SameFiles,
+    pub(super) conditions: BTreeMap<String, f64>,
+}
+
 /// One file, or several that are joined.
 #[derive(Debug, Deserialize)]
 #[serde(
     untagged,
     expecting = "expected a path, or a list of files to be joined"
 )]
-pub(super) enum Files {
+pub(super) enum SameFiles {
     One(String),
     Joined(Vec<String>),
 }
@@ -57,14 +77,18 @@ impl Default for Recordings {
 }
 
 impl Recordings {
-    /// The files of each recording, the one that gives the time first.
-    pub(super) fn list(self) -> Vec<Vec<String>> {
+    /// The files of each recording, the one that gives the time first, and its conditions.
+    pub(super) fn list(self) -> Vec<(Vec<String>, BTreeMap<String, f64>)> {
         match self {
-            Recordings::One(path) => vec![vec![path]],
+            Recordings::One(path) => vec![(vec![path], BTreeMap::new())],
             Recordings::Many(paths) => {
                 let paths = paths.into_iter().map(|files| match files {
-                    Files::One(path) => vec![path],
-                    Files::Joined(paths) => paths,
+                    Files::One(path) => (vec![path], BTreeMap::new()),
+                    Files::Joined(paths) => (paths, BTreeMap::new()),
+                    Files::Stated(Stated { file, conditions }) => match file {
+                        SameFiles::One(path) => (vec![path], conditions),
+                        SameFiles::Joined(paths) => (paths, conditions),
+                    },
                 });
                 paths.collect()
             }

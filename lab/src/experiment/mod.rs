@@ -3,6 +3,7 @@
 //! ```toml
 //! recording = "run.mcap"        # or a list: rosbag2 directories, .mcap, tables (.csv, .npz, .mat, …);
 //!                               # in the list [["q.csv", "i.csv"]]: files that are joined
+//!                               # or with what stayed the same: { file = "a.csv", conditions = { kp = 100 } }
 //! columns = ["t", "q", "i"]     # tables only, optional: names in place of those in the file
 //! rate_hz = 500                 # tables only, in place of time
 //! join = "time"                 # or "row"; else by time where each file has one
@@ -101,6 +102,8 @@ pub struct Experiment {
     pub recordings: Vec<PathBuf>,
     /// Files that are joined to a recording, by that.
     pub joined: BTreeMap<PathBuf, Vec<PathBuf>>,
+    /// Conditions under which a recording was made, by that.
+    pub conditions: BTreeMap<PathBuf, BTreeMap<String, f64>>,
     /// How tables are read.
     pub reading: Reading,
     /// What is never fitted.
@@ -211,9 +214,10 @@ impl Experiment {
             None => folder.join(text),
         };
         let mut joined = BTreeMap::new();
+        let mut conditions = BTreeMap::new();
         let mut resolve = |recordings: file::Recordings| -> Vec<PathBuf> {
             let mut firsts = Vec::new();
-            for files in recordings.list() {
+            for (files, stated) in recordings.list() {
                 let mut files = files.into_iter().map(of_text);
                 let Some(first) = files.next() else {
                     continue;
@@ -221,6 +225,9 @@ impl Experiment {
                 let others: Vec<PathBuf> = files.collect();
                 if !others.is_empty() {
                     joined.insert(first.clone(), others);
+                }
+                if !stated.is_empty() {
+                    conditions.insert(first.clone(), stated);
                 }
                 firsts.push(first);
             }
@@ -233,6 +240,9 @@ impl Experiment {
                 "recording",
                 "the list is empty: name a recording".to_owned(),
             ));
+        }
+        for (name, value) in conditions.values().flatten() {
+            condition(name, *value, &refuse)?;
         }
         let arm = match file.arm {
             None => None,
@@ -270,6 +280,7 @@ impl Experiment {
             title: title.to_string_lossy().into_owned(),
             recordings,
             joined,
+            conditions,
             reading: reading::reading(file.columns, file.rate_hz, file.join, &refuse)?,
             held_out,
             unloaded,
@@ -285,6 +296,21 @@ impl Experiment {
             lineage: file.lineage,
         })
     }
+}
+
+fn condition(
+    name: &str,
+    value: f64,
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<(), ExperimentError> {
+    let key = format!("recording.conditions.{name}");
+    if !is_name(name) {
+        return Err(refuse(&key, NO_NAME.to_owned()));
+    }
+    if !value.is_finite() {
+        return Err(refuse(&key, format!("{value} is no number")));
+    }
+    Ok(())
 }
 
 fn filter(

@@ -65,6 +65,7 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
             title: name.to_owned(),
             recordings: vec![path.to_owned()],
             joined: BTreeMap::new(),
+            conditions: BTreeMap::new(),
             reading: Reading::default(),
             held_out: Vec::new(),
             unloaded: Vec::new(),

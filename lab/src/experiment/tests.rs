@@ -39,6 +39,36 @@ fn a_file_is_read_and_its_paths_count_from_its_folder() {
 }
 
 #[test]
+fn conditions_belong_to_their_recording() {
+    let stated = SAMPLE.replace(
+        "[\"a.mcap\", \"${FERNTAST_DATA}/b.csv\"]",
+        "[\"a.mcap\", { file = \"b.csv\", conditions = { kp = 100, mass = 0.5 } }, { file = [\"q.csv\", \"i.csv\"], conditions = { kp = 200 } }]",
+    );
+    let experiment = parse(&stated).unwrap();
+    let files = ["dir/a.mcap", "dir/b.csv", "dir/q.csv"].map(PathBuf::from);
+    assert_eq!(experiment.recordings, files);
+    assert_eq!(experiment.joined[&files[2]], [PathBuf::from("dir/i.csv")]);
+    assert!(!experiment.conditions.contains_key(&files[0]));
+    assert_eq!(experiment.conditions[&files[1]]["mass"], 0.5);
+    assert_eq!(experiment.conditions[&files[2]]["kp"], 200.0);
+    for (from, to, words) in [
+        (
+            "mass = 0.5",
+            "\"a mass\" = 0.5",
+            "recording.conditions.a mass: a name is",
+        ),
+        (
+            "mass = 0.5",
+            "mass = nan",
+            "recording.conditions.mass: NaN is no number",
+        ),
+    ] {
+        let told = parse(&stated.replace(from, to)).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}");
+    }
+}
+
+#[test]
 fn what_is_wrong_is_named() {
     for (from, to, words) in [
         ("held_out", "heldout", "unknown field `heldout`"),

@@ -174,6 +174,10 @@ fn turn_paths(item: &mut Item, from: &Path, to: &Path) {
 fn turn_value(value: &mut Value, from: &Path, to: &Path) {
     if let Value::Array(paths) = value {
         paths.iter_mut().for_each(|own| turn_value(own, from, to));
+    } else if let Value::InlineTable(stated) = value {
+        if let Some(file) = stated.get_mut("file") {
+            turn_value(file, from, to);
+        }
     } else if let Some(text) = value.as_str() {
         let new = turned(text, from, to);
         let decor = value.decor().clone();

@@ -12,12 +12,15 @@
 //!   a fit are left out. Samples that are no numbers are as if they were not there;
 //!   a hole of up to ten samples is bridged by a straight line, a longer one is a gap.
 //! * Unevenly sampled sessions are interpolated onto their mean period.
+//! * Conditions of a recording are those of the experiment file, else of the recordings'
+//!   names (`kp100`, `kp200`); they go with its sessions.
 //! * Sessions keep the time between them where files carry a date; files whose
 //!   clock starts again are put one behind the other.
 
 mod align;
 mod bag;
 mod columns;
+mod conditions;
 mod error;
 mod plausible;
 mod series;
@@ -70,12 +73,21 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
     }
     let wanted = wanted(experiment);
     let mut notes = Vec::new();
+    let (conditions, by_name) = conditions::of_recordings(experiment);
+    for name in by_name {
+        notes.push(format!(
+            "{name} differs in the names of the recordings: it is taken for a condition, as what varies together tells; state it as conditions = {{ {name} = … }} or call the recordings otherwise"
+        ));
+    }
     let mut clock = Clock::default();
     let mut tallies = Vec::new();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<RecordedSession>, LoadError> {
         let mut sessions = Vec::new();
         for path in paths {
-            let (own, tally) = read_file(experiment, path, &wanted, &mut clock, &mut notes)?;
+            let (mut own, tally) = read_file(experiment, path, &wanted, &mut clock, &mut notes)?;
+            for session in &mut own {
+                session.conditions = conditions.get(path).cloned().unwrap_or_default();
+            }
             sessions.extend(own);
             tallies.push(tally);
         }

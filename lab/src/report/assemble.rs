@@ -2,7 +2,7 @@
 
 use ferntast_identification::{
     Comparison, Diagnosis, Usage,
-    comparison::{Reason, Series},
+    comparison::{Reason, Series, VariesTogether},
     diagnosis::NamedCandidate,
     fit::{Implausible, Pair},
 };
@@ -173,7 +173,9 @@ fn warnings(comparison: &Comparison, diagnosis: &Diagnosis) -> Vec<String> {
     let implausible = soundness.implausible.iter().map(Implausible::text);
     let pairs = soundness.inseparable.iter().map(Pair::text);
     let cutoff = diagnosis.cutoff_warning();
-    cutoff.into_iter().chain(implausible).chain(pairs).collect()
+    let together = comparison.varies_together.iter().map(VariesTogether::text);
+    let of_parameters = implausible.chain(pairs);
+    (cutoff.into_iter().chain(together).chain(of_parameters)).collect()
 }
 
 /// The model's equation, the program's version, the data.

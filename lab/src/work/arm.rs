@@ -222,6 +222,7 @@ fn dataset(experiment: &Experiment, arm: &ArmTable, read: &Dataset) -> ArmDatase
             period: own.period,
             position,
             motor_torque,
+            conditions: own.conditions.clone(),
         })
     };
     ArmDataset {

@@ -10,7 +10,8 @@ mod folder;
 pub use asked::{Asked, make};
 pub use bench::{TestBench, WriteError, hidden_by};
 pub use blind::{
-    Answer as BlindAnswer, BlindTest, Count, Coverage, FollowedUp, Miss, Outside, Plan,
+    Answer as BlindAnswer, BlindTest, Count, Coverage, FollowedUp, Miss, Outside, Plan, RealAnswer,
+    RealLikeRow,
 };
 pub use discovery::{Answered, DiscoveryTest, LawPlan};
 pub use folder::{Answer, ChallengeError, create, reveal};

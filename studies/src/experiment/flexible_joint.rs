@@ -116,6 +116,7 @@ pub fn read(folder: &Path) -> Result<[Vec<Row>; 3], IdentifyError> {
         title: "flexible joint".to_owned(),
         recordings: vec![folder.to_owned()],
         joined: BTreeMap::new(),
+        conditions: BTreeMap::new(),
         reading: Reading::default(),
         held_out: Vec::new(),
         unloaded: Vec::new(),

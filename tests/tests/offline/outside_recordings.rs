@@ -316,6 +316,16 @@ fn real_recordings_are_identified() {
     assert_eq!(best["effect"], "load_coulomb", "{told:#}");
     let fall = number(best, "held_out_after") / number(best, "held_out_before");
     assert!((0.50..0.65).contains(&fall), "{fall}");
+    // Pearson's correlation of the sixteen means by another program (NumPy): 0.934; the supply
+    // varies more within a run than between runs.
+    let together = told["varies_together"].as_array().expect("pairs");
+    assert_eq!(together.len(), 1, "{together:#?}");
+    assert_eq!(names(&together[0]["signals"]), ["temperature", "kp"]);
+    let correlation = number(&together[0], "correlation");
+    assert!((0.92..0.95).contains(&correlation), "{correlation}");
+    let said = environment(&["lab", "compare", xl330]).success().stdout;
+    let sentence = "temperature and kp rise together (correlation 0.93 over 16 sessions)";
+    assert!(said.contains(sentence), "{said}");
 
     // Filtered as a plain program would, the figures of an independent fit.
     let filtered = ferntast_tests::root().join("config/experiments/xl330_filtered.toml");

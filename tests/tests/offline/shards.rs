@@ -55,7 +55,20 @@ fn of_sweeps_and_random_cases() {
 fn of_blind_tests() {
     let session = Session::new();
     let blind = ["challenge", "blind", "--repeats", "1", "--strengths", "1"];
-    let few = ["--hide", "stribeck", "--nothing", "2", "--two", "1"];
+    let few = [
+        "--hide",
+        "stribeck",
+        "--nothing",
+        "2",
+        "--two",
+        "1",
+        "--real-like",
+        "1",
+        "--kind",
+        "coarse_encoder",
+        "--kind",
+        "one_session",
+    ];
     is_equal(whole_and_merged(&session, &[&blind[..], &few].concat()));
 }
 

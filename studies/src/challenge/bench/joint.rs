@@ -1,7 +1,7 @@
 //! The bench of one joint.
 
 use ferntast_benches::{
-    bench::{BenchError, LOG_PERIOD},
+    bench::BenchError,
     joint_bench::{
         Bench, BenchConfig, BenchRecording, BenchSession, HiddenEffect, Motion, TrueParameter,
     },
@@ -21,7 +21,7 @@ fn session(own: &BenchSession, number: usize) -> RecordedSession {
     RecordedSession {
         name: format!("session {number}"),
         start: own.start,
-        period: LOG_PERIOD,
+        period: own.period,
         position: own.position.clone(),
         motor_torque: own.motor_torque.clone(),
         joint_torque: Some(own.joint_torque.clone()),

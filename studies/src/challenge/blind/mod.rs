@@ -1,14 +1,18 @@
 //! The blind test: many recordings, each with an effect hidden, one with two,
-//! or none, put to the diagnosis.
+//! or none, put to the diagnosis; and recordings like real ones.
 
 mod ask;
 mod coverage;
+mod real_like;
 mod tally;
 mod two;
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use ferntast_benches::{contact_bench, joint_bench};
+use ferntast_benches::{
+    contact_bench,
+    joint_bench::{self, RealLike},
+};
 use serde::{Deserialize, Serialize};
 
 use super::TestBench;
@@ -21,6 +25,8 @@ use ask::Given;
 pub(super) use ask::true_model_reaches;
 use coverage::Held;
 pub use coverage::{Coverage, Outside};
+use real_like::RealCase;
+pub use real_like::{RealAnswer, RealLikeRow};
 pub use tally::{BlindTest, Count, FollowedUp, Miss};
 
 /// What is tried.
@@ -41,6 +47,12 @@ pub struct Plan {
     pub nothing: usize,
     /// Recordings that hide two effects of the catalogue at once, at full strength.
     pub two: usize,
+    /// Recordings of each kind that is like real ones; of joints only.
+    #[serde(default)]
+    pub real_like: usize,
+    /// Of those only these kinds, by id; empty: all.
+    #[serde(default)]
+    pub kinds: Vec<String>,
     /// Whether nothing is diagnosed: the true models are fitted, and their intervals held
     /// against the truth.
     pub intervals_only: bool,
@@ -94,6 +106,9 @@ pub struct Answer {
     held: Vec<Held>,
     /// Of one with two hidden: how many were named.
     of_two: Option<usize>,
+    /// Of one that is like a real one.
+    #[serde(default)]
+    real_like: Option<RealAnswer>,
 }
 
 impl Study for Plan {
@@ -107,6 +122,8 @@ enum Question<H> {
     One(Case<H>),
     /// With two, by its seed.
     Two(u64),
+    /// Like a real one.
+    RealLike(RealCase),
 }
 
 impl Plan {
@@ -114,13 +131,22 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// [`Plan::only`] names an effect that the bench has not.
+    /// [`Plan::only`] names an effect that the bench has not, [`Plan::kinds`] a kind that there
+    /// is not.
     fn questions<H: TestBench>(&self) -> Result<Vec<Question<H>>, String> {
         let only: Result<Vec<H>, _> = self.only.iter().map(|id| id.parse()).collect();
         let cases = self.cases(&only.map_err(|error| error.to_string())?);
         let seed = |number| self.seed.wrapping_add(2_000_000 + number);
         let two = (0..self.two as u64).map(|number| Question::Two(seed(number)));
-        Ok(cases.into_iter().map(Question::One).chain(two).collect())
+        let kinds: Result<Vec<RealLike>, _> = self.kinds.iter().map(|id| id.parse()).collect();
+        let mut kinds = kinds.map_err(|error| error.to_string())?;
+        if kinds.is_empty() {
+            kinds = RealLike::ALL.to_vec();
+        }
+        let count = if self.contact { 0 } else { self.real_like };
+        let real_like = real_like::cases(&kinds, count, self.seed).into_iter();
+        let cases = cases.into_iter().map(Question::One).chain(two);
+        Ok(cases.chain(real_like.map(Question::RealLike)).collect())
     }
 
     /// Puts its recordings that are in `shard` to the diagnosis, on all processors, until
@@ -183,6 +209,10 @@ impl Plan {
             {
                 test.note(case, given);
             }
+            if let Some(own) = value.real_like {
+                let row = test.real_like.entry(own.kind.clone());
+                row.or_default().note(own);
+            }
             if let Some(found) = value.of_two {
                 test.both_of_two.note(found == 2);
                 test.one_of_two.note(found >= 1);
@@ -200,11 +230,19 @@ impl Plan {
                 },
                 held: coverage::held(case)?,
                 of_two: None,
+                real_like: None,
             },
             Question::Two(seed) => Answer {
                 given: None,
                 held: Vec::new(),
                 of_two: Some(two::two_at_once::<H>(*seed)?),
+                real_like: None,
+            },
+            Question::RealLike(case) => Answer {
+                given: None,
+                held: Vec::new(),
+                of_two: None,
+                real_like: Some(real_like::ask(case)?),
             },
         })
     }

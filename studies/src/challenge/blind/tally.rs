@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use ferntast_identification::Verdict;
 use serde::{Deserialize, Serialize};
 
-use super::{super::TestBench, Case, ask::Given, coverage::Coverage};
+use super::{super::TestBench, Case, ask::Given, coverage::Coverage, real_like::Rows};
 
 /// Within this factor of what the true model reaches on the same recording, an
 /// error has fallen as far as it can.
@@ -109,6 +109,8 @@ pub struct BlindTest {
     pub both_of_two: Count,
     /// The same, of which at least one was named.
     pub one_of_two: Count,
+    /// Recordings like real ones, by kind.
+    pub real_like: Rows,
     /// How often the 95 % intervals of the true model's parameters hold the true value.
     pub coverage: Coverage,
     /// Every recording that was not answered rightly, also not after the

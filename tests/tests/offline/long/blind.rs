@@ -29,6 +29,8 @@ fn blind_on_recordings_that_nobody_has_seen() {
         "60",
         "--two",
         "6",
+        "--real-like",
+        "0",
         "--seed",
         "424242",
         "--json",
@@ -114,4 +116,58 @@ fn blind_on_contacts_that_nobody_has_seen() {
     assert!(share(&told["unknown_not_named"]["1"]) >= 0.90, "{misses:#}");
     assert!(share(&told["one_of_two"]) >= 0.8, "{told:#}");
     assert!(share(&told["false_alarms"]) <= 0.03, "{misses:#}");
+}
+
+/// Recordings like real ones, one lack of the bench's at a time. What is named beyond what is
+/// there, or told to be indistinguishable from it: measured on 40 of each kind at another seed
+/// 0 or 1 of 40, but for a load that a model gives wrongly (21 of 40: two errors at once look
+/// like one pull over position). 20 of each kind are few: the bounds leave room for chance.
+#[test]
+fn blind_on_recordings_like_real_ones() {
+    let session = Session::new();
+    let arguments = [
+        "challenge",
+        "blind",
+        "--repeats",
+        "0",
+        "--nothing",
+        "0",
+        "--two",
+        "0",
+        "--real-like",
+        "20",
+        "--seed",
+        "424242",
+        "--json",
+    ];
+    let told = Process::spawn(session.ferntast(&arguments))
+        .wait(Duration::from_secs(900))
+        .success()
+        .json();
+    let rows = told["real_like"].as_object().expect("rows by kind");
+    assert_eq!(rows.len(), 7, "{rows:#?}");
+    let mut beyond_family = 0.0;
+    for (kind, row) in rows {
+        assert_eq!(number(row, "recordings"), 20.0, "{kind}");
+        assert_eq!(number(row, "false_names.tried"), 20.0, "{kind}");
+        let own = number(row, "false_names.found") - number(row, "false_in_family");
+        match kind.as_str() {
+            "uncertain_load" => assert!((1.0..=16.0).contains(&own), "{row:#}"),
+            _ => {
+                assert!(own <= 2.0, "{kind}: {row:#}");
+                beyond_family += own;
+            }
+        }
+        let share = |of: &str| {
+            number(row, &format!("{of}.found")) / number(row, &format!("{of}.tried")).max(1.0)
+        };
+        let least = match kind.as_str() {
+            // Few moves show few effects, and of one session nobody knows how it varies.
+            "little_excitation" | "uncertain_load" => 0.0,
+            "one_session" => 0.5,
+            _ => 0.75,
+        };
+        assert!(share("in_family") >= least, "{kind}: {row:#}");
+    }
+    assert!(beyond_family <= 5.0, "{told:#}");
 }
