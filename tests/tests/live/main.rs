@@ -13,6 +13,7 @@ mod console_trouble;
 mod contact_force;
 mod crashes;
 mod dynamics;
+mod fleet;
 mod haply;
 mod lab_page;
 mod layout;
