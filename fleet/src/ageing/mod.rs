@@ -18,6 +18,8 @@ mod location;
 mod onsets;
 mod series;
 mod spread;
+#[cfg(test)]
+mod tests;
 mod threshold;
 mod watch;
 

@@ -34,7 +34,7 @@ pub fn threshold(series: usize, tolerated: f64) -> f64 {
     high.max(3.0)
 }
 
-/// The normal score of Student's `t` with that freedom: as improbable, to a few per mille
+/// The normal score of Student's `t` with that freedom: as improbable, to one percent
 /// of itself (Wallace, "Bounds on normal approximations to Student's and the chi-square
 /// distributions", 1959).
 pub(super) fn normal_score(t: f64, freedom: f64) -> f64 {
@@ -52,7 +52,7 @@ mod tests {
     fn scores_are_those_of_tables() {
         for (t, freedom) in [(4.587, 10.0), (6.869, 5.0), (3.373, 120.0)] {
             let score = normal_score(t, freedom);
-            assert!((score - 3.2905).abs() < 0.02, "{score}");
+            assert!((score - 3.2905).abs() < 0.03, "{score}");
             assert_eq!(normal_score(-t, freedom), -score);
         }
     }

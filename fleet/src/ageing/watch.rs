@@ -24,7 +24,7 @@ impl Default for WatchSettings {
         WatchSettings {
             false_alarms: 1.0,
             least_change: 0.05,
-            least_step: 0.15,
+            least_step: 0.3,
         }
     }
 }

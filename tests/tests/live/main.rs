@@ -14,6 +14,7 @@ mod contact_force;
 mod crashes;
 mod dynamics;
 mod fleet;
+mod foreign_bags;
 mod haply;
 mod lab_page;
 mod layout;
