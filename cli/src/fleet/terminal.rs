@@ -22,7 +22,7 @@ pub fn tell(told: &Told) {
     }
     if told.standing.is_empty() {
         println!(
-            "nobody can be told from its siblings yet: that takes seven days, and three robots on each of them"
+            "nobody can be told from its siblings yet: that takes six days, and three robots on each of them"
         );
         return;
     }

@@ -1,6 +1,10 @@
 //! `ferntast fleet watch`.
 
-use std::{fs, path::PathBuf, process::ExitCode};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use ferntast_fleet::{DaySummary, Fleet, ageing::WatchSettings, days, read};
 
@@ -13,7 +17,7 @@ use super::{
 #[command(
     after_help = "Siblings are the joints of the same name on all robots, each parameter of their twins by itself. A robot has a level, \
     a slope with temperature, and an ageing of its own; how far robots differ in these is estimated from the fleet. Named is \
-    what goes farther, more every day: from the seventh day on, of three robots or more, where it is as sure as --false-alarms asks \
+    what goes farther, more every day: from the sixth day on, of three robots or more, where it is as sure as --false-alarms asks \
     and more than --least-change. A step is told where it is more than --least-step: smaller ones another load makes.\n\n\
     A journal has a line for each day and joint:\n  \
     {\"day\": \"2026-11-25\", \"robot\": \"left\", \"joint\": \"joint_2\", \"temperature_degC\": 12.1,\n   \
@@ -111,9 +115,9 @@ fn settings(arguments: &Arguments) -> Result<WatchSettings, Failure> {
 }
 
 /// `path`, or the journals in it.
-fn files(path: &PathBuf) -> Result<Vec<PathBuf>, Failure> {
+fn files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
-        return Ok(vec![path.clone()]);
+        return Ok(vec![path.to_owned()]);
     }
     let bad = |error: std::io::Error| Failure::refused(format!("{}: {error}", path.display()));
     let entries = fs::read_dir(path).map_err(bad)?;
@@ -131,7 +135,7 @@ fn files(path: &PathBuf) -> Result<Vec<PathBuf>, Failure> {
     }
 }
 
-fn read_file(path: &PathBuf) -> Result<Vec<DaySummary>, Failure> {
+fn read_file(path: &Path) -> Result<Vec<DaySummary>, Failure> {
     let bad =
         |error: &dyn std::fmt::Display| Failure::refused(format!("{}: {error}", path.display()));
     let text = fs::read_to_string(path).map_err(|error| bad(&error))?;
