@@ -1,7 +1,7 @@
 """Writes recordings as others make them, with topics that ferntast has not.
 
 `rosbags DIR` writes a rosbag2 directory by `rosbags`, `mcap FILE` an .mcap file by
-`mcap-ros2-support`. Every message of a topic is the same but for its stamp. Prints JSON:
+`mcap-ros2-support`. Every message of a topic is the same. Prints JSON:
 {topic: {type, count, message}}.
 """
 

@@ -19,7 +19,16 @@ fn play(session: &Session, path: &str, arguments: &[&str]) -> Process {
 /// `kept` says so.
 fn listener(session: &Session, topic: &str, kind: &str, kept: bool, at_least: &str) -> Process {
     let qos = if kept { "state" } else { "event" };
-    let arguments = [topic, kind, "--qos", qos, "--seconds", "60", "--at-least", at_least];
+    let arguments = [
+        topic,
+        kind,
+        "--qos",
+        qos,
+        "--seconds",
+        "60",
+        "--at-least",
+        at_least,
+    ];
     Process::spawn(session.peer("count_messages.py", &arguments))
 }
 
@@ -27,7 +36,12 @@ fn listener(session: &Session, topic: &str, kind: &str, kept: bool, at_least: &s
 fn a_foreign_bag_is_heard_by_a_stock_client_byte_for_byte() {
     let session = Session::new();
     let topics = written(&session, "rosbags", "foreign");
-    let heard = ["/imu/data", "/robot/joint_states", "/camera/image", "/follower/measured_js"];
+    let heard = [
+        "/imu/data",
+        "/robot/joint_states",
+        "/camera/image",
+        "/follower/measured_js",
+    ];
     let mut listeners = Vec::new();
     for topic in heard {
         let kind = topics[topic]["type"].as_str().expect("a type");
@@ -46,7 +60,14 @@ fn a_foreign_bag_is_heard_by_a_stock_client_byte_for_byte() {
     let as_recorded = played["as_recorded"].as_array().expect("topics");
     let mut names: Vec<&str> = as_recorded.iter().filter_map(Value::as_str).collect();
     names.sort_unstable();
-    let expected = ["/camera/image", "/follower/measured_js", "/imu/data", "/robot/joint_states", "/tf", "/tf_static"];
+    let expected = [
+        "/camera/image",
+        "/follower/measured_js",
+        "/imu/data",
+        "/robot/joint_states",
+        "/tf",
+        "/tf_static",
+    ];
     assert_eq!(names, expected, "{played:#}");
     assert_eq!(played["left_out"], json!([]));
     assert_eq!(played["lost"], 0, "{played:#}");
@@ -66,8 +87,22 @@ fn what_is_no_topic_of_ros_is_left_out_with_its_reason() {
     assert_eq!(played["as_recorded"], json!(["/cmd_vel"]), "{played:#}");
     let left_out = &played["left_out"][0];
     assert_eq!(left_out["topic"], "/notes", "{played:#}");
-    assert!(left_out["reason"].as_str().expect("a reason").contains("json"), "{played:#}");
+    assert!(
+        left_out["reason"]
+            .as_str()
+            .expect("a reason")
+            .contains("json"),
+        "{played:#}"
+    );
 
-    let words = run(&session, &["play", "foreign.mcap", "--session", session.name()]).success().stdout;
-    assert!(words.contains("as recorded: /cmd_vel") && words.contains("left out: /notes"), "{words}");
+    let words = run(
+        &session,
+        &["play", "foreign.mcap", "--session", session.name()],
+    )
+    .success()
+    .stdout;
+    assert!(
+        words.contains("as recorded: /cmd_vel") && words.contains("left out: /notes"),
+        "{words}"
+    );
 }
