@@ -17,6 +17,7 @@ pub mod memory;
 mod namespace;
 pub mod parameter;
 mod raw;
+mod raw_topic;
 mod sequence_gaps;
 pub mod shared_memory;
 pub mod trigger;
@@ -33,7 +34,8 @@ pub use error::{
 pub use foxglove::{FoxgloveBus, FoxgloveConfig};
 pub use memory::MemoryBus;
 pub use parameter::{BusParameters, Choice, ParameterNode};
-pub use raw::{RawPublisher, RawTopic};
+pub use raw::RawPublisher;
+pub use raw_topic::RawTopic;
 pub use shared_memory::{SharedMemoryBus, SharedMemoryConfig};
 pub use trigger::{Call, TriggerService};
 pub use types::{Depth, Received, SubscriberCounts};

@@ -5,6 +5,7 @@ use crate::{
     bus::Bus,
     dds::RawDdsPublisher,
     error::{CreateError, RawPublishError},
+    raw_topic::RawTopic,
     zenoh_ros::RawZenohPublisher,
 };
 
@@ -14,49 +15,6 @@ const LITTLE_ENDIAN: [u8; 2] = [0x00, 0x01];
 const HEADER: usize = 4;
 /// Longest message that is sent: a picture of full HD and some more.
 const MAX_LENGTH: usize = 16 * 1024 * 1024;
-
-/// A topic of any type.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RawTopic {
-    /// Full name, outside of any namespace.
-    pub name: String,
-    /// Its type, `package/msg/Type`.
-    pub interface: String,
-    /// RIHS01 hash of the type; empty where it is not known. Zenoh needs it.
-    pub type_hash: String,
-    /// Whether lost messages are sent again.
-    pub reliable: bool,
-    /// Whether late joiners get the last ones.
-    pub transient_local: bool,
-    /// How many messages wait, or are kept for late joiners; at least 1.
-    pub depth: usize,
-}
-
-impl RawTopic {
-    /// Package and type.
-    ///
-    /// # Errors
-    ///
-    /// [`CreateError::Middleware`]: the interface is no message's.
-    pub(crate) fn kind(&self, transport: &'static str) -> Result<(&str, &str), CreateError> {
-        let kind = self.interface.split_once("/msg/");
-        kind.ok_or_else(|| {
-            self.refused(
-                transport,
-                format!("{:?} is no package/msg/Type", self.interface),
-            )
-        })
-    }
-
-    pub(crate) fn refused(&self, transport: &'static str, reason: String) -> CreateError {
-        CreateError::Middleware {
-            transport,
-            topic: self.name.clone(),
-            what: "publisher",
-            reason,
-        }
-    }
-}
 
 /// Sends bytes on one topic.
 pub enum RawPublisher {

@@ -11,7 +11,7 @@ use super::{DdsBus, qos::WAIT};
 use crate::{
     error::{CreateError, RawPublishError},
     namespace::within,
-    raw::RawTopic,
+    raw_topic::RawTopic,
 };
 
 /// The body of a message. To the CDR serializer of ros2-client it is a tuple of octets, which

@@ -14,7 +14,7 @@ use super::{ZenohBus, raw::Raw};
 use crate::{
     error::{CreateError, RawPublishError},
     namespace::within,
-    raw::RawTopic,
+    raw_topic::RawTopic,
 };
 
 /// Sends bytes on one topic over Zenoh.

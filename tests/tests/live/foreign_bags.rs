@@ -49,7 +49,7 @@ fn a_foreign_bag_is_heard_by_a_stock_client_byte_for_byte() {
         own.await_stderr("ready", PATIENCE);
         listeners.push((topic, own));
     }
-    let mut player = play(&session, "foreign", &["--loop"]);
+    let player = play(&session, "foreign", &["--loop"]);
     for (topic, own) in listeners {
         let told = own.wait(PATIENCE).success().json();
         assert!(number(&told, "received") >= 5.0, "{topic}: {told:#}");
@@ -79,7 +79,7 @@ fn what_is_no_topic_of_ros_is_left_out_with_its_reason() {
     let topics = written(&session, "mcap", "foreign.mcap");
     let mut own = listener(&session, "/cmd_vel", "geometry_msgs/msg/Twist", false, "5");
     own.await_stderr("ready", PATIENCE);
-    let mut player = play(&session, "foreign.mcap", &["--loop"]);
+    let player = play(&session, "foreign.mcap", &["--loop"]);
     let told = own.wait(PATIENCE).success().json();
     assert_eq!(told["last"], topics["/cmd_vel"]["message"]);
     player.interrupt();
