@@ -225,6 +225,30 @@ pub enum CreateError {
     },
 }
 
+/// Why bytes were not published.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RawPublishError {
+    /// More than is sent in one message.
+    #[error("the message has {length} bytes, more than {limit}")]
+    TooLong {
+        /// Bytes given.
+        length: usize,
+        /// Most bytes.
+        limit: usize,
+    },
+    /// Not what ROS 2 writes.
+    #[error("the message is no CDR in little endian")]
+    Encoding,
+    /// Anything else, in the library's words.
+    #[error("it cannot be sent over {transport}: {reason}")]
+    Middleware {
+        /// The way across.
+        transport: &'static str,
+        /// What the library said.
+        reason: String,
+    },
+}
+
 /// Why a message was not published.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PublishError {

@@ -16,6 +16,8 @@ pub mod mcap;
 pub mod memory;
 mod namespace;
 pub mod parameter;
+mod raw;
+mod raw_topic;
 mod sequence_gaps;
 pub mod shared_memory;
 pub mod trigger;
@@ -26,11 +28,14 @@ pub use self::mcap::McapBus;
 pub use bus::{Bus, Publisher, Subscriber};
 pub use dds::{DdsBus, DdsConfig};
 pub use error::{
-    CleanUpError, CreateError, DecodeError, EncodeError, OpenError, PublishError, SendError,
+    CleanUpError, CreateError, DecodeError, EncodeError, OpenError, PublishError, RawPublishError,
+    SendError,
 };
 pub use foxglove::{FoxgloveBus, FoxgloveConfig};
 pub use memory::MemoryBus;
 pub use parameter::{BusParameters, Choice, ParameterNode};
+pub use raw::RawPublisher;
+pub use raw_topic::RawTopic;
 pub use shared_memory::{SharedMemoryBus, SharedMemoryConfig};
 pub use trigger::{Call, TriggerService};
 pub use types::{Depth, Received, SubscriberCounts};

@@ -8,6 +8,7 @@ mod config;
 mod doctor;
 mod experiment;
 mod faults;
+mod fleet;
 mod foxglove_option;
 mod interfaces;
 mod lab;
@@ -95,6 +96,8 @@ enum Command {
     Link(link::Arguments),
     /// Use what the twin of a joint found: in the servo's friction feed-forward, or in the lab.
     Twin(twin::Arguments),
+    /// Watch many robots' twins: which joint ages differently from its siblings.
+    Fleet(fleet::Arguments),
     /// Say what this machine offers and lacks, and how to correct it.
     Doctor(doctor::Arguments),
     /// List the topics' interfaces: type, RIHS01 hash, schema.
@@ -111,7 +114,7 @@ impl Command {
     /// Whether it holds processes or a recording, so that nobody who stops
     /// reading its output may end it.
     fn keeps_running(&self) -> bool {
-        use Command::{Arm, Experiment, Faults, Lockstep, Node, Paper, Play, Session};
+        use Command::{Arm, Experiment, Faults, Fleet, Lockstep, Node, Paper, Play, Session};
         matches!(
             self,
             Session(_)
@@ -120,6 +123,7 @@ impl Command {
                 | Play(_)
                 | Lockstep(_)
                 | Faults(_)
+                | Fleet(_)
                 | Experiment(_)
                 | Paper(_)
         )
@@ -180,6 +184,7 @@ fn main() -> ExitCode {
         Command::State(arguments) => state::run(arguments, json),
         Command::Link(arguments) => link::run(arguments, json),
         Command::Twin(arguments) => twin::run(arguments, json),
+        Command::Fleet(arguments) => fleet::run(arguments, json),
         Command::Doctor(arguments) => doctor::run(arguments, json),
         Command::Interfaces(arguments) => interfaces::run(arguments, json),
         Command::Config(arguments) => config::run(&arguments, json),

@@ -17,6 +17,13 @@ use super::{
 
 /// Put a recording back on the topics of ROS 2, with its timing.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Recordings of other people, too: a topic that is not one of ours goes onto ROS 2 under its own name, of whatever \
+    type, byte for byte, with the quality of service that it was recorded with. What cannot go is told with the reason (JSON: left_out). \
+    Those topics do not reach --foxglove; open the file itself there.\n\n  \
+    ferntast play rosbag2_2026_11_25              # rosbag2 directories and .mcap files, of schemas ros2msg or ros2idl\n  \
+    ferntast play other.mcap --rate 0.5 --loop --domain 7"
+)]
 pub struct Arguments {
     /// A rosbag2 directory or an .mcap file.
     recording: PathBuf,
@@ -82,6 +89,15 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
         print_json(&played)?;
     } else {
         println!("played {:.1} s", played.played_s);
+        if !played.as_recorded.is_empty() {
+            println!("as recorded: {}", played.as_recorded.join(", "));
+        }
+        for own in &played.left_out {
+            println!(
+                "left out: {} ({}): {}",
+                own.topic, own.interface, own.reason
+            );
+        }
         played.twins.iter().for_each(|own| println!("{own}"));
     }
     match played.fault() {

@@ -205,7 +205,7 @@ pub fn check_twins(experiments: &[PathBuf], joints: JointNames) -> Result<(), Fa
         .map_err(Failure::refused)
 }
 
-fn domain_of_environment() -> Result<Option<u32>, Failure> {
+pub fn domain_of_environment() -> Result<Option<u32>, Failure> {
     match std::env::var("ROS_DOMAIN_ID") {
         Err(_) => Ok(None),
         Ok(text) if text.trim().is_empty() => Ok(None),

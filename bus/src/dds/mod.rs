@@ -5,6 +5,7 @@
 
 mod publisher;
 mod qos;
+mod raw;
 mod senders;
 mod subscriber;
 
@@ -21,6 +22,7 @@ use ros2_client::{
 
 pub use publisher::DdsPublisher;
 pub(crate) use qos::service_qos;
+pub use raw::RawDdsPublisher;
 pub use subscriber::DdsSubscriber;
 
 use crate::{

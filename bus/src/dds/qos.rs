@@ -34,7 +34,7 @@ pub(super) fn offered(delivery: Delivery) -> QosPolicies {
 }
 
 /// How long a reliable writer waits for space before it gives up on a message.
-const WAIT: WhenFull = WhenFull::Wait(Duration::from_millis(10));
+pub(super) const WAIT: WhenFull = WhenFull::Wait(Duration::from_millis(10));
 
 /// What is offered, and, with the reader's own depth, asked for.
 pub(super) fn qos(delivery: Delivery) -> QosProfile {

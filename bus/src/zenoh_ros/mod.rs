@@ -7,6 +7,7 @@
 mod publisher;
 mod qos;
 mod raw;
+mod raw_publisher;
 mod router;
 mod session;
 mod subscriber;
@@ -17,6 +18,7 @@ use ferntast_msgs::{Message, topics::Topic};
 use hiroz::{context::ZContext, node::ZNode};
 
 pub use publisher::ZenohPublisher;
+pub use raw_publisher::RawZenohPublisher;
 pub use subscriber::ZenohSubscriber;
 
 use crate::{

@@ -56,6 +56,11 @@ impl ForwardingLoop {
         self.forwarded
     }
 
+    /// So many messages more could not be sent on, by another way.
+    pub fn failed(&mut self, messages: u64) {
+        self.failed += messages;
+    }
+
     /// One round: forwards what is visible at `at`, and reports how it went.
     /// `judge` may raise faults; it is given the health and the number of
     /// messages that could not be sent on.

@@ -6,6 +6,7 @@ pub mod forwarder;
 mod forwarding_loop;
 pub mod foxglove;
 pub mod gateway;
+pub mod others;
 pub mod player;
 pub mod recorder;
 mod state_services;

@@ -1,23 +1,32 @@
-//! The player: puts a recording back on the topics with its timing.
+//! The player: puts a recording back on the topics with its timing. What the table of topics
+//! has not it puts onto ROS 2 itself, as bytes ([`super::others`]).
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use ferntast_bus::{Bus, McapBus, mcap};
+use ferntast_bus::{
+    Bus, McapBus,
+    mcap::{self, BagReader},
+};
 use ferntast_msgs::Time;
 
 use super::{
     forwarder::{Forwarder, Forwarding, Stamp},
     forwarding_loop::ForwardingLoop,
+    others::{self, Others, Sorted},
 };
 use crate::process::{NodeError, ProcessContext, periodic};
 
 /// Name of the node.
 pub const NAME: &str = "player";
 
+/// How long who waits on ROS 2 has to find what the player publishes there itself \[ns\].
+const DISCOVERY_NANOS: i64 = 1_000_000_000;
+
 /// Opens `McapBus` readers on the recording with the routes to play it.
 fn open(
     process: &ProcessContext,
     path: &std::path::Path,
+    sorted: &Sorted,
 ) -> Result<(Forwarder, Time, Time), NodeError> {
     let bad = |reason: String| NodeError::Bag {
         path: path.to_owned(),
@@ -34,7 +43,7 @@ fn open(
     let mut forwarder = Forwarder::default();
     forwarder.add_topics(&recording, &process.bus, Stamp::Round, &joints, |topic| {
         let recorded = info.topics.iter().any(|own| topic.name == *own.name);
-        if recorded && !except.iter().any(|name| topic.name == **name) {
+        if recorded && !sorted.has(&topic.name) && !except.iter().any(|name| topic.name == **name) {
             Forwarding::Every { queue: 512 }
         } else {
             Forwarding::Not
@@ -51,10 +60,30 @@ fn open(
 pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let path = process.session.bag.as_deref().ok_or(NodeError::NoBag)?;
     let rate = process.session.play.rate;
+    let bad = |reason: String| NodeError::Bag {
+        path: path.to_owned(),
+        reason,
+    };
+    let bag = BagReader::open(path).map_err(|error| bad(error.to_string()))?;
+    let section = &process.session.loaded.scenario.gateway;
+    let except = &process.session.play.except;
+    let sorted = others::sort(&bag, &process.session.joints(), except, section.middleware);
+    let sorted = sorted.map_err(|error| bad(error.to_string()))?;
+    let mut others = None;
+    if !sorted.raw.is_empty() {
+        let ros = others::open_ros(section)?;
+        others = Some(Others::new(bag, &ros, &sorted.raw)?);
+        process
+            .clock
+            .sleep_until(process.clock.now().plus_nanos(DISCOVERY_NANOS));
+    }
     let mut forwarding = ForwardingLoop::new(process)?;
     loop {
-        let (forwarder, start, end) = open(process, path)?;
+        let (forwarder, start, end) = open(process, path, &sorted)?;
         forwarding.begin(forwarder);
+        if let Some(others) = &mut others {
+            others.begin();
+        }
         let begun = process.clock.now();
         let done = AtomicBool::new(false);
         periodic::run_while(
@@ -63,6 +92,10 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             || !process.stop.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed),
             |wake| {
                 let at = start.plus_seconds(wake.now.seconds_since(begun) * rate);
+                if let Some(others) = &mut others {
+                    let failed = others.publish(at);
+                    forwarding.failed(failed);
+                }
                 forwarding.round(at, wake, |_, _| {});
                 done.store(at > end, Ordering::Relaxed);
             },

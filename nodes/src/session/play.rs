@@ -14,7 +14,10 @@ use serde::Serialize;
 
 use super::{Monitor, SessionError, Supervisor, host_resources::HostResources, monitor::NodeView};
 use crate::{
-    bridge::player,
+    bridge::{
+        others::{self, LeftOut, Sorted},
+        player,
+    },
     graph::{Graph, NodeRow},
     process::SessionContext,
     twin::{self, TwinSummary},
@@ -32,6 +35,10 @@ pub struct Played {
     pub played_s: f64,
     /// Whether a live estimator took part.
     pub estimated: bool,
+    /// Topics that are not ours, which went to ROS 2 as they are.
+    pub as_recorded: Vec<String>,
+    /// Topics that were not played, and why.
+    pub left_out: Vec<LeftOut>,
     /// Messages that were lost on the way onto the topics.
     pub lost: u64,
     /// Where the recording is damaged: what stood there was not played.
@@ -94,6 +101,7 @@ pub fn play(
             .except
             .extend(live.into_iter().map(String::from));
     }
+    let sorted = sort(&context, &joints)?;
     let resources = HostResources::acquire(&context)?;
     let session_file = resources.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
@@ -149,8 +157,29 @@ pub fn play(
             .unwrap_or_default(),
         played_s: played,
         estimated: context.play.estimate,
+        as_recorded: sorted.raw.into_iter().map(|own| own.name).collect(),
+        left_out: sorted.left_out,
         lost,
         breaks: info.breaks.clone(),
         twins,
     })
+}
+
+/// What becomes of the recording's topics.
+fn sort(context: &SessionContext, joints: &JointNames) -> Result<Sorted, CreateError> {
+    // What cannot be opened the player refuses in words.
+    let bag = context
+        .bag
+        .as_deref()
+        .and_then(|path| BagReader::open(path).ok());
+    let Some(bag) = bag else {
+        return Ok(Sorted::default());
+    };
+    let middleware = context.loaded.scenario.gateway.middleware;
+    Ok(others::sort(
+        &bag,
+        joints,
+        &context.play.except,
+        middleware,
+    )?)
 }

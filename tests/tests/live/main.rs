@@ -13,6 +13,8 @@ mod console_trouble;
 mod contact_force;
 mod crashes;
 mod dynamics;
+mod fleet;
+mod foreign_bags;
 mod haply;
 mod lab_page;
 mod layout;

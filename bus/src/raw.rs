@@ -1,0 +1,69 @@
+//! Messages of types that we do not know, as bytes, to ROS 2: what other people's recordings
+//! hold.
+
+use crate::{
+    bus::Bus,
+    dds::RawDdsPublisher,
+    error::{CreateError, RawPublishError},
+    raw_topic::RawTopic,
+    zenoh_ros::RawZenohPublisher,
+};
+
+/// Header of a message in CDR, little endian, as ROS 2 writes it.
+const LITTLE_ENDIAN: [u8; 2] = [0x00, 0x01];
+/// Bytes of that header, with two that are for options.
+const HEADER: usize = 4;
+/// Longest message that is sent: a picture of full HD and some more.
+const MAX_LENGTH: usize = 16 * 1024 * 1024;
+
+/// Sends bytes on one topic.
+pub enum RawPublisher {
+    /// ROS 2 over DDS.
+    Dds(RawDdsPublisher),
+    /// ROS 2 over Zenoh.
+    Zenoh(RawZenohPublisher),
+}
+
+impl RawPublisher {
+    /// Publishes `bytes`: a message in CDR with its header. Allocates, and may wait on
+    /// reliable topics: not for the control path.
+    ///
+    /// # Errors
+    ///
+    /// [`RawPublishError`]; the publisher stays usable.
+    pub fn publish(&mut self, bytes: &[u8]) -> Result<(), RawPublishError> {
+        if bytes.len() > MAX_LENGTH {
+            return Err(RawPublishError::TooLong {
+                length: bytes.len(),
+                limit: MAX_LENGTH,
+            });
+        }
+        if bytes.len() < HEADER || bytes[..2] != LITTLE_ENDIAN {
+            return Err(RawPublishError::Encoding);
+        }
+        match self {
+            RawPublisher::Dds(publisher) => publisher.publish(&bytes[HEADER..]),
+            RawPublisher::Zenoh(publisher) => publisher.publish(bytes),
+        }
+    }
+}
+
+impl Bus {
+    /// A publisher of bytes on `topic`, whatever its type.
+    ///
+    /// # Errors
+    ///
+    /// [`CreateError::Middleware`]: a name or type that ROS 2 does not take, over Zenoh one
+    /// without a hash; a bus that is not ROS 2.
+    pub fn raw_publisher(&self, topic: &RawTopic) -> Result<RawPublisher, CreateError> {
+        match self {
+            Bus::Dds(bus) => bus.raw_publisher(topic).map(RawPublisher::Dds),
+            Bus::Zenoh(bus) => bus.raw_publisher(topic).map(RawPublisher::Zenoh),
+            Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) | Bus::Foxglove(_) => Err(topic
+                .refused(
+                    "this bus",
+                    "it carries the topics of the table only".to_owned(),
+                )),
+        }
+    }
+}

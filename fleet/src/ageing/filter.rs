@@ -1,0 +1,324 @@
+//! The model of one series, followed from day to day by a Kalman filter.
+//!
+//! y = level + slope w + curvature w² + wander + e, w the temperature; the level moves by
+//! the drift and a random walk, the wander fades as an autoregression of first order.
+
+use super::onsets::{Best, Onsets};
+use super::series::Observation;
+use super::spread::Spread;
+
+const STATES: usize = 5;
+const LEVEL: usize = 0;
+const DRIFT: usize = 1;
+const SLOPE: usize = 2;
+const CURVATURE: usize = 3;
+const WANDER: usize = 4;
+
+/// A value for each state.
+pub(super) type Vector = [f64; STATES];
+
+/// Variance of a level that nothing is known of: shares of the siblings' size are near 1.
+const UNKNOWN_LEVEL: f64 = 4.0;
+/// What is left of the wander after a day \[1\].
+const WANDER_KEEPS: f64 = 0.75;
+/// Innovations beyond so many standard deviations count as this.
+pub(super) const BOUND: f64 = 3.0;
+/// By so much at most a neighbouring day that was odd in the same direction moves the bound.
+const MOST_MOVED: f64 = 12.0;
+/// A squared difference beyond this counts as this: one odd day is no noise scale.
+const MOST_DIFFERENCE: f64 = 6.0;
+/// How many of n successive differences are worth as much as independent values.
+const WORTH: f64 = 2.0 / 3.0;
+
+/// How far a day's value is from what was expected.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Innovation {
+    pub residual: f64,
+    pub variance: f64,
+}
+
+/// What the siblings did together on a day, and its variance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Common {
+    pub value: f64,
+    pub variance: f64,
+}
+
+/// The filter. A single odd day is bounded; one among others that were as odd in the same
+/// direction is none. That is known a day later: the newest day is learnt provisionally, and
+/// once more with the next one.
+#[derive(Clone, Debug)]
+pub(super) struct Filter {
+    settled: Core,
+    newest: Option<(Observation, Common)>,
+    core: Core,
+}
+
+impl Filter {
+    /// Before the first day; ramps are followed where `onsets` says so.
+    pub fn new(spread: &Spread, onsets: bool) -> Filter {
+        let core = Core::new(spread, onsets);
+        Filter {
+            settled: core.clone(),
+            newest: None,
+            core,
+        }
+    }
+
+    /// Goes on to `day`.
+    pub fn predict(&mut self, day: i64, spread: &Spread) {
+        self.core.predict(day, spread);
+    }
+
+    /// What `own` says beyond what was expected, without what the siblings do together.
+    pub fn innovation(&self, own: &Observation, spread: &Spread) -> Innovation {
+        self.core.innovation(own, spread)
+    }
+
+    /// Learns from `own`. Gives the standardized innovation and its variance, where the level
+    /// was known before.
+    pub fn update(
+        &mut self,
+        own: &Observation,
+        common: Common,
+        spread: &Spread,
+    ) -> Option<(f64, f64)> {
+        if let Some((before, its_common)) = self.newest {
+            self.settled.predict(before.day, spread);
+            // What the next day says where the day between is not believed.
+            let mut without = self.settled.states();
+            without.predict(own.day, spread);
+            let next = without.innovation(own, spread).without(common).standard();
+            self.settled.update(&before, its_common, Some(next), spread);
+        }
+        self.core.clone_from(&self.settled);
+        self.core.predict(own.day, spread);
+        self.newest = Some((*own, common));
+        self.core.update(own, common, None, spread)
+    }
+
+    /// Its noise beside that of its siblings \[1\], a standard deviation, and how sure that is,
+    /// in degrees of freedom; `alike` is what the siblings are worth.
+    pub fn scale(&self, alike: f64) -> (f64, f64) {
+        self.core.scale(alike)
+    }
+
+    /// The mean square of its own differences, and how many there are.
+    pub fn own_scale(&self) -> Option<(f64, f64)> {
+        let core = &self.core;
+        (core.counted >= 3.0).then(|| (core.differences / core.counted, core.counted))
+    }
+
+    /// The ramp and the step with the most evidence.
+    pub fn best(&self) -> Option<Best> {
+        self.core.onsets.best()
+    }
+
+    /// The level is unknown from now on: it was named, and may be repaired.
+    pub fn restart(&mut self) {
+        self.core.restart();
+        self.settled.clone_from(&self.core);
+        self.newest = None;
+    }
+
+    /// Slope and curvature as found beyond `spread`'s means, and how much of what is
+    /// unknown of them was learnt, from 0 to 1.
+    pub fn learnt(&self, spread: &Spread) -> [(f64, f64); 2] {
+        let States {
+            mean, covariance, ..
+        } = &self.core.states;
+        let of =
+            |i: usize, center: f64, prior: f64| (mean[i] - center, 1.0 - covariance[i][i] / prior);
+        [
+            of(SLOPE, spread.mean_slope, spread.slope),
+            of(CURVATURE, spread.mean_curvature, spread.curvature),
+        ]
+    }
+}
+
+impl Innovation {
+    fn without(self, common: Common) -> Innovation {
+        Innovation {
+            residual: self.residual - common.value,
+            variance: (self.variance + common.variance).max(1e-18),
+        }
+    }
+
+    fn standard(self) -> f64 {
+        self.residual / self.variance.sqrt()
+    }
+}
+
+/// What is believed of the states.
+#[derive(Clone, Debug)]
+struct States {
+    mean: Vector,
+    covariance: [Vector; STATES],
+    day: Option<i64>,
+}
+
+/// Moves states on by a number of days.
+fn moved(days: f64) -> impl Fn(&mut Vector) {
+    let keeps = WANDER_KEEPS.powf(days);
+    move |states: &mut Vector| {
+        states[LEVEL] += days * states[DRIFT];
+        states[WANDER] *= keeps;
+    }
+}
+
+impl States {
+    fn predict(&mut self, day: i64, spread: &Spread) -> f64 {
+        let days = self.day.map_or(0, |own| (day - own).max(0)) as f64;
+        self.day = Some(day);
+        if days == 0.0 {
+            return days;
+        }
+        let keeps = WANDER_KEEPS.powf(days);
+        let moved = moved(days);
+        moved(&mut self.mean);
+        // F P Fᵀ: rows, then columns.
+        self.covariance.iter_mut().for_each(&moved);
+        for column in 0..STATES {
+            self.covariance[LEVEL][column] += days * self.covariance[DRIFT][column];
+            self.covariance[WANDER][column] *= keeps;
+        }
+        self.covariance[LEVEL][LEVEL] += days * spread.walk;
+        self.covariance[WANDER][WANDER] += (1.0 - keeps * keeps) * spread.wander;
+        days
+    }
+
+    fn innovation(&self, own: &Observation, spread: &Spread) -> Innovation {
+        let h = row(own.warmth);
+        Innovation {
+            residual: own.value - dot(&h, &self.mean),
+            variance: dot(&h, &self.times(&h)) + spread.noise_of(own.std_error),
+        }
+    }
+
+    fn times(&self, h: &Vector) -> Vector {
+        self.covariance.map(|row| dot(&row, h))
+    }
+}
+
+/// The filter with what it says of noise and changes.
+#[derive(Clone, Debug)]
+struct Core {
+    states: States,
+    /// Values since the level was unknown.
+    seen: u32,
+    before: Option<f64>,
+    /// Halved squares of successive differences of standardized innovations: a noise scale
+    /// that a slow change does not touch (von Neumann 1941).
+    differences: f64,
+    counted: f64,
+    onsets: Onsets,
+}
+
+impl Core {
+    fn new(spread: &Spread, onsets: bool) -> Core {
+        let mut covariance = [[0.0; STATES]; STATES];
+        covariance[LEVEL][LEVEL] = UNKNOWN_LEVEL;
+        covariance[DRIFT][DRIFT] = spread.drift;
+        covariance[SLOPE][SLOPE] = spread.slope;
+        covariance[CURVATURE][CURVATURE] = spread.curvature;
+        covariance[WANDER][WANDER] = spread.wander;
+        let mut mean = [0.0; STATES];
+        mean[SLOPE] = spread.mean_slope;
+        mean[CURVATURE] = spread.mean_curvature;
+        Core {
+            states: States {
+                mean,
+                covariance,
+                day: None,
+            },
+            seen: 0,
+            before: None,
+            differences: 0.0,
+            counted: 0.0,
+            onsets: Onsets::new(onsets),
+        }
+    }
+
+    fn states(&self) -> States {
+        self.states.clone()
+    }
+
+    fn predict(&mut self, day: i64, spread: &Spread) {
+        let days = self.states.predict(day, spread);
+        self.onsets.predict(moved(days));
+    }
+
+    fn innovation(&self, own: &Observation, spread: &Spread) -> Innovation {
+        self.states.innovation(own, spread)
+    }
+
+    /// Learns from `own`; `next` is what the day after it says, standardized, where it is known.
+    fn update(
+        &mut self,
+        own: &Observation,
+        common: Common,
+        next: Option<f64>,
+        spread: &Spread,
+    ) -> Option<(f64, f64)> {
+        let innovation = self.innovation(own, spread).without(common);
+        let Innovation { residual, variance } = innovation;
+        let u = innovation.standard();
+        let (scale, _) = self.scale(spread.alike);
+        let as_odd = |other: Option<f64>| other.map_or(0.0, |other| other * u.signum());
+        let neighbour = as_odd(self.before).max(as_odd(next));
+        let bound = BOUND * scale + neighbour.clamp(0.0, MOST_MOVED);
+        let weight = if u.abs() > bound {
+            bound / u.abs()
+        } else {
+            1.0
+        };
+        let h = row(own.warmth);
+        let ph = self.states.times(&h);
+        let gain = ph.map(|x| x * weight / variance);
+        self.onsets
+            .update(own.day, &h, &gain, weight * residual, variance);
+        for (i, k) in gain.iter().enumerate() {
+            self.states.mean[i] += k * residual;
+            for (j, x) in ph.iter().enumerate() {
+                self.states.covariance[i][j] -= k * x;
+            }
+        }
+        self.seen += 1;
+        if self.seen < 2 {
+            return None;
+        }
+        if let Some(before) = self.before {
+            self.differences += ((u - before).powi(2) / 2.0).min(MOST_DIFFERENCE);
+            self.counted += 1.0;
+        }
+        self.before = Some(u);
+        Some((u, variance))
+    }
+
+    fn scale(&self, alike: f64) -> (f64, f64) {
+        let freedom = alike + WORTH * self.counted;
+        let squared = (alike + WORTH * self.differences) / freedom;
+        (squared.sqrt().clamp(0.8, 4.0), freedom)
+    }
+
+    fn restart(&mut self) {
+        self.states.covariance[LEVEL][LEVEL] += UNKNOWN_LEVEL;
+        self.seen = 0;
+        self.before = None;
+        self.onsets.clear();
+    }
+}
+
+/// What an observation at that warmth sees of the states.
+fn row(warmth: f64) -> Vector {
+    let mut h = [0.0; STATES];
+    h[LEVEL] = 1.0;
+    h[SLOPE] = warmth;
+    h[CURVATURE] = warmth * warmth;
+    h[WANDER] = 1.0;
+    h
+}
+
+pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
