@@ -19,9 +19,9 @@ const MAX_LENGTH: usize = 16 * 1024 * 1024;
 /// Sends bytes on one topic.
 pub enum RawPublisher {
     /// ROS 2 over DDS.
-    Dds(RawDdsPublisher),
+    Dds(Box<RawDdsPublisher>),
     /// ROS 2 over Zenoh.
-    Zenoh(RawZenohPublisher),
+    Zenoh(Box<RawZenohPublisher>),
 }
 
 impl RawPublisher {
@@ -57,8 +57,14 @@ impl Bus {
     /// without a hash; a bus that is not ROS 2.
     pub fn raw_publisher(&self, topic: &RawTopic) -> Result<RawPublisher, CreateError> {
         match self {
-            Bus::Dds(bus) => bus.raw_publisher(topic).map(RawPublisher::Dds),
-            Bus::Zenoh(bus) => bus.raw_publisher(topic).map(RawPublisher::Zenoh),
+            Bus::Dds(bus) => {
+                let publisher = bus.raw_publisher(topic)?;
+                Ok(RawPublisher::Dds(Box::new(publisher)))
+            }
+            Bus::Zenoh(bus) => {
+                let publisher = bus.raw_publisher(topic)?;
+                Ok(RawPublisher::Zenoh(Box::new(publisher)))
+            }
             Bus::Memory(_) | Bus::SharedMemory(_) | Bus::Mcap(_) | Bus::Foxglove(_) => Err(topic
                 .refused(
                     "this bus",

@@ -198,10 +198,11 @@ impl Iterator for Days {
             let mut share = (own.per_kelvin * (temperature - 15.0)).exp();
             share *= 1.0 + own.ageing * day as f64 / 365.25;
             share *= 1.0 + own.load_worth * self.loads[own.robot] + noise;
-            if let Some(ageing) = &self.ageing {
-                if ageing.robot == own.robot && ageing.joint == own.joint {
-                    share *= 1.0 + ageing.per_day * (day - ageing.from).max(0) as f64;
-                }
+            if let Some(ageing) = &self.ageing
+                && ageing.robot == own.robot
+                && ageing.joint == own.joint
+            {
+                share *= 1.0 + ageing.per_day * (day - ageing.from).max(0) as f64;
             }
             // Twins tell too small an error, and not always the same one.
             let std_error = own.level * own.noise * (0.3 + 0.4 * told);

@@ -12,6 +12,9 @@ use ferntast_model::friction::FrictionState;
 /// Columns, one value a sample or a row.
 pub type Columns = Arc<Vec<Vec<f64>>>;
 
+/// Columns by what they are of.
+type List = Vec<(Key, Columns)>;
+
 /// Columns of one kind that are kept, at most; then all are forgotten.
 const MOST: usize = 24;
 
@@ -33,9 +36,9 @@ pub struct Kept {
 #[derive(Debug, Default)]
 struct Lists {
     /// At the working rate.
-    working: Vec<(Key, Columns)>,
+    working: List,
     /// Filtered at these rows.
-    filtered: Vec<(Vec<usize>, Vec<(Key, Columns)>)>,
+    filtered: Vec<(Vec<usize>, List)>,
     /// States for laws of the motion, at the working rate: a third of what a point takes, so
     /// that less memory is gone through for each shape.
     states: Option<Arc<Vec<FrictionState>>>,
@@ -81,7 +84,7 @@ impl Kept {
 
     fn get(
         &self,
-        list: impl Fn(&mut Lists) -> &mut Vec<(Key, Columns)>,
+        list: impl Fn(&mut Lists) -> &mut List,
         key: Key,
         make: impl FnOnce() -> Vec<Vec<f64>>,
     ) -> Columns {
@@ -107,7 +110,7 @@ impl Kept {
 impl Lists {
     /// What is kept at these rows; of three kinds of rows, with reversals, without, and
     /// without those that are not determined.
-    fn at(&mut self, rows: &[usize]) -> &mut Vec<(Key, Columns)> {
+    fn at(&mut self, rows: &[usize]) -> &mut List {
         const KINDS: usize = 3;
         let known = self.filtered.iter().position(|own| own.0 == rows);
         let at = known.unwrap_or_else(|| {
