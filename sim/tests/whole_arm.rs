@@ -90,10 +90,6 @@ fn a_law_claims_passivity_where_it_makes_no_energy_and_only_there() {
         });
         let (energy, told) = worst.expect("some environment");
         match law.claims_passivity() {
-            // It makes some in other cases alone, drawn at random (`true_ports.rs`).
-            false if name == "two_layer" => {
-                assert!(energy > -BOUND, "{name} makes {energy:.3} J: {told}");
-            }
             true => assert!(energy > -BOUND, "{name} makes {energy:.3} J: {told}"),
             false => assert!(
                 energy < -BOUND,
@@ -256,7 +252,7 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
         let told = format!("{} {round_trip} s: {outcome:?}", environment.name());
         assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
         assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
-        // The inner law's 11 N·s/m and up to 3.9 that fill the tank.
+        // The inner law's 11 N·s/m and up to 4 that fill the tank.
         assert!((13.0..15.0).contains(&outcome.felt_damping), "{told}");
         assert!((0.0..=0.491).contains(&outcome.force_step), "{told}");
         assert!(outcome.drift < 1.2e-3, "{told}");
@@ -268,12 +264,12 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
     };
     for round_trip in ROUND_TRIPS {
         let (share, told) = felt(Environment::SoftSpring, round_trip);
-        assert!((0.97..1.03).contains(&share), "{told}");
+        assert!((0.98..1.02).contains(&share), "{told}");
         let (share, told) = felt(Environment::HardWall, round_trip);
         assert!((0.91..1.1).contains(&share), "{told}");
         // What recedes takes energy at once, and the hand's comes a round trip later.
         let (share, told) = felt(Environment::MovingWall, round_trip);
-        assert!((0.87..1.06).contains(&share), "{told}");
+        assert!((0.92..1.07).contains(&share), "{told}");
     }
 }
 

@@ -23,6 +23,8 @@ pub(super) struct EnergyTank {
     received: Option<f64>,
     /// The port at the last step.
     port: Energy,
+    /// Balance of the port that was promised already [J].
+    mark: f64,
     dissipated: f64,
 }
 
@@ -41,6 +43,20 @@ impl EnergyTank {
         self.level += entered - (port.left - self.port.left);
         self.port = port;
         let promise = (share * entered).min(self.level).max(0.0);
+        self.level -= promise;
+        self.promised += promise;
+    }
+
+    /// As [`port`](Self::port) after a step of `dt` \[s\], but promises of the balance only what is beyond what it
+    /// was before: what goes out and in again, as a tip that trembles on a wall makes it, stays.
+    /// What it was before is forgotten within `memory` \[s\].
+    pub fn port_beyond(&mut self, dt: f64, port: Energy, share: f64, memory: f64) {
+        let balance = port.balance();
+        self.level += balance - self.port.balance();
+        self.port = port;
+        self.mark -= (self.mark - balance).max(0.0) * (dt / memory).min(1.0);
+        let promise = (share * (balance - self.mark)).min(self.level).max(0.0);
+        self.mark = self.mark.max(balance);
         self.level -= promise;
         self.promised += promise;
     }
@@ -133,6 +149,7 @@ mod tests {
         fn no_energy_comes_from_promises(
             steps in proptest::collection::vec((0.0..1.0f64, 0.0..1.0f64, any::<bool>(), any::<bool>()), 1..200),
             share in 0.0..1.0f64,
+            memory in 1e-3..1.0f64,
         ) {
             let mut stores = [EnergyTank::default(); 2];
             let mut ports = [Energy::default(); 2];
@@ -143,7 +160,10 @@ mod tests {
                 let own = usize::from(which);
                 ports[own].entered += entered;
                 ports[own].left += left;
-                stores[own].port(ports[own], share);
+                match which {
+                    true => stores[own].port(ports[own], share),
+                    false => stores[own].port_beyond(1e-3, ports[own], share, memory),
+                }
                 stores[own].give(share, 0.1);
                 if heard {
                     let promised = stores[1 - own].promised;
@@ -154,6 +174,25 @@ mod tests {
                 prop_assert!(held <= balance + 1e-9, "{held} {balance}");
             }
         }
+    }
+
+    #[test]
+    fn what_goes_out_and_comes_in_again_is_promised_once() {
+        let promised = |to_and_fro: usize, memory: f64| {
+            let mut tank = EnergyTank::with(10.0);
+            let mut port = Energy::default();
+            for _ in 0..to_and_fro {
+                port.entered += 1.0;
+                tank.port_beyond(1e-3, port, 0.5, memory);
+                port.left += 1.0;
+                tank.port_beyond(1e-3, port, 0.5, memory);
+            }
+            tank.promised
+        };
+        assert_eq!(promised(1, 1e9), 0.5);
+        assert!((promised(10, 1e9) - 0.5).abs() < 1e-6);
+        // Forgotten at once it is promised each time.
+        assert!((promised(10, 1e-3) - 5.0).abs() < 1e-9);
     }
 
     #[test]

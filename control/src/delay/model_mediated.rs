@@ -46,6 +46,7 @@ mod chord;
 mod compliance;
 mod estimate;
 mod even;
+mod noise;
 mod place;
 
 pub use estimate::SurfaceModel;

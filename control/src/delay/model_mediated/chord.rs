@@ -39,8 +39,8 @@ pub(super) struct Chord {
 
 impl Chord {
     /// After `dt` \[s\], at `depth` \[m\] under `force` \[N\] whose standard deviation has to be
-    /// `spread` \[N\].
-    pub fn add(&mut self, dt: f64, depth: f64, force: f64, spread: f64) {
+    /// `spread` \[N\], and no less than that of its `noise` \[N\].
+    pub fn add(&mut self, dt: f64, depth: f64, force: f64, spread: f64, noise: f64) {
         self.time += dt;
         let share = dt / self.time.min(CHORD);
         let (apart, away) = (force - self.force, depth - self.depth);
@@ -54,11 +54,14 @@ impl Chord {
             best.weight *= 1.0 - dt / CHORD_LIFE;
             self.counts = (self.counts + dt / CHORD_GROWTH).min(1.0);
         }
-        if self.time < CHORD_LEAST || self.spread < spread * spread || self.common <= 0.0 {
+        // Noise of the force makes its spread larger, and the slope by as much smaller.
+        let told = self.spread - noise * noise;
+        let least = spread.max(noise);
+        if self.time < CHORD_LEAST || told < least * least || self.common <= 0.0 {
             return;
         }
-        let slope = self.common / self.spread;
-        let left = (self.scatter - self.common * slope).max(0.0) / self.spread;
+        let slope = self.common / told;
+        let left = (self.scatter - self.common * slope).max(0.0) / told;
         // Of so many values that tell something each by itself.
         let error = left * CORRELATION / self.time.min(CHORD) / (slope * slope);
         let told = Known {
@@ -90,7 +93,7 @@ mod tests {
         let mut chord = Chord::default();
         for k in 0..1000 {
             let force = 5.0 + (3e-3 * f64::from(k)).sin();
-            chord.add(1e-3, 0.01 - force / 300.0, force, CHORD_SPREAD);
+            chord.add(1e-3, 0.01 - force / 300.0, force, CHORD_SPREAD, 0.0);
         }
         assert!(chord.best.is_none(), "{chord:?}");
     }

@@ -62,6 +62,8 @@ pub(super) struct Slope {
     information: f64,
     /// Variance of the depth about the line [m²].
     scatter: f64,
+    /// What changed unevenly, last: force [N] and depth [m].
+    uneven: [f64; 2],
 }
 
 impl Slope {
@@ -74,6 +76,7 @@ impl Slope {
         compliance: 1.0 / STIFFEST,
         information: 0.0,
         scatter: 0.0,
+        uneven: [0.0; 2],
     };
 
     pub fn known(&self) -> Known {
@@ -81,6 +84,11 @@ impl Slope {
             compliance: self.compliance,
             weight: self.information * self.compliance * self.compliance,
         }
+    }
+
+    /// What changed unevenly in the last step: force \[N\] and depth \[m\].
+    pub fn uneven(&self) -> [f64; 2] {
+        self.uneven
     }
 
     /// A new contact, maybe with something else than where `known` is from.
@@ -102,6 +110,7 @@ impl Slope {
         };
         let apart = even.step(dt, EVEN, force);
         let away = self.depth.step(dt, EVEN, depth);
+        self.uneven = [apart, away];
         let left = away - self.compliance * apart;
         self.scatter += EVEN * dt * (left * left - self.scatter);
         if apart.abs() < spread {

@@ -13,19 +13,24 @@
 
 use super::chord::{CHORD_SPREAD, CHORD_WAIT, Chord};
 use super::compliance::{Known, SPREAD, STIFFEST, Slope};
+use super::noise::Noise;
 use nalgebra::Vector3;
 
 /// Time constant of the window [s].
 const MEMORY: f64 = 0.3;
 /// A contact tells its normal in its first moments, before friction bends the
-/// force aside [s].
+/// force aside [s];
 const ONSET: f64 = 0.05;
+/// a light one, whose force is mostly noise, takes longer to tell it, until it pushed so much [N s].
+const TELLING: f64 = 0.3;
 /// A surface that is known keeps its normal until it was pushed so much from another
 /// direction [N s]: what an arm that shakes feigns is shorter.
 const OTHER: f64 = 0.1;
 /// Cosine of the angle within which a force belongs to the surface that is
 /// known: 40°, friction bends it aside by up to that.
 pub(super) const SAME: f64 = 0.77;
+/// Changes of the force by so many standard deviations of its noise are none of it [-].
+const CLEAR: f64 = 3.0;
 /// Slower than this the tip does not slide [m/s].
 const SLIDING: f64 = 5e-3;
 /// A tip that is free this far behind the surface shows that it has gone [m].
@@ -52,6 +57,7 @@ pub(super) struct SurfaceEstimator {
     model: Option<SurfaceModel>,
     slope: Slope,
     chord: Chord,
+    noise: Noise,
     /// For how long [s].
     touching: f64,
     /// Impulse of the force in the first moments of the contact [N s].
@@ -82,6 +88,7 @@ impl SurfaceEstimator {
             model: None,
             slope: Slope::UNKNOWN,
             chord: Chord::default(),
+            noise: Noise::default(),
             touching: 0.0,
             pushed: Vector3::zeros(),
             settling: false,
@@ -126,11 +133,14 @@ impl SurfaceEstimator {
         if self.touching == 0.0 {
             self.slope = Slope::anew(self.known());
             self.chord = Chord::default();
-            self.pushed = Vector3::zeros();
-            self.settling = self.model.is_none();
+            // A force about its threshold comes and goes.
+            if !self.settling || self.pushed.norm() >= TELLING {
+                self.pushed = Vector3::zeros();
+                self.settling = self.model.is_none();
+            }
             self.began = tip;
         }
-        if self.touching < ONSET {
+        if self.touching < ONSET || self.settling && self.pushed.norm() < TELLING {
             self.pushed += force * dt;
             let impulse = self.pushed.norm();
             let other = model.normal.dot(&self.pushed) < SAME * impulse;
@@ -150,13 +160,15 @@ impl SurfaceEstimator {
         let gone = model.normal.dot(&(self.began - tip));
         // What the arm feigns as it brakes is less than what it searches with.
         let spread = match normal_force > self.scale.searched {
-            true => self.scale.force * SPREAD,
+            true => (self.scale.force * SPREAD).max(CLEAR * self.noise.level()),
             false => f64::INFINITY,
         };
         self.slope.add(dt, gone, normal_force, spread);
+        self.noise.add(dt, self.slope.uneven());
         if self.touching > CHORD_WAIT {
             let spread = self.scale.force * CHORD_SPREAD;
-            self.chord.add(dt, gone, normal_force, spread);
+            self.chord
+                .add(dt, gone, normal_force, spread, self.noise.level());
         }
         let known = self.known();
         model.stiffness = 1.0 / known.compliance;

@@ -16,6 +16,21 @@ const TAKING_OVER: f64 = 0.03;
 /// With this a command that was kept back speeds up and brakes again [m/s²].
 const CATCH_UP: f64 = 0.5;
 
+/// In the first moments of a contact a tip that bounces is quicker than the estimate of its force
+/// and seems to take in what it gives out: nothing counts as coming in for so long [s].
+const IMPACT: f64 = 0.1;
+/// Where the tip is farther from it than this, nothing is near any more [m].
+const NEAR: f64 = 1e-3;
+
+/// What the tip touched, at the hand's scale.
+#[derive(Clone, Copy, Debug)]
+struct Touched {
+    /// Into it.
+    along: Vector3<f64>,
+    /// The tip there [m].
+    place: Vector3<f64>,
+}
+
 /// The follower's end: sends what the inner law says, and what it promises.
 #[derive(Clone, Debug)]
 pub struct TwoLayerFollower {
@@ -26,8 +41,14 @@ pub struct TwoLayerFollower {
     /// At the tip, of what is known of its contact.
     meter: EnergyMeter,
     late: Late,
+    /// How long it has been touching [s].
+    touching: f64,
+    /// Seemed to come in by impacts, since the start [J].
+    doubted: f64,
     /// Of the contact on the tip at the last step [N].
     contact: Vector3<f64>,
+    /// What is near, since the tip touched it.
+    near: Option<Touched>,
     command: LastCommand,
     /// The command is kept back, or catches up.
     kept: bool,
@@ -44,7 +65,10 @@ impl TwoLayerFollower {
             tank: EnergyTank::with(law.credit),
             meter: EnergyMeter::default(),
             late: Late::default(),
+            touching: 0.0,
+            doubted: 0.0,
             contact: Vector3::zeros(),
+            near: None,
             command: LastCommand::default(),
             kept: false,
             speed: 0.0,
@@ -55,6 +79,7 @@ impl TwoLayerFollower {
     fn count(&mut self, dt: f64, seen: &TouchingTip) {
         let Some((tip, contact)) = seen.tip.zip(seen.contact) else {
             self.contact = Vector3::zeros();
+            self.touching = 0.0;
             self.meter.step([0.0; 3], None);
             return;
         };
@@ -62,7 +87,37 @@ impl TwoLayerFollower {
         // It changed on the way: its mean did the work.
         let mean = 0.5 * (contact + self.contact);
         self.contact = contact;
+        let before = self.meter.energy().entered;
         self.meter.step(mean.into(), Some(tip.into()));
+        if mean == Vector3::zeros() {
+            self.touching = 0.0;
+        } else {
+            self.touching += dt;
+        }
+        if self.touching < IMPACT {
+            self.doubted += self.meter.energy().entered - before;
+        }
+    }
+
+    /// What went through the tip since the start, as far as that is believed.
+    fn believed(&self) -> Energy {
+        let counted = self.meter.energy();
+        Energy {
+            entered: counted.entered - self.doubted,
+            ..counted
+        }
+    }
+
+    /// What the tip touches or, where the estimate no longer sees it, has touched just before: a
+    /// force below its threshold is none, and a command that goes on at once would push again.
+    fn near(&mut self, tip: &Vector3<f64>) -> Option<Touched> {
+        self.near = match (-self.contact).try_normalize(1e-9) {
+            Some(along) => Some(Touched { along, place: *tip }),
+            None => self
+                .near
+                .filter(|own| (tip - own.place).dot(&own.along) > -NEAR),
+        };
+        self.near
     }
 
     /// How fast the command may go [m/s]: ½ m v² ≤ E.
@@ -112,7 +167,7 @@ impl TwoLayerFollower {
             // The servo is taking over, and brakes softly in that.
             way = way.cap_magnitude(TAKING_OVER * dt);
         }
-        if let Some(along) = (-self.contact).try_normalize(1e-9) {
+        if let Some(Touched { along, .. }) = self.near(&tip) {
             let lead = (before - tip).dot(&along);
             way += (self.deeper(dt, lead) - way.dot(&along)).min(0.0) * along;
         }
@@ -131,7 +186,8 @@ impl Follower for TwoLayerFollower {
         let seen = TouchingTip::new(&self.mapping, input, &self.command);
         self.count(dt, &seen);
         let own = &self.parameters;
-        self.tank.port(self.meter.energy(), own.promised_share);
+        // All of it, as a hand that is pushed by what moves has to pay for that at once.
+        self.tank.port(self.believed(), 1.0);
         if let Some(received) = self.mapping.live(input.connected, input.received) {
             self.tank.promise(f64::from(received.packet.energy[0]));
         }

@@ -9,6 +9,10 @@ use crate::delay::step_velocity::StepVelocity;
 use crate::delay::{Energy, Leader, LeaderInput, LeaderOutput};
 use nalgebra::Vector3;
 
+/// Within this the hand's end forgets how much more had come in than went out before [s]: a hand
+/// that goes to and fro on a surface gives the same energy again and again.
+const MEMORY: f64 = 0.5;
+
 /// The leader's end: sends what the inner law says, and what it promises.
 #[derive(Clone, Debug)]
 pub struct TwoLayerLeader {
@@ -36,11 +40,12 @@ impl TwoLayerLeader {
 impl Leader for TwoLayerLeader {
     fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
         let own = &self.parameters;
-        self.tank.port(energy, own.promised_share);
+        self.tank
+            .port_beyond(dt, energy, own.promised_share, MEMORY);
         if let Some(received) = self.mapping.live(input.connected, input.received) {
             self.tank.promise(f64::from(received.packet.energy[0]));
         }
-        self.tank.give(dt / own.transfer_time, own.kept_at_hand);
+        self.tank.give(dt / own.refill_time, own.kept_at_hand);
         self.tank.limit(own.reserve);
         let wanted = self.inner.step(dt, input, energy);
         let packet = self.tank.told_in(wanted.packet, energy);

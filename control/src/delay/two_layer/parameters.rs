@@ -9,13 +9,16 @@ law_parameters! {
     pub struct TwoLayer {
         /// The layer of transparency.
         pub inside: InnerLaw [section] = InnerLaw::default(),
-        /// Share of what comes in through its port that an end gives to the other one at
-        /// once \[-\].
-        pub promised_share: f64 [0.0..=1.0, "-"] = 0.8,
-        /// Time constant with which an end gives what it does not need to the other one \[s\].
-        pub transfer_time: f64 [0.01..=100.0, "s"] = 0.06,
+        /// Share of what comes in through the hand, beyond what came in there before, that the
+        /// hand's end gives to the tip's at once \[-\]. The tip's end gives all of what comes in.
+        pub promised_share: f64 [0.0..=1.0, "-"] = 0.6,
+        /// Time constant with which the tip's end gives what it does not need to the hand's \[s\].
+        pub transfer_time: f64 [0.01..=100.0, "s"] = 0.03,
+        /// Time constant with which the hand's end gives what it does not need to the tip's, of
+        /// which comes back what that does not need either \[s\].
+        pub refill_time: f64 [0.01..=1000.0, "s"] = 5.0,
         /// Energy that the hand's end needs for itself \[J\].
-        pub kept_at_hand: f64 [0.0..=100.0, "J"] = 0.1,
+        pub kept_at_hand: f64 [0.0..=100.0, "J"] = 0.02,
         /// Energy that the tip's end needs for itself, at the hand's scale \[J\].
         pub kept_at_tip: f64 [0.0..=100.0, "J"] = 0.005,
         /// Energy with which the tip's end begins, at the hand's scale: it lets the arm set out
@@ -25,9 +28,9 @@ law_parameters! {
         /// dissipated \[J\].
         pub reserve: f64 [0.0..=1000.0, "J"] = 0.3,
         /// Below this energy the hand is damped \[J\].
-        pub level: f64 [0.0..=100.0, "J"] = 0.2,
+        pub level: f64 [0.0..=100.0, "J"] = 0.25,
         /// Largest damping at the hand that fills the tank \[N·s/m\].
-        pub largest_damping: f64 [0.0..=1000.0, "N·s/m"] = 3.9,
+        pub largest_damping: f64 [0.0..=1000.0, "N·s/m"] = 4.0,
         /// Largest change of the force on the hand \[N/s\].
         pub force_rate: f64 [1.0..=1e6, "N/s"] = 490.0,
         /// m_h: lightest mass of hand and handle \[kg\].

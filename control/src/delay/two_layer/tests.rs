@@ -150,8 +150,9 @@ impl Tip {
         }
     }
 
-    /// A step with the hand at `hand` \[m\] and the contact's force \[N\].
-    fn step(&mut self, hand: f64, force: f64) {
+    /// A step with the hand at `hand` \[m\] and the contact's force \[N\]; gives what was promised
+    /// since the start \[J\].
+    fn step(&mut self, hand: f64, force: f64) -> f64 {
         let step = self.follower.step(
             DT,
             &FollowerInput {
@@ -163,6 +164,7 @@ impl Tip {
             Energy::default(),
         );
         self.command = step.command.expect("a command").position[0];
+        f64::from(step.packet.energy[0])
     }
 }
 
@@ -195,6 +197,55 @@ fn in_contact_an_empty_tank_lets_the_spring_go() {
     }
     // As far as the tip, and no further.
     assert!((tip.command - tip.tip).abs() < 1e-5, "{}", tip.command);
+}
+
+#[test]
+fn a_contact_that_the_estimate_no_longer_sees_is_still_near() {
+    let mut tip = Tip::new(0.0);
+    tip.tip = 1e-3;
+    for _ in 0..1000 {
+        tip.step(0.05, -5.0);
+    }
+    // Beside it the force is below what the estimate tells: the command does not push again.
+    tip.tip = 0.5e-3;
+    for _ in 0..1000 {
+        tip.step(0.05, 0.0);
+    }
+    assert!((tip.command - tip.tip).abs() < 1e-5, "{}", tip.command);
+    // Farther away nothing is near, and the tip goes on by the speed that it always may have.
+    tip.tip = -0.5e-3;
+    for _ in 0..50 {
+        tip.step(0.05, 0.0);
+    }
+    let before = tip.command;
+    for _ in 0..50 {
+        tip.step(0.05, 0.0);
+    }
+    let speed = (tip.command - before) / (50.0 * DT);
+    assert!((0.009..0.011).contains(&speed), "{speed} m/s");
+}
+
+/// What the tip's end has promised after a tip was pushed back by 1 mm with 10 N, `since` \[s\] after
+/// contact began \[J\].
+fn promised_after_push(since: f64) -> f64 {
+    let mut tip = Tip::new(0.0);
+    let mut promised = 0.0;
+    let rest = (since / DT) as usize;
+    for k in 0..rest + 200 {
+        if (rest..rest + 20).contains(&k) {
+            tip.tip -= 5e-5;
+        }
+        promised = tip.step(0.0, -10.0);
+    }
+    promised
+}
+
+#[test]
+fn an_impact_brings_nothing_in_and_what_pushes_later_does() {
+    let impact = promised_after_push(0.005);
+    assert!((-1e-6..1e-3).contains(&impact), "{impact} J");
+    let pushed = promised_after_push(0.3);
+    assert!((9e-3..=0.0101).contains(&pushed), "{pushed} J of 10 mJ");
 }
 
 #[test]
