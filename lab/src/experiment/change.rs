@@ -83,6 +83,9 @@ impl Mapping {
     }
 }
 
+/// A part of a mapping as the file has it; nothing where it has none.
+type Part = fn(&Mapping) -> Option<Value>;
+
 #[derive(Default)]
 struct Editor {
     /// What stands there; nothing in a new file.
@@ -105,8 +108,8 @@ impl Editor {
     fn all(&mut self, document: &mut DocumentMut, wanted: &Mapping) {
         self.recordings(document, wanted);
         let present = self.present.clone();
-        let was = |of: fn(&Mapping) -> Option<Value>| present.as_ref().and_then(of);
-        let reading: [(&str, fn(&Mapping) -> Option<Value>); 3] = [
+        let was = |of: Part| present.as_ref().and_then(of);
+        let reading: [(&str, Part); 3] = [
             ("columns", columns),
             ("rate_hz", |own| own.rate_hz.map(Value::from)),
             ("join", join),

@@ -20,6 +20,7 @@ motor_torque = "i"
 extra.supply = "u"
 [filter]
 butterworth_hz = 80
+decimation = 5
 [model]
 inertia = 1.1 # by hand
 effects = ["coulomb", { name = "wave", expression = "a*sin(q)" }, "viscous"]

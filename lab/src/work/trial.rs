@@ -10,7 +10,7 @@ use super::{
     start::text,
 };
 use crate::{
-    experiment::{Change, Experiment, Mapping, Place, data_folder},
+    experiment::{Change, Experiment, Mapping, data_folder},
     recording::{Seen, Tally, preview},
     unit::Unit,
 };
@@ -45,7 +45,7 @@ pub struct Trial {
 /// The file that is mapped again is another by now. All else is told in the trial.
 pub fn trial(mapping: &Mapping, again: Option<&Again>, output: &Path) -> Result<Trial, WorkError> {
     let mut trial = Trial::default();
-    let parse = |mapping: &Mapping| -> Result<(Experiment, Vec<Change>), WorkError> {
+    let parse = |mapping: &Mapping| -> Parsed {
         let changed = text(mapping, again, output)?;
         let experiment = Experiment::parse(&changed.text, output, &data_folder())?;
         Ok((experiment, changed.changes))
@@ -95,16 +95,16 @@ pub fn trial(mapping: &Mapping, again: Option<&Again>, output: &Path) -> Result<
     Ok(trial)
 }
 
+/// An experiment, and what is replaced for it.
+type Parsed = Result<(Experiment, Vec<Change>), WorkError>;
+
 /// As much of an experiment as can be looked at: signals that are not chosen yet have
 /// no path; if that does not do, units are left out.
-fn partly(
-    mapping: &Mapping,
-    parse: &dyn Fn(&Mapping) -> Result<(Experiment, Vec<Change>), WorkError>,
-) -> Option<Experiment> {
+fn partly(mapping: &Mapping, parse: &dyn Fn(&Mapping) -> Parsed) -> Option<Experiment> {
     let mut mapping = mapping.clone();
     for key in Mapping::needed(mapping.joint) {
         let place = mapping.signals.entry((*key).to_owned());
-        place.or_insert_with(Place::default);
+        place.or_default();
     }
     let found = parse(&mapping).or_else(|_| {
         for place in mapping.signals.values_mut() {

@@ -162,6 +162,7 @@ position = "q"          # output side
 motor_torque = { column = "tau", unit = "Nm" }
 [filter]
 butterworth_hz = 80
+decimation = 5
 [model]
 inertia = { fit = true }
 effects = [
