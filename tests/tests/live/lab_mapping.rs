@@ -179,6 +179,8 @@ fn an_experiment_is_mapped_again_and_what_is_replaced_is_said_before() {
     let bench = Bench::new(&[("run.csv", &run), ("own.toml", HAND_WRITTEN)]);
     let mapped_again = || {
         bench.open("own.toml");
+        let free = "return document.querySelector('#lab-head .figures b') !== null && document.querySelector('#again')?.disabled === false";
+        bench.browser.until("it is compared", LONG, free);
         bench.browser.click("#again");
         bench.comes_out("read");
     };
@@ -276,6 +278,9 @@ fn one_whose_recording_cannot_be_read_can_be_mapped_again() {
     let bench = Bench::new(&[("run.csv", &run), ("own.toml", HAND_WRITTEN)]);
     bench.open("own.toml");
     bench.browser.find("#lab-trouble .error");
+    // The browser notes that the server refused, once.
+    let noted = bench.browser.complaints();
+    assert!(noted.len() == 1 && noted[0].contains("422"), "{noted:?}");
     bench.browser.click("#lab-trouble #again");
     bench.comes_out("refused");
     let told = bench.browser.text("#reading .error");
@@ -283,11 +288,9 @@ fn one_whose_recording_cannot_be_read_can_be_mapped_again() {
     bench.choose("#signal-position", "angle");
     bench.comes_out("read");
     bench.begun();
-    assert!(
-        bench
-            .text("own.toml")
-            .contains("position = \"angle\"          # output side")
-    );
+    let new = "position = { column = \"angle\", unit = \"rad\" }          # output side";
+    let old = "position = \"q\"          # output side";
+    assert_eq!(bench.text("own.toml"), HAND_WRITTEN.replace(old, new));
     bench.end();
 }
 
@@ -334,6 +337,8 @@ fn several_files_are_sessions_of_which_some_are_held_out() {
     );
 
     // Again: another one is held out, and one left out.
+    let free = "return document.querySelector('#again')?.disabled === false";
+    bench.browser.until("it can be mapped again", LONG, free);
     bench.browser.click("#again");
     bench.comes_out("read");
     assert_eq!(bench.value("#part-2"), "held");
