@@ -204,7 +204,7 @@ export async function show(parent, start, begun) {
     if (!known?.length) return null;
     const { column, unit } = says(key);
     // The guess leaves it open where it is not sure; an experiment file need not say it.
-    const open = unit === "" ? "choose …" : unit === null ? (own.again ? `${known[0]}, not stated` : "unit") : null;
+    const open = unit === "" ? "choose …" : unit === null ? (own.again && column ? `${known[0]}, not stated` : "unit") : null;
     const select = make("select", { id: `unit-${key}`, "aria-label": `unit of ${key.replaceAll("_", " ")}`, required: unit === "" && column !== "" },
       open ? make("option", { value: "", textContent: open, selected: true }) : null,
       known.map((text) => make("option", { value: text, textContent: text, selected: text === unit })));
