@@ -163,6 +163,7 @@ fn what_varies_together_is_said_of_the_comparison_and_of_the_diagnosis() {
         let text = table("t,q,tau,temp", 3000, |n, t, q, tau| {
             let tau = tau + 0.2 * noise(n);
             let temperature = temperature + 0.1 * t;
+            let t = 1.7e9 + 86_400.0 * f64::from(day) + t;
             format!("{t:.3},{q:.9},{tau:.6},{temperature:.3}")
         });
         files.push((format!("day_{day}.csv"), text));
