@@ -70,6 +70,8 @@ const ASSETS: &[Asset] = assets![
     "/lab/formulas.js" SCRIPT "lab/formulas.js",
     "/lab/mapping.js" SCRIPT "lab/mapping.js",
     "/lab/model.js" SCRIPT "lab/model.js",
+    "/lab/reading.js" SCRIPT "lab/reading.js",
+    "/lab/recordings.js" SCRIPT "lab/recordings.js",
 ];
 
 /// plotly.js as the crate `plotly` carries it: the first of its script elements.

@@ -162,6 +162,9 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
 /// Asks which column a signal is; an empty line takes the first choice.
 fn ask(role: Role, why: &str, choices: &[String], columns: &[String]) -> Result<String, Failure> {
     eprintln!("{}: {why}", role.key());
+    if role == Role::Time {
+        eprintln!("  where there is none, end this and say --rate HZ");
+    }
     eprintln!("  columns: {}", columns.join(", "));
     let default = choices.first().map(String::as_str).unwrap_or_default();
     loop {

@@ -46,6 +46,11 @@ export function find(path) {
   return listing.files.find((file) => file.path === path);
 }
 
+/** Paths of all recordings. */
+export function recordings() {
+  return listing.files.filter((file) => file.kind === "recording").map((file) => file.path);
+}
+
 /** Reads the list anew. */
 export async function load() {
   try {
@@ -57,18 +62,22 @@ export async function load() {
   show();
 }
 
+/** Several at once are sessions of one joint, or parts of one run. */
 async function take(files) {
+  const taken = [];
   for (const file of files) {
     toast(`${file.name} is on its way …`, 60);
     try {
       const { path } = await sendFile("/api/lab/upload", { name: file.name }, file);
-      toast(`${path} is in the lab's folder.`);
-      await load();
-      open({ path, kind: "recording" });
+      taken.push(path);
     } catch (error) {
       toast(error.message, 10);
     }
   }
+  if (!taken.length) return;
+  if (taken.length === files.length) toast(`${taken.join(", ")}: in the lab's folder.`);
+  await load();
+  open({ path: taken[0], paths: taken, kind: "recording" });
 }
 
 /** Makes the list in `parent`; `opened` is called with the file chosen. */
@@ -77,8 +86,8 @@ export function build(parent, opened) {
   list = make("div", { className: "list" });
   title = make("span", {});
   filter = make("input", { type: "text", placeholder: "filter", "aria-label": "Filter files", oninput: show });
-  const pick = make("input", { type: "file", accept: ".mcap,.csv", onchange: () => take(pick.files) });
-  const drop = make("label", { className: "drop" }, "Drop a recording here, or choose one (.mcap, .csv)", pick);
+  const pick = make("input", { type: "file", multiple: true, accept: ".mcap,.csv,.tsv,.txt,.dat,.npz,.npy,.mat", onchange: () => take(pick.files) });
+  const drop = make("label", { className: "drop" }, "Drop recordings here, or choose some (.mcap, .csv, .npz, .mat, …)", pick);
   for (const target of [drop, document.getElementById("lab")]) {
     target.addEventListener("dragover", (event) => { event.preventDefault(); drop.classList.add("over"); });
     target.addEventListener("dragleave", () => drop.classList.remove("over"));

@@ -41,6 +41,7 @@ export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
     make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict },
       make("b", { textContent: VERDICTS[found.verdict] }), `${words(found.claim)}.`),
     found.warning ? make("p", { className: "note warning", id: "cutoff-warning", textContent: found.warning }) : null,
+    found.together.map((text) => make("p", { className: "note warning", "data-together": "", textContent: text })),
     make("p", { className: "quiet small", textContent: `${found.tried} variants tried, ${found.used.rows.toLocaleString("en")} rows, error ${significant(found.rms.held_out)} ${unit} on data held out.` }),
     found.verdict === "unexplained" ? offer(actions) : null,
     found.candidates.length ? ranking(rowsOf(found.candidates)) : null,

@@ -61,13 +61,14 @@ async function open(entry, joint = 0) {
       if (!offered.own) {
         busy(null);
         sections.head.hidden = false;
-        mapping.show(sections.head, entry, offered, begun);
+        await map({ files: entry.paths ?? [entry.path] });
         return;
       }
     }
     state.view = await getJson("/api/lab/open", { path: entry.path });
   } catch (error) {
-    fill(sections.trouble, make("p", { className: "error", role: "alert", textContent: error.message }));
+    fill(sections.trouble, make("p", { className: "error", role: "alert", textContent: error.message }),
+      entry.kind === "experiment" ? make("button", { type: "button", id: "again", textContent: "Map its signals again", onclick: again }) : null);
     sections.trouble.hidden = false;
     busy(null);
     return;
@@ -148,13 +149,27 @@ async function report() {
   toast("The report is saved by your browser.");
 }
 
-/** A recording of ours as a start for an experiment file of its own. */
-function own() {
-  mapping.show(sections.head, { path: state.path, kind: "recording" }, null, begun, state.view.joints[state.joint]);
+/** The form for signals in place of all else. */
+async function map(start) {
+  if (state.busy) return;
+  frame();
+  sections.head.hidden = false;
+  try {
+    await mapping.show(sections.head, start, begun);
+  } catch (error) {
+    fill(sections.trouble, make("p", { className: "error", role: "alert", textContent: error.message }));
+    sections.trouble.hidden = false;
+  }
 }
 
+/** The experiment that is open, with its signals mapped again. */
+const again = () => map({ again: state.path });
+
+/** A recording of ours as a start for an experiment file of its own. */
+const own = () => map({ files: [state.path], known: state.view.joints[state.joint] });
+
 const actions = {
-  diagnose, discover, add, auto, undo, report, own,
+  diagnose, discover, add, auto, undo, report, own, again,
   joint: (number) => open({ path: state.path, kind: "experiment" }, number),
   open: (path) => open({ path, kind: "experiment" }),
 };
@@ -168,7 +183,7 @@ export async function start() {
   fill(place, make("section", { className: "panel" },
     make("h1", { textContent: "Where is the model off, and what does it lack?" }),
     make("p", { className: "quiet", style: "margin-top:8px;max-width:66ch",
-      textContent: "Open an experiment at the left, or a recording of a session. Any other recording (rosbag2, MCAP, CSV) is asked for its signals first. Every step writes a new experiment file beside the old one; nothing is overwritten." })));
+      textContent: "Open an experiment at the left, or a recording of a session. Any other recording (rosbag2, MCAP, tables) is asked for its signals first. Every step writes a new experiment file beside the old one; only mapping signals again replaces what is in a file, and says before what that is." })));
   files.build(side, open);
   await files.load();
   const [, asked] = location.hash.split("/");

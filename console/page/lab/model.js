@@ -85,6 +85,7 @@ export function show(parent, { view, joint, path }, actions) {
       make("div", { className: "row" },
         act("Diagnose", "diagnose", actions.diagnose, { className: "primary" }),
         isFile ? act("Add until complete", "auto", actions.auto) : act("Write an experiment file", "own", actions.own),
+        isFile ? act("Map its signals again", "again", actions.again) : null,
         view.history.length > 1 ? act("Undo", "undo", actions.undo, { title: `Back to ${view.history[view.history.length - 2].path}` }) : null,
         act("Report", "report", actions.report))),
     view.joints.length > 1 ? make("div", { className: "row", style: "margin-top:10px" }, view.joints.map((other, number) =>

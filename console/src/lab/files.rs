@@ -2,6 +2,7 @@
 
 use std::{fs, path::Path, time::UNIX_EPOCH};
 
+use ferntast_lab::table::{Format, Table};
 use serde::Serialize;
 
 /// Folders are looked into this deep.
@@ -39,7 +40,7 @@ pub struct Entry {
 pub enum Kind {
     /// A `.toml` that names a recording.
     Experiment,
-    /// A rosbag2 directory, `.mcap` or `.csv`.
+    /// A rosbag2 directory, `.mcap` or a table.
     Recording,
 }
 
@@ -113,7 +114,13 @@ fn look_into(root: &Path, folder: &Path, depth: usize, listing: &mut Listing) {
 
 fn kind_of(path: &Path) -> Option<Kind> {
     match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-        "mcap" | "csv" => Some(Kind::Recording),
+        "mcap" => Some(Kind::Recording),
+        // Words, too, lie in files of that ending.
+        "txt" | "dat" => {
+            let table = Table::open(path, &[]).ok()?;
+            (table.columns().len() > 1).then_some(Kind::Recording)
+        }
+        _ if Format::of(path).is_some() => Some(Kind::Recording),
         // Other programs have files of that ending, too.
         "toml" => {
             let text = fs::read_to_string(path).ok()?;
@@ -144,6 +151,8 @@ mod tests {
         fs::write(root.join("a/bag/metadata.yaml"), "x").unwrap();
         fs::write(root.join("a/bag/bag_0.mcap"), [0; 99]).unwrap();
         fs::write(root.join("a/x.csv"), "t_s\n").unwrap();
+        fs::write(root.join("a/y.txt"), "0 1 2\n1 2 3\n").unwrap();
+        fs::write(root.join("notes.txt"), "The bench was cold.\nMore oil.\n").unwrap();
         fs::write(root.join("Cargo.toml"), "[package]").unwrap();
         fs::write(
             root.join("e.toml"),
@@ -163,6 +172,7 @@ mod tests {
             [
                 ("a/bag", Kind::Recording, 100),
                 ("a/x.csv", Kind::Recording, 4),
+                ("a/y.txt", Kind::Recording, 12),
                 ("e.toml", Kind::Experiment, 40),
             ]
         );

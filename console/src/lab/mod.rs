@@ -8,6 +8,7 @@
 
 mod drawing;
 mod files;
+mod mapping;
 mod upload;
 mod view;
 mod work;
@@ -25,7 +26,10 @@ use axum::{
     response::{IntoResponse, Response},
     routing::{get, post},
 };
-use ferntast_lab::work::{Opened, WorkError};
+use ferntast_lab::{
+    table::ENDINGS,
+    work::{Opened, WorkError},
+};
 use serde::Deserialize;
 use tokio::sync::Semaphore;
 
@@ -46,11 +50,17 @@ pub enum LabError {
         source: std::io::Error,
     },
     /// An upload has a name that recordings do not have.
-    #[error("{0}: drop an .mcap or .csv file")]
+    #[error("{0}: drop an .mcap file or a table: {list}", list = tables())]
     Kind(String),
     /// There is a file of that name.
     #[error("{0} exists already in the lab's folder: rename yours")]
     Exists(String),
+    /// A new experiment would lie over another one.
+    #[error("{0} exists already: choose another name, or open it and map its signals again")]
+    Taken(String),
+    /// What the lab said.
+    #[error("{0}")]
+    Told(String),
     /// An upload was cut off.
     #[error("the file did not arrive whole: {0}")]
     CutOff(String),
@@ -86,6 +96,12 @@ pub enum LabError {
     /// The work was broken off.
     #[error("the work broke off; the server's terminal says why")]
     Broken,
+}
+
+/// The endings of tables.
+fn tables() -> String {
+    let endings = ENDINGS.iter().map(|(ending, _)| format!(".{ending}"));
+    endings.collect::<Vec<String>>().join(", ")
 }
 
 impl IntoResponse for LabError {
@@ -249,7 +265,11 @@ pub fn routes(lab: Arc<Lab>) -> Router {
             get(|| async { Json(ferntast_identification::catalogue()) }),
         )
         .route("/api/lab/open", get(view::open))
-        .route("/api/lab/start", post(work::start))
+        .route("/api/lab/units", get(mapping::units))
+        .route("/api/lab/look", post(mapping::look))
+        .route("/api/lab/mapping", get(mapping::current))
+        .route("/api/lab/trial", post(mapping::trial))
+        .route("/api/lab/start", post(mapping::start))
         .route("/api/lab/compare", post(work::compare))
         .route("/api/lab/diagnose", post(work::diagnose))
         .route("/api/lab/discover", post(work::discover))

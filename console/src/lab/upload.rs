@@ -13,6 +13,7 @@ use axum::{
     extract::{Query, State},
     http::{HeaderMap, header},
 };
+use ferntast_lab::table::Format;
 use futures_util::StreamExt;
 use serde::{Deserialize, Serialize};
 use tokio::{fs, io::AsyncWriteExt, time::timeout};
@@ -54,10 +55,9 @@ pub async fn take(
         return Err(LabError::Busy);
     };
     let name = upload.name;
-    let ending = Path::new(&name)
-        .extension()
-        .map(|ending| ending.to_ascii_lowercase());
-    let known = ending.is_some_and(|ending| ending == "mcap" || ending == "csv");
+    let ending = Path::new(&name).extension();
+    let is_mcap = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"));
+    let known = is_mcap || Format::of(Path::new(&name)).is_some();
     if !known || name.contains(['/', '\\']) || name.starts_with('.') {
         return Err(LabError::Kind(name));
     }

@@ -16,7 +16,7 @@ use ferntast_identification::{
 };
 use ferntast_lab::{
     report,
-    work::{self, Beginning, Opened},
+    work::{self, Opened},
 };
 use futures_util::stream;
 use serde::{Deserialize, Serialize};
@@ -30,11 +30,11 @@ use super::{
 };
 
 /// Says how much is done.
-type Progress<'a> = &'a mut dyn FnMut(f64);
+pub(super) type Progress<'a> = &'a mut dyn FnMut(f64);
 
 /// Does `work` when it is its turn, and answers in lines of JSON. If nobody
 /// reads any more, it goes on to its end: what it writes is whole.
-fn in_lines<T: Serialize>(
+pub(super) fn in_lines<T: Serialize>(
     lab: &Arc<Lab>,
     work: impl FnOnce(&Lab, Progress<'_>) -> Result<T, LabError> + Send + 'static,
 ) -> Response {
@@ -100,21 +100,6 @@ fn with_joint<T>(
     work(one)
 }
 
-/// A new experiment file.
-#[derive(Debug, Deserialize)]
-pub struct Start {
-    path: String,
-    experiment: Beginning,
-}
-
-/// Writes the first experiment file on a recording.
-pub async fn start(State(lab): State<Arc<Lab>>, Json(start): Json<Start>) -> Response {
-    in_lines(&lab, move |lab, _| {
-        work::start(&start.experiment, &lab.new_file(&start.path)?)?;
-        Ok(json!({ "path": start.path }))
-    })
-}
-
 /// The model against the recordings, and curves to draw.
 #[derive(Serialize)]
 struct Compared {
@@ -162,6 +147,11 @@ pub async fn diagnose(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> 
             Ok(Diagnosed {
                 claim: diagnosis.claim(),
                 warning: diagnosis.cutoff_warning(),
+                together: diagnosis
+                    .varies_together
+                    .iter()
+                    .map(VariesTogether::text)
+                    .collect(),
                 diagnosis,
             })
         })
@@ -176,6 +166,8 @@ struct Diagnosed {
     claim: String,
     /// Where the verdict depends on the filter.
     warning: Option<String>,
+    /// What varies together from session to session, as sentences.
+    together: Vec<String>,
 }
 
 /// Decides what chance is taken to be when formulas are searched, as for the

@@ -59,10 +59,14 @@
 //! working folder ([`data_folder`]).
 
 mod arm;
+mod change;
 mod contact;
 mod error;
 mod file;
 mod lineage;
+mod mapping;
+#[cfg(test)]
+mod mapping_tests;
 mod own;
 mod reading;
 mod signals;
@@ -80,13 +84,15 @@ use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, State
 use crate::table::Format;
 
 pub use arm::ArmTable;
+pub use change::{Change, Changed};
 pub use contact::Contour;
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
+pub use mapping::{Mapped, Mapping, Place};
 pub use own::RECORD;
 pub use reading::{Join, Reading};
-pub use signals::Signals;
-pub use write::{NextStep, write_child};
+pub use signals::{Signals, units_for};
+pub use write::{NextStep, turned, write_child};
 
 /// What stands for the folder of shared recordings in a path.
 pub const DATA_VARIABLE: &str = "${FERNTAST_DATA}";

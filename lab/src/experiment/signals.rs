@@ -120,6 +120,14 @@ fn quantities(key: &str, joint: JointType) -> &'static [Quantity] {
     }
 }
 
+/// The units that a signal with this key may have, the base unit of each quantity
+/// before its others; none where any will do.
+#[must_use]
+pub fn units_for(key: &str, joint: JointType) -> Vec<&'static str> {
+    let allowed = quantities(key, joint).iter();
+    allowed.flat_map(|each| each.units()).collect()
+}
+
 /// What is wrong with a unit, and how to mend it.
 fn wrong_unit(key: &str, joint: JointType, text: &str) -> String {
     let allowed = quantities(key, joint);

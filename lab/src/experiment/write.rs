@@ -105,7 +105,7 @@ pub fn write_child(parent: &Experiment, step: &NextStep, output: &Path) -> Resul
 
 /// Puts an effect behind the others, on a line of its own where they have that.
 fn push(effects: &mut Array, effect: &Term) {
-    let mut new: Value = match effect {
+    let new: Value = match effect {
         Term::Catalogue(id) => id.as_str().into(),
         Term::Custom(custom) => {
             let mut table = InlineTable::new();
@@ -117,7 +117,12 @@ fn push(effects: &mut Array, effect: &Term) {
             table.into()
         }
     };
-    let prefix = effects
+    push_value(effects, new);
+}
+
+/// Puts a value behind the others, on a line of its own where they have that.
+pub(super) fn push_value(array: &mut Array, mut new: Value) {
+    let prefix = array
         .iter()
         .last()
         .and_then(|last| last.decor().prefix()?.as_str())
@@ -126,13 +131,13 @@ fn push(effects: &mut Array, effect: &Term) {
                 "\n{}",
                 indent.trim_end_matches(|c: char| !c.is_whitespace())
             ),
-            None if effects.len() > 1 => prefix.to_owned(),
+            None if array.len() > 1 => prefix.to_owned(),
             None => " ".to_owned(),
         });
-    let default = if effects.is_empty() { "" } else { " " };
+    let default = if array.is_empty() { "" } else { " " };
     new.decor_mut()
         .set_prefix(prefix.unwrap_or_else(|| default.to_owned()));
-    effects.push_formatted(new);
+    array.push_formatted(new);
 }
 
 fn lineage(step: &NextStep, hash: &str, from: &Path, to: &Path, parent_path: &Path) -> Table {
@@ -165,7 +170,7 @@ fn lineage(step: &NextStep, hash: &str, from: &Path, to: &Path, parent_path: &Pa
 }
 
 /// Turns relative paths that count from `from` into such that count from `to`.
-fn turn_paths(item: &mut Item, from: &Path, to: &Path) {
+pub(super) fn turn_paths(item: &mut Item, from: &Path, to: &Path) {
     if let Some(value) = item.as_value_mut() {
         turn_value(value, from, to);
     }
@@ -186,7 +191,10 @@ fn turn_value(value: &mut Value, from: &Path, to: &Path) {
     }
 }
 
-fn turned(text: &str, from: &Path, to: &Path) -> String {
+/// A path that counts from `from` as one that counts from `to`; an absolute one, or one
+/// that begins with [`DATA_VARIABLE`], stays.
+#[must_use]
+pub fn turned(text: &str, from: &Path, to: &Path) -> String {
     let path = Path::new(text);
     if path.is_absolute() || text.starts_with(DATA_VARIABLE) {
         return text.to_owned();

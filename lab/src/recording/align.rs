@@ -7,7 +7,7 @@ use ferntast_identification::{data::check::MIN_SAMPLES, numerics::statistics::qu
 use super::{LoadError, Series, VALID, tally::Tally};
 
 /// An interval more than that many periods long is a gap.
-const GAP: i64 = 10;
+pub(super) const GAP: i64 = 10;
 
 /// Shorter stretches than this are left out \[samples\]: a fit takes none.
 pub(super) const SHORTEST: usize = MIN_SAMPLES;

@@ -23,6 +23,7 @@ mod columns;
 mod conditions;
 mod error;
 mod plausible;
+mod preview;
 mod series;
 mod tally;
 
@@ -33,6 +34,7 @@ use ferntast_identification::{Dataset, RecordedSession};
 use crate::{experiment::Experiment, table::Format};
 
 pub use error::LoadError;
+pub use preview::{Seen, preview};
 use series::{Series, Wanted};
 pub use tally::Tally;
 

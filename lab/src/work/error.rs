@@ -56,6 +56,12 @@ pub enum WorkError {
         /// The file.
         path: PathBuf,
     },
+    /// The experiment file is another than the one that was looked at.
+    #[error("{path} was changed meanwhile: open it again, and say once more what is to be changed")]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file cannot be written.
     #[error("cannot write {path}: {source}")]
     File {
@@ -145,7 +151,11 @@ pub enum NewError {
 
 /// The option that says which column a signal is.
 fn option(role: Role) -> String {
-    format!("--{}", role.key().replace('_', "-"))
+    match role {
+        // There may be none.
+        Role::Time => "--rate HZ where there is none, or --time".to_owned(),
+        _ => format!("--{}", role.key().replace('_', "-")),
+    }
 }
 
 fn suggested(choices: &[String]) -> String {

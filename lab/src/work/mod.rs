@@ -5,14 +5,16 @@ mod add;
 mod arm;
 mod arm_auto;
 mod auto;
-mod document;
+mod doubt;
 mod equation;
 mod error;
+mod look;
 mod new;
 mod paths;
 mod sources;
 mod start;
 mod trend;
+mod trial;
 mod twin;
 mod units;
 
@@ -37,12 +39,15 @@ pub use add::{Added, beside, output_of, own_effect, refuse_existing};
 pub use arm::{AddedToArm, OpenedArm, open_arm};
 pub use arm_auto::{ArmAutoEvent, AutomaticArm, auto_arm, name_of};
 pub use auto::{AutoEvent, AutoOptions, Automatic, Step, auto};
+pub use doubt::Doubt;
 pub use equation::Formula;
 pub use error::{NewError, WorkError};
+pub use look::{Look, Question, look};
 pub use new::{Made, NewSignal, Request, Said, make};
 pub use paths::{Offered, offered};
-pub use start::{Beginning, start};
+pub use start::{Again, Present, Started, mapping_of, start};
 pub use trend::{Point, Trend, TrendError, trends};
+pub use trial::{Trial, trial};
 pub use twin::{FromTwin, from_twin};
 
 /// A result with the unit of its torques, as the command line and Python tell it.
@@ -75,6 +80,26 @@ impl Opened {
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
         self.experiment.force_unit()
+    }
+
+    /// Mean rate of what is used \[Hz\].
+    #[must_use]
+    pub fn rate_hz(&self) -> f64 {
+        let sessions = self.dataset.sessions.iter();
+        let (samples, seconds) = sessions.fold((0, 0.0), |(samples, seconds), session| {
+            let count = session.len();
+            (samples + count, seconds + count as f64 * session.period)
+        });
+        samples as f64 / f64::max(seconds, f64::MIN_POSITIVE)
+    }
+
+    /// Share of all samples that is used.
+    #[must_use]
+    pub fn share_used(&self) -> f64 {
+        let all: usize = self.tallies.iter().map(|tally| tally.samples).sum();
+        let used = self.tallies.iter();
+        let used = used.map(|tally| tally.used.saturating_sub(tally.bridged));
+        used.sum::<usize>() as f64 / all.max(1) as f64
     }
 
     /// The model's equation, part by part.

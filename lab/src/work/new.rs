@@ -1,17 +1,19 @@
 //! From a recording that somebody brought to an experiment file: signals guessed
 //! from names and numbers, what was read told, the file written.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use ferntast_identification::JointType;
+use ferntast_identification::{Inertia, JointType};
 use serde::Serialize;
 
-use super::{NewError, Opened, WorkError, document, sources::Sources};
+use super::{
+    NewError, WorkError,
+    doubt::{Taken, doubts},
+    sources::Sources,
+    start,
+};
 use crate::{
-    experiment::{self, Experiment, Join},
+    experiment::{Join, Mapping, Place},
     guess::{Role, angle_unit, by_name, time_unit, unit_in_name},
     recording::Tally,
     table::ColumnSurvey,
@@ -116,37 +118,82 @@ pub struct Made {
 pub fn make(request: &Request) -> Result<Made, NewError> {
     let output = output(request)?;
     let sources = Sources::look(request)?;
-    let mut warnings = Vec::new();
-    let signals = signals(request, &sources, &mut warnings)?;
+    let Guessed {
+        signals,
+        questions,
+        taken,
+    } = guess(request, &sources);
+    if let Some(question) = questions.into_iter().next() {
+        return Err(question);
+    }
+    let mut warnings: Vec<String> = taken.iter().map(TakenFor::for_terminal).collect();
+    warnings.extend(doubted(&signals, &sources));
     let joint = request.joint.unwrap_or_else(|| joint_of(&signals));
-    let text = document::document(request, &sources, &signals, joint, &output).to_string();
-    let parsed = Experiment::parse(&text, &output, &experiment::data_folder());
-    let experiment = parsed.map_err(WorkError::from)?;
-    let opened = Opened::read(experiment)?;
+    let mapping = mapping(request, &sources, &signals, joint, &output);
+    let opened = start(&mapping, None, &output, request.force)?.opened;
     warnings.extend(opened.notes.iter().cloned());
-    fs::write(&output, &text).map_err(|source| WorkError::File {
-        path: output.clone(),
-        source,
-    })?;
-    let sessions = opened.dataset.sessions.iter();
-    let (samples, seconds) = sessions.fold((0, 0.0), |(samples, seconds), session| {
-        let count = session.len();
-        (samples + count, seconds + count as f64 * session.period)
-    });
-    let all: usize = opened.tallies.iter().map(|tally| tally.samples).sum();
-    let used = opened
-        .tallies
-        .iter()
-        .map(|tally| tally.used - tally.bridged);
     Ok(Made {
         experiment: output,
         joint,
         signals,
-        rate_hz: samples as f64 / f64::max(seconds, f64::MIN_POSITIVE),
-        share_used: used.sum::<usize>() as f64 / all.max(1) as f64,
+        rate_hz: opened.rate_hz(),
+        share_used: opened.share_used(),
         recordings: opened.tallies,
         warnings,
     })
+}
+
+/// What is odd about units that were said.
+fn doubted(signals: &[NewSignal], sources: &Sources) -> Vec<String> {
+    let taken = signals.iter().filter_map(|own| {
+        let survey = sources.column(&own.column)?;
+        Some(Taken {
+            key: own.signal,
+            column: &own.column,
+            unit: &own.unit,
+            first: survey.first,
+            step: survey.step,
+            range: survey.range(),
+        })
+    });
+    let told = doubts(taken).into_iter();
+    told.map(|own| format!("signals.{}: {}", own.signal, own.text))
+        .collect()
+}
+
+/// What the file is to say: a model to begin with, all files fitted.
+fn mapping(
+    request: &Request,
+    sources: &Sources,
+    signals: &[NewSignal],
+    joint: JointType,
+    output: &Path,
+) -> Mapping {
+    let folder = match output.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let names = |files: &Vec<PathBuf>| files.iter().map(|file| name_from(folder, file)).collect();
+    let place = |signal: &NewSignal| Place {
+        column: signal.column.clone(),
+        unit: Some(signal.unit.clone()).filter(|unit| !unit.is_empty()),
+        time: None,
+    };
+    Mapping {
+        recordings: sources.recordings.iter().map(names).collect(),
+        held_out: Vec::new(),
+        columns: request.columns.clone(),
+        rate_hz: request.rate_hz,
+        join: request.join,
+        joint,
+        signals: signals
+            .iter()
+            .map(|signal| (signal.signal.to_owned(), place(signal)))
+            .collect(),
+        inertia: Inertia::Fit,
+        gear_ratio: None,
+        effects: ["coulomb", "viscous"].map(str::to_owned).to_vec(),
+    }
 }
 
 fn output(request: &Request) -> Result<PathBuf, NewError> {
@@ -166,7 +213,7 @@ fn output(request: &Request) -> Result<PathBuf, NewError> {
 }
 
 /// A joint that moves along a line, where a unit says so.
-fn joint_of(signals: &[NewSignal]) -> JointType {
+pub(super) fn joint_of(signals: &[NewSignal]) -> JointType {
     let is_linear = |signal: &NewSignal| {
         let quantity = Unit::parse(&signal.unit).map(|unit| unit.quantity());
         matches!(quantity, Some(Quantity::Length | Quantity::Force))
@@ -177,36 +224,73 @@ fn joint_of(signals: &[NewSignal]) -> JointType {
     }
 }
 
-fn signals(
-    request: &Request,
-    sources: &Sources,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<NewSignal>, NewError> {
-    let mut signals = Vec::new();
-    if sources.tables && request.rate_hz.is_none() {
-        signals.push(time(request, sources, warnings)?);
+/// Signals as far as they are clear.
+#[derive(Default)]
+pub(super) struct Guessed {
+    pub(super) signals: Vec<NewSignal>,
+    /// What the user has to say, [`NewError::Unsure`].
+    pub(super) questions: Vec<NewError>,
+    /// What was taken for granted.
+    pub(super) taken: Vec<TakenFor>,
+}
+
+/// What was taken for granted.
+pub(super) struct TakenFor {
+    pub(super) text: String,
+    /// The option that says otherwise.
+    option: String,
+}
+
+impl TakenFor {
+    fn for_terminal(&self) -> String {
+        match self.option.as_str() {
+            "" => self.text.clone(),
+            option => format!("{}; {option}", self.text),
+        }
     }
-    let mut torque = must(request, sources, Role::MotorTorque)?;
-    let mut position = must(request, sources, Role::Position)?;
-    if torque.unit.is_empty() {
+}
+
+/// Signals and their units, as they were said, or by names and numbers. Without its
+/// unit is one that is asked for.
+pub(super) fn guess(request: &Request, sources: &Sources) -> Guessed {
+    let mut guessed = Guessed::default();
+    if sources.tables && request.rate_hz.is_none() {
+        let mut taken = Vec::new();
+        match time(request, sources, &mut taken) {
+            Ok(signal) => guessed.signals.push(signal),
+            Err(question) => guessed.questions.push(question),
+        }
+        guessed.taken.append(&mut taken);
+    }
+    let torque = must(request, sources, Role::MotorTorque);
+    let position = must(request, sources, Role::Position);
+    let mut torque = guessed.or_ask(torque);
+    let mut position = guessed.or_ask(position);
+    if let Some(torque) = torque.as_mut().filter(|own| own.unit.is_empty()) {
         let linear = request.joint == Some(JointType::Prismatic);
         torque.unit = if linear { "N" } else { "Nm" }.to_owned();
         if sources.tables {
-            warnings.push(format!(
-                "signals.motor_torque: nothing says the unit of {:?}, taken for {}; a current or voltage is told by --motor-torque {}:A, or :V",
-                torque.column, torque.unit, torque.column
-            ));
+            guessed.taken.push(TakenFor {
+                text: format!(
+                    "signals.motor_torque: nothing says the unit of {:?}, taken for {}",
+                    torque.column, torque.unit
+                ),
+                option: format!(
+                    "a current or voltage is told by --motor-torque {}:A, or :V",
+                    torque.column
+                ),
+            });
         }
     }
-    if position.unit.is_empty() {
-        let force = Unit::parse(&torque.unit).map(|unit| unit.quantity());
-        let linear = force == Some(Quantity::Force) || request.joint == Some(JointType::Prismatic);
-        position.unit = if linear { "m" } else { "rad" }.to_owned();
+    if let Some(position) = position.as_mut().filter(|own| own.unit.is_empty()) {
+        let force = torque.as_ref().and_then(|own| Unit::parse(&own.unit));
+        let linear = force.map(|unit| unit.quantity()) == Some(Quantity::Force)
+            || request.joint == Some(JointType::Prismatic);
         let range = position
             .range
             .map_or(0.0, |[least, greatest]| greatest - least);
-        if !linear && let Some(unit) = angle_unit(range) {
-            return Err(unsure(
+        match angle_unit(range).filter(|_| !linear) {
+            Some(unit) => guessed.questions.push(unsure(
                 Role::Position,
                 format!(
                     "{:?} goes over {range:.0}, which is many turns in rad: it may be in {unit}",
@@ -217,37 +301,47 @@ fn signals(
                     format!("{}:rad", position.column),
                 ],
                 sources,
-            ));
+            )),
+            None => position.unit = if linear { "m" } else { "rad" }.to_owned(),
         }
     }
-    let linear = matches!(
-        Unit::parse(&position.unit).map(|unit| unit.quantity()),
-        Some(Quantity::Length)
-    );
-    signals.extend([position, torque]);
+    let position_unit = position.as_ref().and_then(|own| Unit::parse(&own.unit));
+    let linear = position_unit.map(|unit| unit.quantity()) == Some(Quantity::Length);
+    guessed.signals.extend(position);
+    guessed.signals.extend(torque);
     let others = [
         (Role::JointTorque, if linear { "N" } else { "Nm" }),
         (Role::Temperature, "degC"),
     ];
     for (role, usual) in others {
-        let taken: Vec<String> = signals.iter().map(|own| own.column.clone()).collect();
-        if let Some(mut signal) = find(request, sources, role)?
-            && !taken.contains(&signal.column)
-        {
-            if signal.unit.is_empty() {
-                signal.unit = usual.to_owned();
+        let signal = find(request, sources, role);
+        let taken = |column: &String| guessed.signals.iter().any(|own| own.column == *column);
+        match signal {
+            Ok(Some(mut signal)) if !taken(&signal.column) => {
+                if signal.unit.is_empty() {
+                    signal.unit = usual.to_owned();
+                }
+                guessed.signals.push(signal);
             }
-            signals.push(signal);
+            Ok(_) => {}
+            Err(question) => guessed.questions.push(question),
         }
     }
-    Ok(signals)
+    guessed
+}
+
+impl Guessed {
+    /// What is found; else the question is asked.
+    fn or_ask(&mut self, found: Result<NewSignal, NewError>) -> Option<NewSignal> {
+        found.map_err(|question| self.questions.push(question)).ok()
+    }
 }
 
 /// The column that is time, by its name or because it ascends.
 fn time(
     request: &Request,
     sources: &Sources,
-    warnings: &mut Vec<String>,
+    taken: &mut Vec<TakenFor>,
 ) -> Result<NewSignal, NewError> {
     let mut signal = match find(request, sources, Role::Time)? {
         Some(signal) => signal,
@@ -255,14 +349,17 @@ fn time(
             let mut ascending = sources.columns.iter().filter(|own| own.ascends);
             match (ascending.next(), ascending.next()) {
                 (Some(own), None) => {
-                    warnings.push(format!(
-                        "signals.time: {:?} is taken for time, since it alone ascends",
-                        own.name
-                    ));
+                    taken.push(TakenFor {
+                        text: format!(
+                            "signals.time: {:?} is taken for time, since it alone ascends",
+                            own.name
+                        ),
+                        option: String::new(),
+                    });
                     signal_of(Role::Time, own, None, true)
                 }
                 _ => {
-                    let why = "no column is called time or t; where there is none, say --rate HZ";
+                    let why = "no column is called time or t";
                     return Err(unsure(Role::Time, why.to_owned(), Vec::new(), sources));
                 }
             }
@@ -273,10 +370,13 @@ fn time(
         let (first, step) = survey.map_or((0.0, 0.0), |own| (own.first, own.step));
         signal.unit = match time_unit(first, step) {
             Some(unit) => {
-                warnings.push(format!(
-                    "signals.time: {:?} goes in steps of {step}, which cannot be s: taken for {unit}; --time {}:s if that is right",
-                    signal.column, signal.column
-                ));
+                taken.push(TakenFor {
+                    text: format!(
+                        "signals.time: {:?} goes in steps of {step}, which cannot be s: taken for {unit}",
+                        signal.column
+                    ),
+                    option: format!("--time {}:s if that is right", signal.column),
+                });
                 unit.to_owned()
             }
             None => "s".to_owned(),
@@ -367,7 +467,7 @@ fn unsure(role: Role, why: String, choices: Vec<String>, sources: &Sources) -> N
 }
 
 /// Files of one folder or list as an experiment in `folder` names them.
-pub(super) fn name_from(folder: &Path, file: &Path) -> String {
+fn name_from(folder: &Path, file: &Path) -> String {
     let turned = match (file.canonicalize(), folder.canonicalize()) {
         (Ok(file), Ok(folder)) => file
             .strip_prefix(&folder)

@@ -15,8 +15,8 @@ pub(super) struct Sources {
     pub(super) columns: Vec<ColumnSurvey>,
     /// Whether these are tables.
     pub(super) tables: bool,
-    /// Whether the columns had to be named.
-    pub(super) renamed: bool,
+    /// Whether the columns have names, by the files or as they were given.
+    pub(super) named: bool,
 }
 
 impl Sources {
@@ -77,7 +77,7 @@ fn messages(files: Vec<PathBuf>) -> Result<Sources, NewError> {
         recordings: files.into_iter().map(|file| vec![file]).collect(),
         columns,
         tables: false,
-        renamed: false,
+        named: true,
     })
 }
 
@@ -85,8 +85,10 @@ fn messages(files: Vec<PathBuf>) -> Result<Sources, NewError> {
 /// one.
 fn tables(request: &Request, files: Vec<PathBuf>) -> Result<Sources, NewError> {
     let mut all: Vec<(PathBuf, Vec<ColumnSurvey>)> = Vec::new();
+    let mut named = true;
     for file in files {
         let table = Table::open(&file, &request.columns).map_err(WorkError::from)?;
+        named &= table.is_named();
         all.push((file, table.survey().map_err(WorkError::from)?.0));
     }
     let names = |columns: &[ColumnSurvey]| -> Vec<String> {
@@ -128,7 +130,7 @@ fn tables(request: &Request, files: Vec<PathBuf>) -> Result<Sources, NewError> {
         },
         columns,
         tables: true,
-        renamed: !request.columns.is_empty(),
+        named,
     })
 }
 
@@ -142,5 +144,8 @@ fn merge(columns: &mut Vec<ColumnSurvey>, own: &[ColumnSurvey]) {
         known.least = known.least.min(own.least);
         known.greatest = known.greatest.max(own.greatest);
         known.ascends &= own.ascends;
+        known.numbers += own.numbers;
+        known.missing += own.missing;
+        known.words += own.words;
     }
 }

@@ -1,130 +1,135 @@
-//! Writes the first experiment file on a recording.
+//! A mapping becomes an experiment file, or changes one. Nothing is written that
+//! does not load.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+};
 
-use ferntast_identification::{Inertia, JointType};
-use serde::Deserialize;
-use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, value};
+use sha2::{Digest, Sha256};
 
-use super::WorkError;
-use crate::experiment::{self, Experiment};
+use super::{Opened, WorkError};
+use crate::experiment::{self, Change, Changed, Experiment, Mapped, Mapping};
 
-/// What the first experiment on a recording is to be.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Beginning {
-    /// Recordings to fit, relative to the new file's folder.
-    pub recordings: Vec<String>,
-    /// Recordings that are never fitted.
-    #[serde(default)]
-    pub held_out: Vec<String>,
-    /// Kind of joint.
-    #[serde(default)]
-    pub joint: JointType,
-    /// Signals by name: position, motor_torque, and what else there is of
-    /// joint_torque, temperature, valid, time; of a contact position, tangential_force,
-    /// normal_force; anything else is an extra signal.
-    pub signals: std::collections::BTreeMap<String, String>,
-    /// J; a contact has none.
-    pub inertia: Inertia,
-    /// Motor turns in one turn of the joint \[1\].
-    #[serde(default)]
-    pub gear_ratio: Option<f64>,
-    /// Ids of effects of the catalogue.
-    pub effects: Vec<String>,
+/// An experiment file that is mapped again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Again {
+    /// The file.
+    pub path: PathBuf,
+    /// Its content as the user saw it: [`Present::version`].
+    pub version: String,
 }
 
-/// Signals that are not extra ones.
-const NAMED: [&str; 8] = [
-    "position",
-    "motor_torque",
-    "tangential_force",
-    "normal_force",
-    "joint_torque",
-    "temperature",
-    "valid",
-    "time",
-];
+/// The mapping of an experiment file as it is now.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Present {
+    /// The mapping, and what else is in the file.
+    pub mapped: Mapped,
+    /// What tells this content of the file from another.
+    pub version: String,
+}
 
-/// Writes the experiment file to `output` and reads it back.
+/// What was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Started {
+    /// The experiment with its recordings.
+    pub opened: Opened,
+    /// What of an experiment file that was mapped again is replaced.
+    pub changes: Vec<Change>,
+}
+
+/// Reads the mapping of the experiment file at `path`; its recordings need not be there.
 ///
 /// # Errors
 ///
-/// The file exists; it cannot be written; what it says cannot be used (then it
-/// is not written).
-pub fn start(beginning: &Beginning, output: &Path) -> Result<Experiment, WorkError> {
-    if output.exists() {
+/// [`WorkError`]: it is no experiment file, or one of a whole arm.
+pub fn mapping_of(path: &Path) -> Result<Present, WorkError> {
+    let text = read(path)?;
+    Ok(Present {
+        mapped: Mapping::parse(&text, path)?,
+        version: version(&text),
+    })
+}
+
+/// The text that [`start`] writes, with what it replaces in a file that is mapped again.
+///
+/// # Errors
+///
+/// [`WorkError::Changed`]; the file that is mapped again cannot be read.
+pub fn text(mapping: &Mapping, again: Option<&Again>, output: &Path) -> Result<Changed, WorkError> {
+    let Some(again) = again else {
+        return Ok(Changed {
+            text: mapping.document(),
+            changes: Vec::new(),
+        });
+    };
+    let text = read(&again.path)?;
+    if version(&text) != again.version {
+        return Err(WorkError::Changed {
+            path: again.path.clone(),
+        });
+    }
+    Ok(mapping.put_into(&text, &again.path, output)?)
+}
+
+/// Writes the experiment file at `output`, once its recordings were read as it says.
+/// A file that is there stays, but for the one that is mapped again, or with `force`.
+///
+/// # Errors
+///
+/// The file exists; it cannot be written; its recordings cannot be used (then it is
+/// not written).
+pub fn start(
+    mapping: &Mapping,
+    again: Option<&Again>,
+    output: &Path,
+    force: bool,
+) -> Result<Started, WorkError> {
+    let over = force || again.is_some_and(|again| again.path == output);
+    if output.exists() && !over {
         return Err(WorkError::Exists {
             path: output.to_owned(),
         });
     }
-    let text = document(beginning).to_string();
+    let Changed { text, changes } = text(mapping, again, output)?;
     let experiment = Experiment::parse(&text, output, &experiment::data_folder())?;
-    fs::write(output, text).map_err(|source| WorkError::File {
-        path: output.to_owned(),
-        source,
-    })?;
-    Ok(experiment)
-}
-
-fn document(beginning: &Beginning) -> DocumentMut {
-    let mut document = DocumentMut::new();
-    let list = |paths: &[String]| value(Array::from_iter(paths.iter().map(String::as_str)));
-    document.insert("recording", list(&beginning.recordings));
-    if !beginning.held_out.is_empty() {
-        document.insert("held_out", list(&beginning.held_out));
-    }
-    let mut joint = Table::new();
-    let kind = match beginning.joint {
-        JointType::Revolute => Some("revolute"),
-        JointType::Prismatic => Some("prismatic"),
-        JointType::Contact => None,
+    let opened = Opened::read(experiment)?;
+    let written = match over {
+        true => replace(output, &text),
+        false => fs::File::create_new(output).and_then(|mut file| file.write_all(text.as_bytes())),
     };
-    match kind {
-        Some(kind) => {
-            joint.insert("type", value(kind));
-            document.insert("joint", Item::Table(joint));
-        }
-        None => {
-            document.insert("contact", Item::Table(joint));
-        }
+    match written {
+        Ok(()) => Ok(Started { opened, changes }),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(WorkError::Exists {
+            path: output.to_owned(),
+        }),
+        Err(source) => Err(WorkError::File {
+            path: output.to_owned(),
+            source,
+        }),
     }
-    let mut signals = Table::new();
-    let mut extra = Table::new();
-    let given = beginning
-        .signals
-        .iter()
-        .filter(|(_, path)| !path.is_empty());
-    for (name, path) in given {
-        let table = match NAMED.contains(&name.as_str()) {
-            true => &mut signals,
-            false => &mut extra,
-        };
-        table.insert(name, value(path.as_str()));
-    }
-    if !extra.is_empty() {
-        signals.insert("extra", Item::Table(extra));
-    }
-    document.insert("signals", Item::Table(signals));
-    let mut model = Table::new();
-    if !beginning.joint.is_contact() {
-        model.insert("inertia", inertia(beginning.inertia));
-    }
-    if let Some(ratio) = beginning.gear_ratio {
-        model.insert("gear_ratio", value(ratio));
-    }
-    model.insert("effects", list(&beginning.effects));
-    document.insert("model", Item::Table(model));
-    document
 }
 
-fn inertia(inertia: Inertia) -> Item {
-    match inertia {
-        Inertia::Given(inertia) => value(inertia),
-        Inertia::Fit => {
-            let mut fit = InlineTable::new();
-            fit.insert("fit", true.into());
-            value(fit)
-        }
-    }
+/// Writes beside the file first: it is whole at any time.
+fn replace(output: &Path, text: &str) -> io::Result<()> {
+    let mut name = output.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    let beside = output.with_file_name(name);
+    fs::write(&beside, text)?;
+    fs::rename(&beside, output)
+}
+
+fn read(path: &Path) -> Result<String, WorkError> {
+    let text = fs::read_to_string(path);
+    let text = text.map_err(|source| experiment::ExperimentError::Read {
+        path: path.to_owned(),
+        source,
+    });
+    Ok(text?)
+}
+
+fn version(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use ferntast_tests::{Browser, PATIENCE, Process, Session, run};
 
+use super::lab_bench::{Bench, table};
+
 /// Diagnosing takes a while on a machine that is busy.
 pub const LONG: Duration = Duration::from_secs(180);
 
@@ -146,4 +148,58 @@ fn a_foreign_recording_is_mapped_by_its_own_columns() {
     drop(browser);
     process.interrupt();
     process.wait(PATIENCE).success();
+}
+
+/// Every later day is warmer: no effect of the one is told from one of the other.
+#[test]
+fn what_varies_together_is_said_of_the_comparison_and_of_the_diagnosis() {
+    let mut files: Vec<(String, String)> = Vec::new();
+    for day in 0..6_u32 {
+        // Noise that is the same each time.
+        let noise = |n: u32| {
+            f64::from((n + 3000 * day).wrapping_mul(2_654_435_761) >> 8) / 16_777_216.0 - 0.5
+        };
+        let temperature = 20.0 + 2.0 * f64::from(day);
+        let text = table("t,q,tau,temp", 3000, |n, t, q, tau| {
+            let tau = tau + 0.2 * noise(n);
+            let temperature = temperature + 0.1 * t;
+            let t = 1.7e9 + 86_400.0 * f64::from(day) + t;
+            format!("{t:.3},{q:.9},{tau:.6},{temperature:.3}")
+        });
+        files.push((format!("day_{day}.csv"), text));
+    }
+    let names: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
+    let experiment = |temperature: &str| {
+        format!(
+            "recording = {names:?}\n[signals]\nposition = \"q\"\nmotor_torque = \"tau\"\n{temperature}\n[model]\ninertia = {{ fit = true }}\neffects = [\"coulomb\", \"viscous\"]\n"
+        )
+    };
+    files.push(("warm.toml".to_owned(), experiment("temperature = \"temp\"")));
+    files.push(("plain.toml".to_owned(), experiment("")));
+    let files: Vec<(&str, &str)> = files
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()))
+        .collect();
+    let bench = Bench::new(&files);
+    for (name, sentence) in [
+        ("warm.toml", "temperature and date rise together"),
+        ("plain.toml", ""),
+    ] {
+        bench.open(name);
+        let free = "return document.querySelector('#lab-head .figures b') !== null && document.querySelector('#diagnose')?.disabled === false";
+        bench.browser.until("it is compared", LONG, free);
+        assert!(bench.browser.text("#warnings").contains(sentence));
+        assert_eq!(bench.browser.text("#lab-diagnosis"), "");
+        bench.browser.click("#diagnose");
+        let told = "return document.querySelector('#verdict') !== null";
+        bench.browser.until("the verdict is told", LONG, told);
+        let together = bench.browser.text("#lab-diagnosis [data-together]");
+        assert!(together.contains(sentence), "{name}: {together}");
+        assert_eq!(
+            together.is_empty(),
+            sentence.is_empty(),
+            "{name}: {together}"
+        );
+    }
+    bench.end();
 }

@@ -4,7 +4,7 @@ use std::{fs, path::Path, time::Duration};
 
 use ferntast_tests::{Browser, PATIENCE, Session, run};
 
-use super::{console::session_with_page, lab_page};
+use super::{console::session_with_page, lab_bench, lab_page};
 
 /// A page that is a file, with at least `words` on its canvases.
 fn fits(browser: &Browser, page: &Path, words: f64) {
@@ -100,6 +100,49 @@ fn the_lab_is_read_at_every_width() {
         Duration::from_secs(60),
         "return document.querySelectorAll('.js-plotly-plot .xtitle').length > 5",
     );
+    assert_eq!(browser.misfits(), Vec::<String>::new());
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    drop(browser);
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
+#[test]
+fn the_form_for_signals_is_read_at_every_width() {
+    let session = Session::new();
+    let folder = session.folder().join("lab");
+    fs::create_dir(&folder).expect("a folder");
+    for name in ["monday_bench_with_a_long_name.csv", "tuesday.csv"] {
+        let text = lab_bench::table("t,q_deg,tau,remark", 6000, |n, t, q, tau| match n {
+            2000..2300 => String::new(),
+            n if n % 501 == 3 => format!("{t:.3},nan,{tau:.9},1"),
+            _ => format!("{t:.3},{:.9},{tau:.9},x", q.to_degrees()),
+        });
+        fs::write(folder.join(name), text).expect("a file");
+    }
+    let (process, url) = lab_page::serve(&session, "lab");
+    let browser = Browser::start(1280, 800);
+    browser.open(&url);
+    browser.click("[data-path='monday_bench_with_a_long_name.csv']");
+    let read = |what: &str| {
+        let state =
+            format!("return document.querySelector('#reading')?.dataset.state === '{what}'");
+        browser.until(what, lab_page::LONG, &state);
+    };
+    let choose = |menu: &str, value: &str| {
+        let script = format!(
+            "const own = document.querySelector('{menu}'); own.value = '{value}'; own.dispatchEvent(new Event('change'))"
+        );
+        browser.run(&script, Vec::new());
+    };
+    read("read");
+    choose("#add-recording", "tuesday.csv");
+    read("read");
+    // With a unit that is doubted, something that cannot be read, and curves.
+    choose("#unit-position", "rad");
+    read("read");
+    choose("#signal-temperature", "remark");
+    read("refused");
     assert_eq!(browser.misfits(), Vec::<String>::new());
     assert_eq!(browser.complaints(), Vec::<String>::new());
     drop(browser);

@@ -16,6 +16,8 @@ mod dynamics;
 mod fleet;
 mod foreign_bags;
 mod haply;
+mod lab_bench;
+mod lab_mapping;
 mod lab_page;
 mod layout;
 mod leader;

@@ -218,6 +218,18 @@ fn what_is_not_certain_is_refused_with_what_to_say() {
         &["exists", "--force"],
     );
     new(&session, &[&said[..], &["--force"]].concat());
+    // A unit that is said is taken, and doubted where it can hardly be.
+    let made = new(
+        &session,
+        &["angle.csv", "--position", "q:rad", "-o", "rad.toml"],
+    );
+    let warned = made["warnings"].to_string();
+    assert!(warned.contains("it may be in deg"), "{made:#}");
+    let made = new(&session, &[&said[..], &["-o", "deg.toml"]].concat());
+    assert!(
+        !made["warnings"].to_string().contains("may be in"),
+        "{made:#}"
+    );
     // A force and an angle belong to no joint.
     let unit = [
         "angle.csv",

@@ -1,0 +1,187 @@
+//! What a person says of recordings of their own: which files, which of their
+//! numbers are which signals, and the model to begin with. Read out of an
+//! experiment file, it can be changed and written into that again.
+
+use std::{collections::BTreeMap, path::Path};
+
+use ferntast_identification::{Inertia, JointType};
+use serde::{Deserialize, Serialize};
+
+use super::{Experiment, ExperimentError, Join, data_folder, file};
+
+/// Where a signal is.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// Column or message path.
+    pub column: String,
+    /// Its unit; nothing: SI.
+    #[serde(default)]
+    pub unit: Option<String>,
+    /// The column that is this signal's own time.
+    #[serde(default)]
+    pub time: Option<String>,
+}
+
+/// Files, signals and a model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mapping {
+    /// Recordings to fit, each with the files that it is joined from; relative ones
+    /// count from the experiment file's folder.
+    pub recordings: Vec<Vec<String>>,
+    /// Recordings that are never fitted.
+    #[serde(default)]
+    pub held_out: Vec<Vec<String>>,
+    /// Names of the columns in place of those in the files.
+    #[serde(default)]
+    pub columns: Vec<String>,
+    /// Rows in a second, in place of time \[Hz\].
+    #[serde(default)]
+    pub rate_hz: Option<f64>,
+    /// How the files of a recording are joined.
+    #[serde(default)]
+    pub join: Option<Join>,
+    /// Kind of joint, or a contact.
+    #[serde(default)]
+    pub joint: JointType,
+    /// Signals by key: position, motor_torque, and what else there is of
+    /// joint_torque, temperature, valid, time; of a contact position,
+    /// tangential_force, normal_force; `extra.NAME` is an extra signal.
+    pub signals: BTreeMap<String, Place>,
+    /// J; a contact has none.
+    pub inertia: Inertia,
+    /// Motor turns in one turn of the joint \[1\].
+    #[serde(default)]
+    pub gear_ratio: Option<f64>,
+    /// Ids of effects of the catalogue.
+    pub effects: Vec<String>,
+}
+
+/// The mapping of an experiment file, and what else is in there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mapped {
+    /// The mapping.
+    pub mapping: Mapping,
+    /// What no mapping has, and what stays as it is when that is changed.
+    pub kept: Vec<String>,
+}
+
+impl Mapping {
+    /// The signals without which nothing can be fitted.
+    #[must_use]
+    pub fn needed(joint: JointType) -> &'static [&'static str] {
+        match joint {
+            JointType::Contact => &["position", "tangential_force", "normal_force"],
+            _ => &["position", "motor_torque"],
+        }
+    }
+
+    /// The mapping in `text`, the content of the experiment file at `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError`]: it is no experiment file, or one of a whole arm.
+    pub fn parse(text: &str, path: &Path) -> Result<Mapped, ExperimentError> {
+        let experiment = Experiment::parse(text, path, &data_folder())?;
+        if experiment.arm.is_some() {
+            return Err(ExperimentError::Value {
+                path: path.to_owned(),
+                key: "arm".to_owned(),
+                reason: "signals of a whole arm are mapped in the file itself".to_owned(),
+            });
+        }
+        let file: file::File = toml::from_str(text).map_err(|error| ExperimentError::Syntax {
+            path: path.to_owned(),
+            message: error.to_string(),
+        })?;
+        let kept = kept(&file);
+        let groups = |recordings: file::Recordings| -> Vec<Vec<String>> {
+            let list = recordings.list().into_iter();
+            list.map(|(files, _)| files).collect()
+        };
+        let catalogue = file.model.effects.iter().filter_map(|effect| match effect {
+            file::Effect::Catalogue(id) => Some(id.clone()),
+            file::Effect::Custom(_) => None,
+        });
+        let mapping = Mapping {
+            effects: catalogue.collect(),
+            recordings: groups(file.recording),
+            held_out: groups(file.held_out),
+            columns: match file.columns {
+                file::ColumnNames::Same(names) => names,
+                file::ColumnNames::Each(_) => Vec::new(),
+            },
+            rate_hz: file.rate_hz,
+            join: file.join,
+            joint: experiment.joint,
+            signals: signals(file.signals),
+            inertia: experiment.model.inertia,
+            gear_ratio: experiment.model.gear_ratio,
+        };
+        Ok(Mapped { mapping, kept })
+    }
+}
+
+/// What the file has that no mapping has, by its keys.
+fn kept(file: &file::File) -> Vec<String> {
+    let own = file.model.effects.iter().filter_map(|effect| match effect {
+        file::Effect::Custom(custom) => Some(format!("effect {}", custom.name)),
+        file::Effect::Catalogue(_) => None,
+    });
+    let contour = file.contact.as_ref();
+    let names = matches!(file.columns, file::ColumnNames::Each(_));
+    let there = [
+        ("columns", names),
+        (
+            "unloaded",
+            !matches!(&file.unloaded, file::Recordings::Many(list) if list.is_empty()),
+        ),
+        ("filter", file.filter.is_some()),
+        (
+            "contact.contour",
+            contour.is_some_and(|own| own.contour.is_some()),
+        ),
+        ("signals.tip", file.signals.tip.is_some()),
+        ("lineage", file.lineage.is_some()),
+    ];
+    let there = there.into_iter().filter(|(_, there)| *there);
+    there.map(|(name, _)| name.to_owned()).chain(own).collect()
+}
+
+fn signals(table: file::SignalsTable) -> BTreeMap<String, Place> {
+    let named = [
+        ("position", table.position),
+        ("motor_torque", table.motor_torque),
+        ("joint_torque", table.joint_torque),
+        ("tangential_force", table.tangential_force),
+        ("normal_force", table.normal_force),
+        ("temperature", table.temperature),
+        ("valid", table.valid),
+        ("time", table.time),
+    ];
+    let named = named
+        .into_iter()
+        .filter_map(|(key, source)| Some((key.to_owned(), source?)));
+    let extra = table.extra.into_iter();
+    named
+        .chain(extra.map(|(name, source)| (format!("extra.{name}"), source)))
+        .filter_map(|(key, source)| Some((key, place(source)?)))
+        .collect()
+}
+
+fn place(source: file::Source) -> Option<Place> {
+    match source {
+        file::Source::Path(column) => Some(Place {
+            column,
+            ..Place::default()
+        }),
+        file::Source::Table(table) => Some(Place {
+            column: table.column,
+            unit: table.unit,
+            time: table.time,
+        }),
+        // Of an arm, which is refused before.
+        file::Source::Each(_) => None,
+    }
+}
