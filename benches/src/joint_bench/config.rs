@@ -13,13 +13,20 @@ pub type BenchConfig = crate::bench::BenchConfig<HiddenEffect, Motion>;
 /// What both effects change, where they cannot act side by side.
 pub(super) fn overlap(first: HiddenEffect, second: HiddenEffect) -> Option<&'static str> {
     use HiddenEffect::{
-        Backlash, CubicViscous, Elasticity, NonlinearViscous, QuadraticViscous, Viscous,
+        Backlash, CubicViscous, Elasticity, NonlinearViscous, QuadraticViscous,
+        TorqueSensorCalibration, TorqueSensorGain, TorqueSensorOffset, Viscous,
     };
     let both = |group: &[HiddenEffect]| group.contains(&first) && group.contains(&second);
     if both(&[Viscous, QuadraticViscous, CubicViscous, NonlinearViscous]) {
         Some("the viscous terms, whose share of each other is their answer")
     } else if both(&[Elasticity, Backlash]) {
         Some("the transmission")
+    } else if both(&[
+        TorqueSensorGain,
+        TorqueSensorOffset,
+        TorqueSensorCalibration,
+    ]) {
+        Some("the torque sensor's calibration, which both together are")
     } else {
         None
     }
@@ -51,6 +58,11 @@ mod tests {
         use HiddenEffect::{Backlash, Elasticity, Ripple, Viscous};
         assert!(refused(|c| c.hidden = vec![Ripple, Ripple]).contains("twice"));
         assert!(refused(|c| c.hidden = vec![Elasticity, Backlash]).contains("transmission"));
+        let sensor = vec![
+            HiddenEffect::TorqueSensorGain,
+            HiddenEffect::TorqueSensorOffset,
+        ];
+        assert!(refused(|c| c.hidden = sensor).contains("calibration"));
         let viscous = vec![Viscous, HiddenEffect::CubicViscous];
         assert!(refused(|c| c.hidden = viscous).contains("viscous"));
         assert!(refused(|c| c.hidden = HiddenEffect::ALL.to_vec()).contains("hidden"));

@@ -119,7 +119,11 @@ impl RealLikeBench {
             RealLike::UncertainLoad => {
                 let gain = 1.0 + signed(0.02, 0.08, &mut random);
                 here.modelled_load = Some([gain, signed(0.1, 0.5, &mut random)]);
-                also_there = vec!["torque_sensor_gain", "torque_sensor_offset"];
+                also_there = vec![
+                    "torque_sensor_gain",
+                    "torque_sensor_offset",
+                    "torque_sensor_calibration",
+                ];
             }
             RealLike::LittleExcitation => here.is_routine = true,
             RealLike::LimitedDrive if random.chance(0.5) => {
@@ -159,7 +163,8 @@ impl RealLikeBench {
     }
 }
 
-/// What a recording of this kind hides: half of them nothing.
+/// What a recording of this kind hides: half of them nothing, the others one error. Two at
+/// once, as a sensor's whole calibration is, are what [`RealLike::UncertainLoad`] brings.
 fn hidden(kind: RealLike, random: &mut Random) -> Option<HiddenEffect> {
     let brings = |own: HiddenEffect| match kind {
         RealLike::UncertainLoad => {
@@ -174,6 +179,7 @@ fn hidden(kind: RealLike, random: &mut Random) -> Option<HiddenEffect> {
     let all = HiddenEffect::ALL.iter().copied();
     let catalogue: Vec<HiddenEffect> = all
         .filter(|own| own.in_catalogue() && !brings(*own))
+        .filter(|own| *own != HiddenEffect::TorqueSensorCalibration)
         .collect();
     let hides = random.chance(0.5);
     let drawn = one_of(&catalogue, random);

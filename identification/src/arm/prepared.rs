@@ -171,7 +171,7 @@ impl<'a> PreparedArm<'a> {
                 position: session.position[joint].clone(),
                 motor_torque: session.motor_torque[joint].clone(),
                 joint_torque: torques.get(joint).cloned(),
-                torque_is_modelled: true,
+                torque_is_of_links: true,
                 extra,
                 conditions: session.conditions.clone(),
                 ..RecordedSession::default()

@@ -30,7 +30,8 @@ pub struct RecordedSession {
     /// τ_m \[Nm\]; of a contact F_T \[N\], positive where it opposes a motion
     /// towards larger `position`.
     pub motor_torque: Vec<f64>,
-    /// τ \[Nm\], what the joint torque sensor feels; `None` where there is no sensor.
+    /// τ \[Nm\], what the joint torque sensor feels, or a model in its place says; `None` where
+    /// there is neither.
     pub joint_torque: Option<Vec<f64>>,
     /// F_N \[N\] of a contact, positive when it pushes the tip out; else `None`.
     #[serde(default)]
@@ -48,10 +49,14 @@ pub struct RecordedSession {
     /// there is nothing but the link, so that the sensor's zero can be read.
     #[serde(default)]
     pub unloaded: bool,
-    /// Whether `joint_torque` is what a model of the arm says that its links take,
-    /// rather than what a sensor feels.
+    /// Whether `joint_torque` is what a model says, rather than what a sensor feels: its gain
+    /// and its zero may be wrong.
     #[serde(default)]
     pub torque_is_modelled: bool,
+    /// Whether `joint_torque` is what the model of an arm says that its links take, whose
+    /// errors are effects of the arm.
+    #[serde(default)]
+    pub torque_is_of_links: bool,
 }
 
 /// The recordings of one joint, or of one contact.

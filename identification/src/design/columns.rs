@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use ferntast_model::friction::FrictionState;
+
 use crate::effects::{
     BoundTerm, EffectHandle, Exact, ExactSignal, MAX_COLUMNS, constant_of, parts_of,
 };
@@ -17,9 +19,18 @@ pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<V
             let points = || signals.points.iter().map(Point::friction_state).collect();
             effect.of_states(shape, &signals.kept.states(points))
         }
-        false => effect.whole(shape, &signals.points),
+        false => effect
+            .whole(shape, &signals.points)
+            .or_else(|| of_points(effect, shape, &signals.points)),
     };
-    whole.unwrap_or_else(|| evaluated(signals, effect, shape, |point| *point))
+    whole.unwrap_or_else(|| evaluated(signals, effect, shape, signals.points.iter()))
+}
+
+/// Columns of an effect that is a function of the states alone, asked once for all of them.
+fn of_points(effect: &EffectHandle, shape: &[f64], points: &[Point]) -> Option<Vec<Vec<f64>>> {
+    effect.of_states(shape, &[])?;
+    let states: Vec<FrictionState> = points.iter().map(Point::friction_state).collect();
+    effect.of_states(shape, &states)
 }
 
 /// The same of a term of a model, kept where it is of the motion alone.
@@ -49,20 +60,21 @@ pub fn at_velocity(
         velocity: velocity(point),
         ..*point
     };
-    let points = || signals.points.iter().map(changed).collect::<Vec<Point>>();
+    let points: Vec<Point> = signals.points.iter().map(changed).collect();
     let whole = match effect.is_of_motion() {
         true => None,
-        false => effect.whole(shape, &points()),
+        false => effect.whole(shape, &points),
     };
-    Arc::new(whole.unwrap_or_else(|| evaluated(signals, effect, shape, changed)))
+    let whole = whole.or_else(|| of_points(effect, shape, &points));
+    Arc::new(whole.unwrap_or_else(|| evaluated(signals, effect, shape, points.iter())))
 }
 
-/// Columns of an effect that is a function of each point by itself, as it is `changed`.
-fn evaluated(
+/// Columns of an effect that goes through `points` one by one, with the session's extra signals.
+fn evaluated<'a>(
     signals: &Signals,
     effect: &EffectHandle,
     shape: &[f64],
-    changed: impl Fn(&Point) -> Point,
+    points: impl Iterator<Item = &'a Point>,
 ) -> Vec<Vec<f64>> {
     let count = effect.columns().min(MAX_COLUMNS);
     let mut columns = vec![Vec::with_capacity(signals.points.len()); count];
@@ -74,12 +86,11 @@ fn evaluated(
     let mut memory = [0.0; 4];
     let mut values = [0.0; MAX_COLUMNS];
     let mut extra = vec![0.0; extras.len()];
-    for (at, point) in signals.points.iter().enumerate() {
+    for (at, point) in points.enumerate() {
         for (value, signal) in extra.iter_mut().zip(&extras) {
             *value = signal.get(at).copied().unwrap_or(0.0);
         }
-        let point = changed(point);
-        effect.evaluate_with(shape, &point, &extra, &mut memory, &mut values[..count]);
+        effect.evaluate_with(shape, point, &extra, &mut memory, &mut values[..count]);
         for (column, value) in columns.iter_mut().zip(&values) {
             column.push(*value);
         }
@@ -120,7 +131,14 @@ pub fn filtered(
         }
         sum
     };
-    exact.iter().map(column).collect()
+    let mut columns: Vec<Vec<f64>> = exact.iter().map(column).collect();
+    // Further columns are no channels.
+    if columns.len() < effect.columns() {
+        let others = working(signals, effect, shape);
+        let others = others.iter().skip(columns.len());
+        columns.extend(others.map(|column| signals.column.at_samples(column, rows)));
+    }
+    columns
 }
 
 /// Columns of a term of the model at the working samples `rows`, through the column

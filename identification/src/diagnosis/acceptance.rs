@@ -12,6 +12,7 @@ use super::candidates::Candidate;
 use crate::comparison::noise_floor;
 use crate::data::{ModelSpec, Term};
 use crate::design::{Design, PreparedModel};
+use crate::effects::EffectHandle;
 use crate::fit::Fit;
 use crate::fit::addition::{Addition, add_to};
 use crate::preparation::Filtered;
@@ -26,6 +27,8 @@ pub struct Acceptance<'a> {
     pub spec: &'a ModelSpec,
     pub prepared: &'a PreparedModel,
     pub base: &'a Fit,
+    /// Whether shapes are those of another trial, and stay.
+    pub keeps_shapes: bool,
     pub made: BTreeMap<String, Option<Addition>>,
 }
 
@@ -34,7 +37,7 @@ impl Acceptance<'_> {
     pub fn of(&mut self, candidate: &Candidate) -> Option<&Addition> {
         let id = candidate.id();
         if !self.made.contains_key(id) {
-            let made = self.add(id);
+            let made = self.add(candidate);
             self.made.insert(id.to_owned(), made);
         }
         self.made.get(id)?.as_ref()
@@ -45,10 +48,29 @@ impl Acceptance<'_> {
         passing.retain(|candidate| self.of(candidate).is_some());
     }
 
-    fn add(&self, id: &str) -> Option<Addition> {
-        let term = Term::Catalogue(id.to_owned());
+    /// Whether a search in the model with the candidate would go through the same columns and
+    /// rows as that of the trial: where neither depends on a load that is modelled, on a
+    /// prediction, or on other shapes.
+    fn would_be_found_again(&self, candidate: &Candidate) -> bool {
+        let has_load = self.prepared.facts.joint_torque;
+        let is_fixed = |effect: &EffectHandle| {
+            let row = effect.row();
+            let stays = effect.is_of_motion() || has_load;
+            stays && !row.needs_prediction && !row.acts_on_channels
+        };
+        let mut terms = self.prepared.terms.iter();
+        let same_rows = !candidate.effect.row().shows_at_reversals || self.prepared.reversals;
+        same_rows
+            && is_fixed(&candidate.effect)
+            && terms.all(|term| is_fixed(&term.effect) && term.shape.is_empty())
+    }
+
+    fn add(&self, candidate: &Candidate) -> Option<Addition> {
+        let term = Term::Catalogue(candidate.id().to_owned());
         let both = (self.prepared, self.base);
-        let (addition, extended) = add_to(self.filtered, self.spec, both, &term).ok()?;
+        let known = self.keeps_shapes || self.would_be_found_again(candidate);
+        let shape = known.then_some(candidate.shape.as_slice());
+        let (addition, extended) = add_to(self.filtered, self.spec, both, &term, shape).ok()?;
         let is_no_limit = share_beyond(&extended) > MAX_SHARE_BEYOND;
         let is_refused = is_no_limit || is_below_noise(&addition, &extended);
         (addition.lowers_error && !is_refused).then_some(addition)

@@ -1,14 +1,18 @@
 //! Every effect that the model lacks, tried on the same rows.
 
+use super::equivalents::SUSPECT_MAX_P_VALUE;
 use crate::design::{Design, PreparedModel};
 use crate::effects::{self, BoundTerm, EffectHandle, Row};
 use crate::shape_search;
 use crate::shape_search::periodicity;
-use crate::validation::session_variation::trend;
+use crate::validation::session_variation::{MIN_SESSIONS, trend};
 use crate::validation::{Score, agreement, between, within};
 
 /// p-value below which a coefficient differs within and between sessions.
 const MAX_DISAGREEMENT_P_VALUE: f64 = 0.005;
+
+/// Fewest sessions of which one test of the variation between them is enough.
+const MIN_SESSIONS_ALONE: usize = 4;
 
 /// One effect at its best shape, scored on rows left out.
 #[derive(Clone)]
@@ -84,7 +88,7 @@ pub fn missing(prepared: &PreparedModel) -> Vec<EffectHandle> {
         let mut own = prepared.terms.iter().map(|t| t.effect.row());
         own.any(|whole| whole.has(part))
     };
-    let has_part = |whole: &Row| whole.is_sum && whole.parts().any(|p| prepared.has(p));
+    let has_part = |whole: &Row| whole.is_all_parts() && whole.parts().any(|p| prepared.has(p));
     effects::for_subject(prepared.facts.joint.subject())
         .into_iter()
         .chain(prepared.coupling())
@@ -105,13 +109,19 @@ pub fn score(
     shape: &[f64],
 ) -> Score {
     let grams = design.with(&design.extra_columns(prepared, effect, shape));
-    if effect.row().is_between_sessions() && prepared.facts.sessions >= 3 {
+    // Fewer sessions show no trend over them: what varies within them has to.
+    if effect.row().is_between_sessions() && prepared.facts.sessions >= MIN_SESSIONS {
         let mut score = between(design, &grams);
         // A session changes a coefficient by one number, so that the test is a
         // regression line over sessions, not over rows.
         let varied = effect.row().varies;
-        if let Some(p) = varied.and_then(|id| trend(prepared, design, &grams, id)) {
-            score.p_value = p;
+        let are_enough = prepared.facts.sessions >= MIN_SESSIONS_ALONE;
+        match varied.and_then(|id| trend(prepared, design, &grams, id)) {
+            // Three leave a line one degree of freedom: the coefficient with one left out in
+            // turn has to be suspect, too.
+            Some(p) if are_enough || score.p_value < SUSPECT_MAX_P_VALUE => score.p_value = p,
+            None if !are_enough => score.p_value = 1.0,
+            _ => {}
         }
         // A quantity that also changes within a session must have the same
         // coefficient there.

@@ -12,12 +12,12 @@ use crate::validation::beside;
 /// An effect adds to a rival if the p-value of its coefficients beside it is below this …
 const MAX_P_VALUE_ADDING: f64 = 1e-4;
 /// … and adds nothing if it is above this.
-const MIN_P_VALUE_REDUNDANT: f64 = 0.01;
+pub(super) const MIN_P_VALUE_REDUNDANT: f64 = 0.01;
 
 /// One column of an effect, as an effect of its own.
-struct SingleColumn {
-    whole: EffectHandle,
-    column: usize,
+pub(super) struct SingleColumn {
+    pub(super) whole: EffectHandle,
+    pub(super) column: usize,
 }
 
 impl Effect for SingleColumn {
@@ -37,6 +37,9 @@ impl Effect for SingleColumn {
     }
 }
 
+/// Columns of an effect: by session, column and row.
+pub(super) type BySession = Vec<Vec<Vec<f64>>>;
+
 /// p-value of the coefficients of `effect` in a model that has `first`, too.
 fn p_value_beside(
     prepared: &PreparedModel,
@@ -45,12 +48,18 @@ fn p_value_beside(
     effect: &EffectHandle,
     shape: &[f64],
 ) -> f64 {
-    let mut columns = design.extra_columns(prepared, &first.effect, &first.shape);
+    let columns = design.extra_columns(prepared, &first.effect, &first.shape);
     let more = design.extra_columns(prepared, effect, shape);
+    p_value_of_columns(design, columns, more)
+}
+
+/// p-value of the coefficients of the columns `more` in a model that has `columns`, too.
+pub(super) fn p_value_of_columns(design: &Design, mut columns: BySession, more: BySession) -> f64 {
+    let first = columns.first().map_or(0, Vec::len);
     for (own, more) in columns.iter_mut().zip(more) {
         own.extend(more);
     }
-    beside(design, &design.with(&columns), first.effect.columns())
+    beside(design, &design.with(&columns), first)
 }
 
 /// The column that `whole` has beyond the effect `part`, where it contains that.

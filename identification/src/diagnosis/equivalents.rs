@@ -15,7 +15,7 @@ const MAX_REMAINDER_RATIO: f64 = 1.05;
 /// Smallest share of the mean square that a suspect explains …
 const SUSPECT_MIN_SHARE: f64 = 0.2;
 /// … and its largest p-value.
-const SUSPECT_MAX_P_VALUE: f64 = 0.1;
+pub(super) const SUSPECT_MAX_P_VALUE: f64 = 0.1;
 /// A suspect is equivalent to the best if the ratio of their gains is above this …
 const SUSPECT_MIN_GAIN_RATIO: f64 = 0.5;
 /// … and the gains differ by fewer standard errors than this: 5 % with the five

@@ -7,7 +7,10 @@ use super::candidates::{Candidate, Trial, try_again, try_all};
 use super::dependence::Dependence;
 use super::results::Verdict;
 use super::verdict::{judge, maps, passing};
-use super::{at_reversals, backlash_or_presliding, encompassing_test, equivalents, sensor_zero};
+use super::{
+    at_reversals, backlash_or_presliding, encompassing_test, equivalents, modelled_load,
+    sensor_zero,
+};
 use crate::data::ModelSpec;
 use crate::data::error::PrepareError;
 use crate::design::{Design, PreparedModel};
@@ -56,12 +59,15 @@ pub(super) fn examine(
         spec,
         prepared: &prepared,
         base: &base,
+        keeps_shapes: known.is_some(),
         made: BTreeMap::new(),
     };
     let mut passing = passing(&trial);
     acceptance.keep_accepted(&mut passing);
     encompassing_test::drop_redundant_terms(&prepared, &design, &mut passing);
+    modelled_load::drop_pulls(&prepared, &design, &mut passing, &trial.candidates);
     equivalents::order(&design, &mut passing);
+    modelled_load::put_first(&prepared, &design, &mut passing);
     backlash_or_presliding::decide(&prepared, &mut passing, &trial.candidates);
     sensor_zero::decide(&prepared, &mut passing);
     encompassing_test::drop_encompassed(&prepared, &design, &mut passing);

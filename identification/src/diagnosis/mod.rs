@@ -14,6 +14,7 @@ pub mod dependence;
 mod encompassing_test;
 mod equivalents;
 mod examination;
+mod modelled_load;
 mod other_cutoffs;
 mod results;
 mod sensor_zero;

@@ -99,7 +99,7 @@ impl Judge<'_> {
     /// The model with one more effect, and what it leaves of rows left out.
     fn with(&self, effect: &Term) -> Option<(Addition, LeftOut)> {
         let both = (self.prepared, self.base);
-        let (addition, extended) = add_to(self.filtered, self.spec, both, effect).ok()?;
+        let (addition, extended) = add_to(self.filtered, self.spec, both, effect, None).ok()?;
         let left_out = LeftOut::new(&extended, &Design::new(&extended));
         Some((addition, left_out))
     }

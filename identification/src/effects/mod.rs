@@ -24,6 +24,7 @@ mod motor_constant;
 mod presliding_hysteresis;
 mod static_law;
 mod term;
+mod torque_sensor_calibration;
 mod torque_sensor_gain;
 mod torque_sensor_offset;
 
@@ -202,6 +203,7 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(motor_constant::MotorConstant::default()),
         Arc::new(torque_sensor_gain::TorqueSensorGain::default()),
         Arc::new(torque_sensor_offset::TorqueSensorOffset::default()),
+        Arc::new(torque_sensor_calibration::TorqueSensorCalibration::default()),
         Arc::new(channel_delay::ChannelDelay::default()),
         Arc::new(current_saturation::CurrentSaturation::default()),
         Arc::new(contact_compliance::ContactCompliance::default()),

@@ -29,7 +29,7 @@ impl Effect for TorqueSensorGain {
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        facts.no_torque_sensor()
+        facts.no_torque_channel()
     }
 
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {

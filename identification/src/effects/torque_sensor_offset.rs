@@ -30,6 +30,6 @@ impl Effect for TorqueSensorOffset {
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        facts.no_torque_sensor()
+        facts.no_torque_channel()
     }
 }

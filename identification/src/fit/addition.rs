@@ -10,7 +10,7 @@ use crate::data::error::PrepareError;
 use crate::data::{Dataset, Inertia, ModelSpec, Term};
 use crate::design::{Design, PreparedModel};
 use crate::effects;
-use crate::preparation::Filtered;
+use crate::preparation::{Filtered, KnownShape};
 use crate::validation::left_out::Decrease;
 
 /// Errors and parameters without and with one more effect.
@@ -56,20 +56,26 @@ pub fn add(dataset: &Dataset, spec: &ModelSpec, effect: &Term) -> Result<Additio
     let filtered = Filtered::new(dataset);
     let before = filtered.bind(spec)?;
     let base = fit(&before, &Design::new(&before));
-    let (addition, _) = add_to(&filtered, spec, (&before, &base), effect)?;
+    let (addition, _) = add_to(&filtered, spec, (&before, &base), effect, None)?;
     Ok(addition)
 }
 
 /// The same of recordings that are filtered, to which `spec` is bound and fitted;
-/// and the model with the effect.
+/// and the model with the effect, at `shape` where that is known.
 pub(crate) fn add_to(
     filtered: &Filtered<'_>,
     spec: &ModelSpec,
     (prepared, base): (&PreparedModel, &Fit),
     effect: &Term,
+    shape: Option<&[f64]>,
 ) -> Result<(Addition, PreparedModel), PrepareError> {
     let model = with(spec, effect)?;
-    let extended = filtered.bind_to_fit(&model)?;
+    let name = effect.name();
+    let known = shape.map(|shape| KnownShape {
+        effect: name,
+        shape,
+    });
+    let extended = filtered.bind_to_fit(&model, known)?;
     // Both on the rows that the new model is fitted to.
     let same = |of: fn(&PreparedModel) -> Vec<&[usize]>| of(prepared) == of(&extended);
     let refitted = match same(rows) && same(unjudged_rows) {

@@ -69,7 +69,9 @@ pub(super) fn gather(
         },
         gear_ratio: spec.gear_ratio,
         joint_torque: dataset.sessions.iter().all(|s| s.joint_torque.is_some()),
-        torque_is_modelled: dataset.sessions.iter().any(|s| s.torque_is_modelled),
+        torque_is_modelled: (dataset.sessions.iter())
+            .any(|s| s.torque_is_modelled || s.torque_is_of_links),
+        torque_is_of_links: dataset.sessions.iter().any(|s| s.torque_is_of_links),
         temperature: dataset.sessions.iter().all(|s| s.temperature.is_some()),
         reference_temperature: temperatures.iter().sum::<f64>() / temperatures.len().max(1) as f64,
         temperature_range: span(&temperatures),

@@ -25,6 +25,14 @@ pub(crate) struct Filtered<'a> {
     held_out: Vec<Signals>,
 }
 
+/// A shape that has been found already: none is searched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KnownShape<'a> {
+    /// Id of the effect.
+    pub effect: &'a str,
+    pub shape: &'a [f64],
+}
+
 /// Binds the model `spec` to the recordings in `dataset`.
 ///
 /// # Errors
@@ -58,18 +66,33 @@ impl<'a> Filtered<'a> {
 
     /// Binds a model whose numbers have been checked.
     pub(crate) fn bind(&self, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
-        self.bind_for(spec, true)
+        self.bind_for(spec, true, None)
     }
 
     /// The same, to be fitted and no more: where no term needs the model's own prediction,
     /// none is made, and no effect that needs one can be tried.
-    pub(crate) fn bind_to_fit(&self, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
-        self.bind_for(spec, false)
+    pub(crate) fn bind_to_fit(
+        &self,
+        spec: &ModelSpec,
+        known: Option<KnownShape<'_>>,
+    ) -> Result<PreparedModel, PrepareError> {
+        self.bind_for(spec, false, known)
     }
 
-    fn bind_for(&self, spec: &ModelSpec, predict: bool) -> Result<PreparedModel, PrepareError> {
+    fn bind_for(
+        &self,
+        spec: &ModelSpec,
+        predict: bool,
+        known: Option<KnownShape<'_>>,
+    ) -> Result<PreparedModel, PrepareError> {
         let mut prepared = self.without_terms(spec);
         prepared.terms = prepared.bind(spec)?;
+        if let Some(known) = known {
+            let mut own = prepared.terms.iter_mut();
+            if let Some(term) = own.find(|t| t.effect.description().id == known.effect) {
+                term.shape = known.shape.to_vec();
+            }
+        }
         let mut terms = prepared.terms.iter();
         if terms.any(|t| t.effect.row().shows_at_reversals) {
             prepared.keep_reversals();
@@ -84,7 +107,7 @@ impl<'a> Filtered<'a> {
         if !of_motion {
             prepared.model_load();
         }
-        prepared.find_shapes();
+        prepared.find_shapes(known.map(|own| own.effect));
         prepared.model_load();
         let mut terms = prepared.terms.iter();
         if predict || terms.any(|term| term.effect.row().needs_prediction) {

@@ -1,6 +1,7 @@
 //! Shapes of the model's own effects.
 
 use crate::design::{Design, PreparedModel};
+use crate::effects::BoundTerm;
 use crate::shape_search;
 use crate::signals::Signals;
 
@@ -12,10 +13,14 @@ const MIN_RELATIVE_CHANGE: f64 = 0.002;
 impl PreparedModel {
     /// Finds the shapes of the model's own effects, one after the other, since each
     /// depends on those of the others and on what these predict: first over the
-    /// whole grid, then around the last value, until no shape changes.
-    pub(super) fn find_shapes(&mut self) {
+    /// whole grid, then around the last value, until no shape changes. That of the effect
+    /// `known` is found already.
+    pub(super) fn find_shapes(&mut self, known: Option<&str>) {
+        let is_searched = |term: &BoundTerm| {
+            !term.shape.is_empty() && known.is_none_or(|id| term.effect.description().id != id)
+        };
         let searched: Vec<usize> = (0..self.terms.len())
-            .filter(|i| !self.terms[*i].shape.is_empty())
+            .filter(|i| is_searched(&self.terms[*i]))
             .collect();
         let predicts = self.terms.iter().any(|t| t.effect.row().needs_prediction);
         let max_rounds = match (predicts, searched.len()) {

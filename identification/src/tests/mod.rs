@@ -10,8 +10,8 @@ pub mod recordings;
 use std::collections::BTreeMap;
 
 use crate::{
-    CustomEffect, Dataset, Diagnosis, ExpressionError, Inertia, PrepareError, Term, Verdict, add,
-    compare, diagnose, effects,
+    CustomEffect, Dataset, Diagnosis, ExpressionError, Inertia, ModelSpec, PrepareError, Term,
+    Verdict, add, compare, diagnose, effects,
 };
 use recordings::{INERTIA, JointState, model, plain, recording};
 
@@ -317,4 +317,46 @@ fn a_whole_knows_its_parts() {
     assert!(!row("coulomb").has(row("coulomb")) && !offset.has(offset));
     let parts = row("nonlinear_viscous").parts();
     assert!(parts.eq(["quadratic_viscous", "cubic_viscous"]));
+}
+
+/// A load that is off by a gain and a zero at once (equation (2) with τ = (τ' − os)/(1 + gs)), as a
+/// model of it may be, is one error and not a cable.
+#[test]
+fn a_load_with_gain_and_zero_wrong_is_one_error() {
+    let wrong = |gain: f64, zero: f64| {
+        let mut data = recording(8, plain);
+        for torque in data.sessions.iter_mut().flat_map(|s| &mut s.joint_torque) {
+            torque
+                .iter_mut()
+                .for_each(|own| *own = (1.0 + gain) * *own + zero);
+        }
+        data
+    };
+    let believed = model(&["coulomb", "viscous"]);
+    let ask = |data: &Dataset, believed: &ModelSpec| diagnose(data, believed, &mut |_| ()).unwrap();
+    let found = ask(&wrong(0.1, 0.6), &believed);
+    assert_eq!(named(&found), "torque_sensor_calibration");
+    let parameters = &found.candidates[0].parameters;
+    let (gain, zero) = (parameters["gs"].value, parameters["os"].value);
+    assert!(
+        (gain + 0.1 / 1.1).abs() < 0.01 && (zero + 0.6 / 1.1).abs() < 0.06,
+        "{gain} {zero}"
+    );
+    // Either alone is named alone.
+    assert_eq!(
+        named(&ask(&wrong(0.1, 0.0), &believed)),
+        "torque_sensor_gain"
+    );
+    let zero = named(&ask(&wrong(0.0, 0.6), &believed)).to_owned();
+    assert!(
+        ["torque_sensor_offset", "asymmetric_coulomb"].contains(&zero.as_str()),
+        "{zero}"
+    );
+    // Where the model has the one, the other is what is missing.
+    let known = model(&["coulomb", "viscous", "torque_sensor_gain"]);
+    let left = named(&ask(&wrong(0.1, 0.6), &known)).to_owned();
+    assert!(
+        ["torque_sensor_offset", "asymmetric_coulomb"].contains(&left.as_str()),
+        "{left}"
+    );
 }

@@ -25,8 +25,9 @@ const PRIOR_FREEDOM: f64 = 4.0;
 /// p-value below which the variance of a part is larger than that of the others,
 /// so that these are no prior for it.
 const MIN_P_VALUE_OF_PRIOR: f64 = 0.05;
-/// Smallest number of sessions for a test.
-const MIN_SESSIONS: usize = 4;
+/// Smallest number of sessions for a test: a line through three leaves one degree of freedom,
+/// to which the prior adds.
+pub const MIN_SESSIONS: usize = 3;
 
 /// Scale of each part in each session, less 1; `None` where a session does not
 /// determine it.
@@ -229,7 +230,7 @@ mod tests {
 
     #[test]
     fn a_handful_of_sessions_is_needed() {
-        assert_eq!(p_value_of_line(&ANSCOMBE[..3], &[]), None);
+        assert_eq!(p_value_of_line(&ANSCOMBE[..2], &[]), None);
         assert_eq!(p_value_of_line(&[(1.0, 2.0); 5], &[]), None);
     }
 }

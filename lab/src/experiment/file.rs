@@ -141,6 +141,8 @@ pub(super) struct SourceTable {
 pub(super) struct Joint {
     #[serde(default, rename = "type")]
     pub(super) kind: ferntast_identification::JointType,
+    #[serde(default)]
+    pub(super) torque_is_modelled: bool,
 }
 
 /// What is touched.

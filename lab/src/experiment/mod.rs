@@ -11,6 +11,7 @@
 //! held_out = ["other.mcap"]     # optional: never fitted
 //! [joint]
 //! type = "revolute"             # or "prismatic": m, N, kg
+//! torque_is_modelled = true     # optional: joint_torque is no sensor's, but a model's of the load
 //! [signals]                     # message paths; in CSV names of columns
 //! position = "/joint_states.position[0]"      # rad
 //! motor_torque = "/motor.effort[0]"           # Nm; { column = "u", unit = "V" } where it is none
@@ -120,6 +121,8 @@ pub struct Experiment {
     pub filter: Option<StatedFilter>,
     /// Kind of joint, or a contact.
     pub joint: JointType,
+    /// Whether the joint torque is what a model of the load says, rather than a sensor's.
+    pub torque_is_modelled: bool,
     /// Of a contact: what the tip is laid on, where it is not a place already.
     pub contour: Option<Contour>,
     /// Of a whole arm: its joints and links. Signals are then those of its first joint,
@@ -262,6 +265,14 @@ impl Experiment {
                 Some(arm::table(table, urdf, &refuse)?)
             }
         };
+        let torque_is_modelled = file
+            .joint
+            .as_ref()
+            .is_some_and(|own| own.torque_is_modelled);
+        if torque_is_modelled && file.signals.joint_torque.is_none() {
+            let reason = "there is no signals.joint_torque that a model gives";
+            return Err(refuse("joint.torque_is_modelled", reason.to_owned()));
+        }
         let (joint, contour) = match (file.joint, file.contact) {
             (None, None) if arm.is_some() => {
                 (arm.as_ref().map(arm::joint_type).unwrap_or_default(), None)
@@ -292,6 +303,7 @@ impl Experiment {
             unloaded,
             filter: filter(file.filter, &refuse)?,
             joint,
+            torque_is_modelled,
             contour,
             signals: match &arm {
                 Some(arm) => arm::signals(arm, file.signals, &refuse)?,

@@ -71,6 +71,7 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
             unloaded: Vec::new(),
             filter: None,
             joint: JointType::Revolute,
+            torque_is_modelled: false,
             contour: None,
             arm: None,
             signals: Signals {

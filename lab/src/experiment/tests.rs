@@ -39,6 +39,22 @@ fn a_file_is_read_and_its_paths_count_from_its_folder() {
 }
 
 #[test]
+fn a_torque_that_a_model_gives_is_stated_and_there() {
+    assert!(!parse(SAMPLE).unwrap().torque_is_modelled);
+    let stated = SAMPLE.replace("[signals]", "torque_is_modelled = true\n[signals]");
+    let told = parse(&stated).unwrap_err().to_string();
+    assert!(
+        told.contains("joint.torque_is_modelled: there is no signals.joint_torque"),
+        "{told}"
+    );
+    let stated = stated.replace(
+        "extra.supply",
+        "joint_torque = \"/load.effort[0]\"\nextra.supply",
+    );
+    assert!(parse(&stated).unwrap().torque_is_modelled);
+}
+
+#[test]
 fn conditions_belong_to_their_recording() {
     let stated = SAMPLE.replace(
         "[\"a.mcap\", \"${FERNTAST_DATA}/b.csv\"]",

@@ -89,6 +89,7 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
             let (mut own, tally) = read_file(experiment, path, &wanted, &mut clock, &mut notes)?;
             for session in &mut own {
                 session.conditions = conditions.get(path).cloned().unwrap_or_default();
+                session.torque_is_modelled = experiment.torque_is_modelled;
             }
             sessions.extend(own);
             tallies.push(tally);

@@ -93,8 +93,10 @@ pub struct Facts {
     pub gear_ratio: Option<f64>,
     /// Whether τ is recorded.
     pub joint_torque: bool,
-    /// Whether that is the torque of a model of the arm, not that of a sensor.
+    /// Whether that is the torque of a model, not that of a sensor.
     pub torque_is_modelled: bool,
+    /// Whether that model is of an arm's links, whose errors are effects of the arm.
+    pub torque_is_of_links: bool,
     /// Whether the temperature is measured.
     pub temperature: bool,
     /// T₀ \[degC\], the mean.
@@ -135,6 +137,20 @@ impl Facts {
     #[must_use]
     pub fn no_torque_sensor(&self) -> Option<String> {
         (!self.joint_torque || self.torque_is_modelled).then(|| "no joint torque sensor".to_owned())
+    }
+
+    /// Why nothing can be said of gain and zero of τ, by a sensor or by a model in its place, if
+    /// nothing can.
+    #[must_use]
+    pub fn no_torque_channel(&self) -> Option<String> {
+        match (self.joint_torque, self.torque_is_of_links) {
+            (false, _) => Some("no joint torque, of a sensor or by a model".to_owned()),
+            (true, true) => Some(
+                "the joint torque is that of the arm's links, which have effects of their own"
+                    .to_owned(),
+            ),
+            (true, false) => None,
+        }
     }
 
     /// Length \[rad\] of the range of positions.

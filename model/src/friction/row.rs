@@ -227,7 +227,7 @@ pub struct Row {
     pub at_reversal: Option<AtReversal>,
     /// Signals over which its shape is fixed.
     pub own_signals: OwnSignals,
-    /// Channels to which its columns are equal, where they are.
+    /// Channels to which its columns are equal: all of them, the first ones, or none.
     pub exact: &'static [Exact],
     /// It is a load on the joint (spring, weight) rather than friction.
     pub is_load: bool,
@@ -308,6 +308,14 @@ impl Row {
         let mut parts = self.contains.iter();
         let (_, column) = parts.find(|(id, _)| *id == part)?;
         Some(*column)
+    }
+
+    /// Whether each of its columns is what it has beyond an effect among them: where a
+    /// model has one of these, another is what may be missing, and not the whole.
+    #[must_use]
+    pub fn is_all_parts(&self) -> bool {
+        let is_beyond_one = |column| self.contains.iter().any(|(_, beyond)| *beyond == column);
+        !self.contains.is_empty() && (0..self.coefficients.len()).all(is_beyond_one)
     }
 
     /// Ids of the effects among its columns.

@@ -26,6 +26,7 @@ mod ripple;
 mod stribeck;
 mod temperature_coulomb;
 mod temperature_viscous;
+mod torque_sensor_calibration;
 mod torque_sensor_gain;
 mod torque_sensor_offset;
 mod unknown_acceleration;
@@ -217,5 +218,7 @@ truths! {
         AsymmetricViscous = "asymmetric_viscous" => asymmetric_viscous::draw(strength, random),
         /// More Coulomb friction near rest, by load.
         LoadStribeck = "load_stribeck" => load_stribeck::draw(strength, random),
+        /// Wrong gain and zero of the torque sensor at once.
+        TorqueSensorCalibration = "torque_sensor_calibration" => torque_sensor_calibration::draw(strength, random),
     }
 }

@@ -6,7 +6,7 @@
 
 mod basis;
 
-use basis::{Channel, KNOTS_PAIR, KNOTS_PRODUCT, basis, channels};
+use basis::{Channel, KNOTS_PAIR, KNOTS_PRODUCT, channels, grams};
 use serde::Serialize;
 
 use crate::design::{Design, PreparedModel};
@@ -64,17 +64,17 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
     let mut found: Vec<Dependence> = Vec::new();
     for choice in choices {
         let chosen: Vec<&Channel> = choice.iter().map(|i| &channels[*i]).collect();
-        let with_knots = |knots| design.with(&basis(prepared, &chosen, Direction::Either, knots));
-        let grams = with_knots(KNOTS_PAIR);
+        let with_knots = |knots| grams(prepared, design, &chosen, Direction::Either, knots);
+        let all = with_knots(KNOTS_PAIR);
         // The model's own parameters, one set a session, can absorb what changes
         // with temperature or date only; shared ones cannot, but the variation of
         // all parameters between sessions masks it.
         let mut scores = Vec::new();
         if chosen.iter().any(|c| c.slow) {
-            scores.push(between(design, &grams));
+            scores.push(between(design, &all));
         }
         if chosen.iter().any(|c| !c.slow) {
-            scores.push(gain_within(design, &grams));
+            scores.push(gain_within(design, &all));
         }
         let motions = |c: &&&Channel| Origin::of(&c.name) == Origin::Motion;
         if chosen.len() > 1 && chosen.iter().any(|c| motions(&c)) {
@@ -163,7 +163,7 @@ pub fn on_own_signals(prepared: &PreparedModel, design: &Design, effect: &Effect
     choices
         .iter()
         .filter_map(|chosen| {
-            let grams = design.with(&basis(prepared, chosen, own.direction, KNOTS_PAIR));
+            let grams = grams(prepared, design, chosen, own.direction, KNOTS_PAIR);
             let slow = chosen.iter().any(|c| c.slow);
             let score = if slow {
                 between(design, &grams)

@@ -189,6 +189,7 @@ fn changes_all(hidden: Option<&str>) -> bool {
         "temperature_viscous",
         "motor_constant",
         "torque_sensor_gain",
+        "torque_sensor_calibration",
         "contact_wear",
         "contact_spot",
         "contact_compliance",

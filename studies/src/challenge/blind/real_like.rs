@@ -101,7 +101,11 @@ pub(super) fn ask(case: &RealCase) -> Result<RealAnswer, String> {
 fn answer(case: &RealCase) -> Result<RealAnswer, String> {
     let drawn = RealLikeBench::draw(case.kind, case.seed).map_err(|error| error.to_string())?;
     let recording = drawn.bench.record().map_err(|error| error.to_string())?;
-    let data = HiddenEffect::dataset(&recording);
+    let mut data = HiddenEffect::dataset(&recording);
+    // Whoever has no sensor knows it.
+    for session in &mut data.sessions {
+        session.torque_is_modelled = case.kind == RealLike::UncertainLoad;
+    }
     let believed = HiddenEffect::model(&recording);
     let told = diagnose(&data, &believed, &mut |_| {}).map_err(|error| error.to_string())?;
     let first = (told.candidates.first()).filter(|_| told.verdict == Verdict::Missing);

@@ -120,8 +120,7 @@ fn blind_on_contacts_that_nobody_has_seen() {
 
 /// Recordings like real ones, one lack of the bench's at a time. What is named beyond what is
 /// there, or told to be indistinguishable from it: measured on 40 of each kind at another seed
-/// 0 or 1 of 40, but for a load that a model gives wrongly (21 of 40: two errors at once look
-/// like one pull over position). 20 of each kind are few: the bounds leave room for chance.
+/// 0 to 2 of 40. 20 of each kind are few: the bounds leave room for chance.
 #[test]
 fn blind_on_recordings_like_real_ones() {
     let session = Session::new();
@@ -152,18 +151,23 @@ fn blind_on_recordings_like_real_ones() {
         assert_eq!(number(row, "false_names.tried"), 20.0, "{kind}");
         let own = number(row, "false_names.found") - number(row, "false_in_family");
         match kind.as_str() {
-            "uncertain_load" => assert!((1.0..=16.0).contains(&own), "{row:#}"),
-            _ => {
-                assert!(own <= 2.0, "{kind}: {row:#}");
-                beyond_family += own;
+            // A load that a model gives wrongly is told as that: 1 of 40 at the other seed.
+            "uncertain_load" => {
+                let all = number(row, "false_names.found");
+                assert!((0.0..=1.0).contains(&own) && all <= 1.0, "{row:#}");
+                let right = number(row, "right_first.found");
+                assert!((18.0..=20.0).contains(&right), "{row:#}");
             }
+            _ => assert!(own <= 2.0, "{kind}: {row:#}"),
         }
+        beyond_family += own;
         let share = |of: &str| {
             number(row, &format!("{of}.found")) / number(row, &format!("{of}.tried")).max(1.0)
         };
         let least = match kind.as_str() {
             // Few moves show few effects, and of one session nobody knows how it varies.
-            "little_excitation" | "uncertain_load" => 0.0,
+            "little_excitation" => 0.0,
+            "uncertain_load" => 0.9,
             "one_session" => 0.5,
             _ => 0.75,
         };
