@@ -52,7 +52,11 @@ fn stiff_arm() -> (ArmUnderTrial, f64) {
 fn two_layers_around_model_mediated_give_out_no_more_than_they_took_in() {
     let claim = |law: &Law| law.claims_passivity().then(|| law.name());
     let claims: Vec<_> = Law::all().iter().filter_map(claim).collect();
-    assert_eq!(claims, ["two_layer"], "who claims passivity is to be tried here");
+    assert_eq!(
+        claims,
+        ["two_layer"],
+        "who claims passivity is to be tried here"
+    );
     let (arm, stiffness) = stiff_arm();
     report(&failures(CASES, |seed| {
         trial(&arm, seed, |draw| {

@@ -122,6 +122,7 @@ pub fn read(folder: &Path) -> Result<[Vec<Row>; 3], IdentifyError> {
         unloaded: Vec::new(),
         filter: None,
         joint: JointType::Revolute,
+        torque_is_modelled: false,
         contour: None,
         arm: None,
         signals: Signals {
