@@ -21,7 +21,8 @@
 //! * **The tip.** Behind it are a servo and a mass that store energy on their own account, and a
 //!   contact gets all of that before anybody knows. So the tank has to hold it: the command moves
 //!   no faster than ½ m v² ≤ E, and in contact it leads the tip, along the force with which it
-//!   pushes, by no more than ½ k d² ≤ E, also next to what it has touched just before. Franken et al. take from the force there; an arm
+//!   pushes, by no more than ½ k d² ≤ E, also next to what it has touched just before;
+//!   where the tank is overdrawn by 12 mJ it only leaves. Franken et al. take from the force there; an arm
 //!   that is told positions has none to take from. A command that was kept back catches up with a
 //!   bounded acceleration, as an arm that is jerked feigns forces; and it never leads by
 //!   more than `largest_lead`, as a servo that is slow to take over would wind up.

@@ -19,6 +19,8 @@ const CATCH_UP: f64 = 0.5;
 /// In the first moments of a contact a tip that bounces is quicker than the estimate of its force
 /// and seems to take in what it gives out: nothing counts as coming in for so long [s].
 const IMPACT: f64 = 0.1;
+/// By so much a tank may be overdrawn, at the hand's scale, before the tip stays where it touches [J].
+const OVERDRAFT: f64 = 0.012;
 /// Where the tip is farther from it than this, nothing is near any more [m].
 const NEAR: f64 = 1e-3;
 
@@ -161,13 +163,20 @@ impl TwoLayerFollower {
             return wanted;
         };
         let leash = self.parameters.largest_lead / self.mapping.position_scale;
-        let ahead = tip + (position - tip).cap_magnitude(leash) - before;
+        let mut ahead = tip + (position - tip).cap_magnitude(leash) - before;
+        let near = self.near(&tip);
+        if let Some(Touched { along, .. }) = near
+            && self.tank.level() < -OVERDRAFT
+        {
+            // Along a surface with friction every step costs: it may only leave.
+            ahead = ahead.dot(&along).min(0.0) * along;
+        }
         let mut way = ahead.cap_magnitude(self.stride(dt, &ahead, &velocity));
         if (before - tip).norm() > 0.5 * leash {
             // The servo is taking over, and brakes softly in that.
             way = way.cap_magnitude(TAKING_OVER * dt);
         }
-        if let Some(Touched { along, .. }) = self.near(&tip) {
+        if let Some(Touched { along, .. }) = near {
             let lead = (before - tip).dot(&along);
             way += (self.deeper(dt, lead) - way.dot(&along)).min(0.0) * along;
         }

@@ -137,6 +137,8 @@ fn a_hand_that_lets_go_is_pushed_no_further_than_the_tank_pays_for() {
 struct Tip {
     follower: TwoLayerFollower,
     command: f64,
+    /// Of the command, along the other axis [m].
+    sideways: f64,
     tip: f64,
 }
 
@@ -146,6 +148,7 @@ impl Tip {
         Tip {
             follower: law.follower(),
             command: 0.0,
+            sideways: 0.0,
             tip: 0.0,
         }
     }
@@ -153,17 +156,31 @@ impl Tip {
     /// A step with the hand at `hand` \[m\] and the contact's force \[N\]; gives what was promised
     /// since the start \[J\].
     fn step(&mut self, hand: f64, force: f64) -> f64 {
+        self.step_to([hand, 0.0], force)
+    }
+
+    /// The same with the hand elsewhere along the other axis, too.
+    fn step_to(&mut self, [hand, sideways]: [f64; 2], force: f64) -> f64 {
+        let mut heard = received(hand, 0.0, 0.0);
+        if let Some(heard) = &mut heard {
+            heard.packet.position[1] = sideways as f32;
+        }
+        let mut tip = moving(self.tip, 0.0);
+        if let Some(tip) = &mut tip {
+            tip.position[1] = self.sideways;
+        }
         let step = self.follower.step(
             DT,
             &FollowerInput {
-                tip: moving(self.tip, 0.0),
+                tip,
                 contact_force: Some([force, 0.0, 0.0]),
-                received: received(hand, 0.0, 0.0),
+                received: heard,
                 connected: true,
             },
             Energy::default(),
         );
-        self.command = step.command.expect("a command").position[0];
+        let command = step.command.expect("a command").position;
+        [self.command, self.sideways] = [command[0], command[1]];
         f64::from(step.packet.energy[0])
     }
 }
@@ -223,6 +240,40 @@ fn a_contact_that_the_estimate_no_longer_sees_is_still_near() {
     }
     let speed = (tip.command - before) / (50.0 * DT);
     assert!((0.009..0.011).contains(&speed), "{speed} m/s");
+}
+
+#[test]
+fn an_overdrawn_tank_keeps_the_tip_where_it_touches() {
+    let mut tip = Tip::new(0.0);
+    // The tip goes 2 mm into what pushes with 10 N, and gives out 20 mJ that nobody paid.
+    for k in 0..500 {
+        tip.tip = 1e-3 + if k < 200 { 1e-5 * f64::from(k) } else { 2e-3 };
+        tip.step(0.05, -10.0);
+    }
+    let (command, mut sideways) = (tip.command, tip.sideways);
+    let mut slide = |tip: &mut Tip, hand: f64, force: f64| {
+        for _ in 0..200 {
+            tip.step_to([hand, 0.05], force);
+        }
+        let way = tip.sideways - sideways;
+        sideways = tip.sideways;
+        way
+    };
+    let way = slide(&mut tip, 0.05, -10.0);
+    assert!(way.abs() < 1e-9, "{way} m");
+    assert!(tip.command <= command + 1e-9, "{} m", tip.command);
+    // It may leave: the hand goes back.
+    slide(&mut tip, -0.05, -10.0);
+    assert!(
+        tip.command < command - 1e-3,
+        "{} of {command} m",
+        tip.command
+    );
+    // Nothing is near there, and it goes on by the speed that it always may have.
+    let here = tip.command;
+    tip.tip = here;
+    let way = slide(&mut tip, here, 0.0);
+    assert!((1e-3..3e-3).contains(&way), "{way} m in 0.2 s");
 }
 
 /// What the tip's end has promised after a tip was pushed back by 1 mm with 10 N, `since` \[s\] after
