@@ -42,21 +42,24 @@ impl EnergyTank {
         let entered = port.entered - self.port.entered;
         self.level += entered - (port.left - self.port.left);
         self.port = port;
-        let promise = (share * entered).min(self.level).max(0.0);
-        self.level -= promise;
-        self.promised += promise;
+        self.pledge(share * entered);
     }
 
     /// As [`port`](Self::port) after a step of `dt` \[s\], but promises of the balance only what is beyond what it
-    /// was before: what goes out and in again, as a tip that trembles on a wall makes it, stays.
+    /// was before: what goes out and in again stays.
     /// What it was before is forgotten within `memory` \[s\].
     pub fn port_beyond(&mut self, dt: f64, port: Energy, share: f64, memory: f64) {
         let balance = port.balance();
         self.level += balance - self.port.balance();
         self.port = port;
         self.mark -= (self.mark - balance).max(0.0) * (dt / memory).min(1.0);
-        let promise = (share * (balance - self.mark)).min(self.level).max(0.0);
+        self.pledge(share * (balance - self.mark));
         self.mark = self.mark.max(balance);
+    }
+
+    /// Promises `energy` \[J\] to the other end, as far as it is there.
+    fn pledge(&mut self, energy: f64) {
+        let promise = energy.min(self.level).max(0.0);
         self.level -= promise;
         self.promised += promise;
     }

@@ -62,8 +62,6 @@ pub(super) struct Slope {
     information: f64,
     /// Variance of the depth about the line [m²].
     scatter: f64,
-    /// What changed unevenly, last: force [N] and depth [m].
-    uneven: [f64; 2],
 }
 
 impl Slope {
@@ -76,7 +74,6 @@ impl Slope {
         compliance: 1.0 / STIFFEST,
         information: 0.0,
         scatter: 0.0,
-        uneven: [0.0; 2],
     };
 
     pub fn known(&self) -> Known {
@@ -84,11 +81,6 @@ impl Slope {
             compliance: self.compliance,
             weight: self.information * self.compliance * self.compliance,
         }
-    }
-
-    /// What changed unevenly in the last step: force \[N\] and depth \[m\].
-    pub fn uneven(&self) -> [f64; 2] {
-        self.uneven
     }
 
     /// A new contact, maybe with something else than where `known` is from.
@@ -102,19 +94,18 @@ impl Slope {
     }
 
     /// After `dt` \[s\], at `depth` \[m\] under `force` \[N\] of which changes from `spread`
-    /// \[N\] on count.
-    pub fn add(&mut self, dt: f64, depth: f64, force: f64, spread: f64) {
+    /// \[N\] on count; gives what of force \[N\] and depth \[m\] changed unevenly.
+    pub fn add(&mut self, dt: f64, depth: f64, force: f64, spread: f64) -> [f64; 2] {
         let Some(even) = &mut self.force else {
             (self.force, self.depth) = (Some(Even::at(force)), Even::at(depth));
-            return;
+            return [0.0; 2];
         };
         let apart = even.step(dt, EVEN, force);
         let away = self.depth.step(dt, EVEN, depth);
-        self.uneven = [apart, away];
         let left = away - self.compliance * apart;
         self.scatter += EVEN * dt * (left * left - self.scatter);
         if apart.abs() < spread {
-            return;
+            return [apart, away];
         }
         let told = apart * apart / self.scatter.max(NOISE * NOISE) * dt / CORRELATION;
         self.information += told;
@@ -122,6 +113,7 @@ impl Slope {
         self.compliance = compliance.clamp(1.0 / STIFFEST, 1.0 / SOFTEST);
         let best = (LEAST_ERROR * self.compliance).powi(-2);
         self.information = self.information.min(best);
+        [apart, away]
     }
 }
 

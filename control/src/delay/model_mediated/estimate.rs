@@ -163,8 +163,8 @@ impl SurfaceEstimator {
             true => (self.scale.force * SPREAD).max(CLEAR * self.noise.level()),
             false => f64::INFINITY,
         };
-        self.slope.add(dt, gone, normal_force, spread);
-        self.noise.add(dt, self.slope.uneven());
+        let uneven = self.slope.add(dt, gone, normal_force, spread);
+        self.noise.add(dt, uneven);
         if self.touching > CHORD_WAIT {
             let spread = self.scale.force * CHORD_SPREAD;
             self.chord
