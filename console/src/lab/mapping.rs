@@ -16,7 +16,7 @@ use axum::{
 };
 use ferntast_identification::JointType;
 use ferntast_lab::{
-    experiment::{DATA_VARIABLE, Join, Mapped, Mapping, data_folder, turned, units_for},
+    experiment::{Join, Mapped, Mapping, data_folder, recording_at, turned, units_for},
     work::{self, Again, Look, Request, Trial, WorkError},
 };
 use serde::{Deserialize, Serialize};
@@ -75,10 +75,7 @@ impl Lab {
     fn names_of(&self, mapping: &Mapping, folder: &Path) -> Names {
         let files = mapping.recordings.iter().chain(&mapping.held_out).flatten();
         let named = files.map(|text| {
-            let path = match text.strip_prefix(DATA_VARIABLE) {
-                Some(rest) => data_folder().join(rest.trim_start_matches('/')),
-                None => folder.join(text),
-            };
+            let path = recording_at(text, folder, &data_folder());
             let path = path.canonicalize().unwrap_or(path);
             let name = match path.strip_prefix(&self.root) {
                 Ok(inside) => inside.display().to_string(),
@@ -154,28 +151,21 @@ pub async fn look(State(lab): State<Arc<Lab>>, Json(asked): Json<Files>) -> Resp
             Some(path) => Some(lab.current(path)?),
             None => None,
         };
-        let mut called = BTreeMap::new();
+        let (mut files, mut called) = (Vec::new(), BTreeMap::new());
         for name in &asked.files {
             let elsewhere = known.as_ref().and_then(|(_, names, folder)| {
                 let text = names.get(name)?;
-                let path = text.strip_prefix(DATA_VARIABLE);
-                let of_data = |rest: &str| data_folder().join(rest.trim_start_matches('/'));
-                Some(path.map_or_else(|| folder.join(text), of_data))
+                Some(recording_at(text, folder, &data_folder()))
             });
             let path = match elsewhere {
                 Some(path) => path,
                 None => lab.there(name)?,
             };
+            files.push(path.clone());
             called.insert(path, name.clone());
         }
-        let in_order = asked.files.iter();
-        let files = in_order.filter_map(|name| {
-            let mut all = called.iter();
-            all.find(|(_, own)| *own == name)
-                .map(|(path, _)| path.clone())
-        });
         let request = Request {
-            files: files.collect(),
+            files,
             columns: asked.columns,
             rate_hz: asked.rate_hz,
             join: asked.join,

@@ -142,6 +142,16 @@ pub fn data_folder() -> PathBuf {
     std::env::var_os("FERNTAST_DATA").map_or_else(|| "../shared/data".into(), PathBuf::from)
 }
 
+/// Where a recording is that an experiment file in `folder` calls `text`; one that begins with
+/// [`DATA_VARIABLE`] is in `data_folder`.
+#[must_use]
+pub fn recording_at(text: &str, folder: &Path, data_folder: &Path) -> PathBuf {
+    match text.strip_prefix(DATA_VARIABLE) {
+        Some(rest) => data_folder.join(rest.trim_start_matches('/')),
+        None => folder.join(text),
+    }
+}
+
 /// The folder that a file lies in.
 fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
@@ -218,10 +228,7 @@ impl Experiment {
             reason,
         };
         let folder = folder_of(path);
-        let of_text = |text: String| match text.strip_prefix(DATA_VARIABLE) {
-            Some(rest) => data_folder.join(rest.trim_start_matches('/')),
-            None => folder.join(text),
-        };
+        let of_text = |text: String| recording_at(&text, &folder, data_folder);
         let mut joined = BTreeMap::new();
         let mut conditions = BTreeMap::new();
         let mut resolve = |recordings: file::Recordings| -> Vec<PathBuf> {
