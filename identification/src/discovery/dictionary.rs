@@ -141,17 +141,22 @@ fn factors(number: usize, channel: &Channel) -> Factors {
                 in_products,
             }
         }
-        Kind::Slow => Factors {
-            alone: vec![make(Shape::Shifted, middle, 1.0)],
-            in_products: vec![
-                make(Shape::Shifted, middle, 1.0),
-                make(Shape::Shifted, low - 0.5 * width, 1.0),
+        Kind::Slow => {
+            let at = |shape: Shape, share: f64, scale: f64| make(shape, low + share * width, scale);
+            let mut in_products = vec![
+                at(Shape::Shifted, 0.5, 1.0),
+                at(Shape::Shifted, -0.5, 1.0),
                 make(Shape::Growth, 0.0, -width),
-                make(Shape::Step, low + 0.3 * width, 0.2 * width),
-                make(Shape::Step, low + 0.5 * width, 0.2 * width),
-                make(Shape::Step, low + 0.7 * width, 0.2 * width),
-            ],
-        },
+            ];
+            in_products.extend([0.3, 0.5, 0.7].map(|share| at(Shape::Step, share, 0.2 * width)));
+            in_products.extend([0.3, 0.6].map(|share| at(Shape::Above, share, 1.0)));
+            in_products.extend([0.4, 0.7].map(|share| at(Shape::Below, share, 1.0)));
+            in_products.extend([0.25, 0.5, 0.75].map(|share| at(Shape::Spot, share, 0.25 * width)));
+            Factors {
+                alone: vec![at(Shape::Shifted, 0.5, 1.0)],
+                in_products,
+            }
+        }
     }
 }
 

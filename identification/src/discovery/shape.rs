@@ -25,6 +25,10 @@ pub(super) enum Shape {
     Shifted,
     /// |x − place|
     Bend,
+    /// |x − place| + x − place: twice what is beyond the place, nothing before it
+    Above,
+    /// |x − place| − (x − place): twice what is short of the place, nothing beyond it
+    Below,
     /// (x − place)²
     Bowl,
     /// tanh(x / scale)
@@ -63,15 +67,15 @@ pub(super) struct Constants {
 }
 
 use Shape::{
-    Bell, Bend, Bowl, Cosine, Cube, Decay, Growth, Linear, Logarithm, Root, Shifted, SignedBell,
-    SignedDecay, SignedLogarithm, SignedRoot, SignedSquare, Sine, Size, SizeTanh, Spot, Square,
-    Step, Tanh,
+    Above, Bell, Below, Bend, Bowl, Cosine, Cube, Decay, Growth, Linear, Logarithm, Root, Shifted,
+    SignedBell, SignedDecay, SignedLogarithm, SignedRoot, SignedSquare, Sine, Size, SizeTanh, Spot,
+    Square, Step, Tanh,
 };
 
 impl Shape {
     /// All of them.
     #[cfg(test)]
-    pub(super) const ALL: [Self; 23] = [
+    pub(super) const ALL: [Self; 25] = [
         Linear,
         Size,
         Square,
@@ -81,6 +85,8 @@ impl Shape {
         SignedRoot,
         Shifted,
         Bend,
+        Above,
+        Below,
         Bowl,
         Tanh,
         SizeTanh,
@@ -111,6 +117,8 @@ impl Shape {
             SignedRoot => x.abs().sqrt() * sign,
             Shifted => shifted,
             Bend => shifted.abs(),
+            Above => shifted.abs() + shifted,
+            Below => shifted.abs() - shifted,
             Bowl => shifted * shifted,
             Tanh => (x / scale).tanh(),
             SizeTanh => (x.abs() / scale).tanh(),
@@ -142,6 +150,8 @@ impl Shape {
             SignedRoot => format!("sqrt(abs({x}))*sign({x})"),
             Shifted => format!("({shifted})"),
             Bend => format!("abs({shifted})"),
+            Above => format!("(abs({shifted}) + {shifted})"),
+            Below => format!("(abs({shifted}) - ({shifted}))"),
             Bowl => format!("({shifted})^2"),
             Tanh => format!("tanh({x}/{scale})"),
             SizeTanh => format!("tanh(abs({x})/{scale})"),
@@ -163,7 +173,7 @@ impl Shape {
     pub(super) const fn constants(self) -> Constants {
         let (place, scale) = match self {
             Linear | Size | Square | SignedSquare | Cube | Root | SignedRoot => (false, false),
-            Shifted | Bend | Bowl => (true, false),
+            Shifted | Bend | Above | Below | Bowl => (true, false),
             Step | Spot => (true, true),
             Tanh | SizeTanh | Decay | SignedDecay | Bell | SignedBell | Growth | Logarithm
             | SignedLogarithm | Sine | Cosine => (false, true),
@@ -174,7 +184,7 @@ impl Shape {
     /// The power of the signal's unit that its value has.
     pub(super) const fn power(self) -> f64 {
         match self {
-            Linear | Size | Shifted | Bend => 1.0,
+            Linear | Size | Shifted | Bend | Above | Below => 1.0,
             Square | SignedSquare | Bowl => 2.0,
             Cube => 3.0,
             Root | SignedRoot => 0.5,
@@ -190,7 +200,7 @@ impl Shape {
             SignedSquare | Root | Shifted => 3,
             SignedRoot | Bend | Bowl | Tanh | Growth | Sine | Cosine => 4,
             SizeTanh | Decay | Bell => 5,
-            Step | SignedDecay | SignedBell | Logarithm => 6,
+            Step | SignedDecay | SignedBell | Logarithm | Above | Below => 6,
             Spot | SignedLogarithm => 7,
         }
     }

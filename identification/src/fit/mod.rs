@@ -167,8 +167,8 @@ fn name(prepared: &PreparedModel, coefficients: &DVector<f64>, uncertainty: &Unc
             name
         };
         for (quantity, column) in description.coefficients.iter().zip(columns) {
-            let (value, error) = (coefficients[column], uncertainty.of_coefficient(column));
-            let both = (error, uncertainty.freedom);
+            let value = coefficients[column];
+            let both @ (error, _) = uncertainty.with_freedom(column);
             let parameter = Parameter::measured(value, both, quantity.unit.of(joint), effect);
             let name = insert(&quantity.name, parameter, Some(column));
             if error >= value.abs() || uncertainty.gram.products[(column, column)] <= 0.0 {
@@ -178,7 +178,7 @@ fn name(prepared: &PreparedModel, coefficients: &DVector<f64>, uncertainty: &Unc
         for (place, (quantity, value)) in description.shape.iter().zip(&term.shape).enumerate() {
             let column = uncertainty.column_of_shape(at, place);
             let unit = quantity.unit.of(joint);
-            let both = column.map(|at| (uncertainty.of_coefficient(at), uncertainty.freedom));
+            let both = column.map(|at| uncertainty.with_freedom(at));
             let parameter = match both {
                 Some(both) => Parameter::measured(*value, both, unit, effect),
                 None => Parameter {

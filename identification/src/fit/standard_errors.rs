@@ -3,7 +3,8 @@
 //! Sessions are left out in turn (jackknife), since their parameters differ. Of fewer
 //! than three, blocks of time take their place, whose residuals are made up for what
 //! each block pulls the fit to itself (CR2: Bell and McCaffrey 2002): left out in turn,
-//! the blocks in which a parameter shows most would make its error too large. Shape parameters
+//! the blocks in which a parameter shows most would make its error too large. A parameter
+//! that shows in few of the blocks has as few degrees of freedom. Shape parameters
 //! take part by the derivatives of their effects' columns: near the best shape s the
 //! model c φ(s) is c φ + c ∂φ/∂s Δs, linear in c and Δs (Gauss–Newton). A coefficient
 //! whose effect has a shape is less certain than it would be were the shape known.
@@ -38,8 +39,9 @@ pub struct Uncertainty {
     pub gram: Gram,
     /// Which shape parameters these are: term and place in its shape.
     pub shapes: Vec<(usize, usize)>,
-    /// Degrees of freedom: what is left out in turn, less one.
-    pub freedom: f64,
+    /// Degrees of freedom of each: what is left out in turn, less one; of blocks of time
+    /// in which a parameter does not show alike, fewer.
+    pub freedom: DVector<f64>,
 }
 
 impl Uncertainty {
@@ -58,12 +60,17 @@ impl Uncertainty {
             let block = |(s, b): &(usize, usize)| grams.get(*s)?.get(*b);
             Gram::sum(fold.iter().filter_map(block), columns)
         });
-        let mut covariance = match design.folds.len() > design.sessions.len() {
-            true => covariance_by_blocks(&gram, &best, outs),
+        let most = (design.folds.len() as f64 - 1.0).max(1.0);
+        let (mut covariance, freedom) = match design.folds.len() > design.sessions.len() {
+            true => {
+                let (covariance, freedom) = by_blocks(&gram, &best, outs);
+                (covariance, freedom.map(|own| own.clamp(1.0, most)))
+            }
             false => {
                 let without: Vec<DVector<f64>> =
                     outs.map(|out| gram.without(&out).solve()).collect();
-                jackknife_covariance(&best, &without)
+                let freedom = DVector::from_element(columns, most);
+                (jackknife_covariance(&best, &without), freedom)
             }
         };
         for (k, (term, place)) in shapes.iter().enumerate() {
@@ -76,7 +83,7 @@ impl Uncertainty {
             covariance,
             gram,
             shapes,
-            freedom: (design.folds.len() as f64 - 1.0).max(1.0),
+            freedom,
         }
     }
 
@@ -84,6 +91,12 @@ impl Uncertainty {
     #[must_use]
     pub fn of_coefficient(&self, column: usize) -> f64 {
         self.covariance[(column, column)].max(0.0).sqrt()
+    }
+
+    /// The same with its degrees of freedom.
+    #[must_use]
+    pub fn with_freedom(&self, column: usize) -> (f64, f64) {
+        (self.of_coefficient(column), self.freedom[column])
     }
 
     /// Column of a shape parameter, where it is searched.
@@ -117,11 +130,16 @@ fn unseen_travel(prepared: &PreparedModel, term: usize) -> f64 {
 }
 
 /// Σ Δᵢ Δᵢᵀ with Δᵢ = A⁻¹ (I − Aᵢ A⁻¹)^(−½) Xᵢᵀ eᵢ, A = XᵀX, Aᵢ = XᵢᵀXᵢ, e the residual.
-fn covariance_by_blocks(
+///
+/// Then the degrees of freedom of each variance: those of the multiple of a χ² that has its
+/// mean and variance where errors are independent (Satterthwaite; Bell and McCaffrey),
+/// (tr B)² / tr B² with Bᵢⱼ = wᵢᵀ (δᵢⱼ Sᵢ − Sᵢ Sⱼ) wⱼ, Sᵢ = A^(−½) Aᵢ A^(−½) and
+/// wᵢ = (I − Sᵢ)^(−½) A^(−½) times the unit vector of the parameter.
+fn by_blocks(
     gram: &Gram,
     best: &DVector<f64>,
     blocks: impl Iterator<Item = Gram>,
-) -> DMatrix<f64> {
+) -> (DMatrix<f64>, DVector<f64>) {
     let n = gram.columns();
     let scale = DVector::from_fn(n, |i, _| match gram.products[(i, i)] {
         square if square > 0.0 => square.sqrt().recip(),
@@ -134,6 +152,7 @@ fn covariance_by_blocks(
         false => 0.0,
     });
     let mut covariance = DMatrix::zeros(n, n);
+    let mut shares = Vec::new();
     for block in blocks {
         let own = block.products.view((0, 0), (n, n)) * best;
         let pull = block.products.view((0, n), (n, 1)).column(0) - own;
@@ -141,11 +160,26 @@ fn covariance_by_blocks(
         let made_up = turned(&share, |own, _| {
             (1.0 - own.clamp(0.0, MOST_SHARE)).sqrt().recip()
         });
-        let moved = &half * made_up * &half * pull.component_mul(&scale);
+        let moved = &half * &made_up * &half * pull.component_mul(&scale);
         let moved = moved.component_mul(&scale);
         covariance += &moved * moved.transpose();
+        shares.push((share, made_up * &half));
     }
-    covariance
+    let freedom = DVector::from_fn(n, |parameter, _| {
+        let each = shares.iter().map(|(share, made_up)| {
+            let w = made_up.column(parameter).into_owned();
+            let own = share * &w;
+            (w.dot(&own), own)
+        });
+        let (own, shared): (Vec<f64>, Vec<DVector<f64>>) = each.unzip();
+        let count = own.len();
+        let b = DMatrix::from_fn(count, count, |i, j| {
+            let both = shared[i].dot(&shared[j]);
+            if i == j { own[i] - both } else { -both }
+        });
+        b.trace().powi(2) / b.norm_squared().max(f64::MIN_POSITIVE)
+    });
+    (covariance, freedom)
 }
 
 /// The symmetric matrix with its eigenvalues turned by `of`, which is told the largest, too.

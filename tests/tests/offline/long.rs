@@ -1,5 +1,6 @@
 //! What takes longest: left out by `./tests/run --quick`.
 
 mod blind;
+mod discover;
 mod paper;
 mod reference_laws;
