@@ -157,9 +157,19 @@ struct States {
     day: Option<i64>,
 }
 
+/// What is left of the wander after a number of days \[1\].
+fn kept(days: f64) -> f64 {
+    // Nearly every step is one of a day, and a power costs as much as the rest of it.
+    if days == 1.0 {
+        WANDER_KEEPS
+    } else {
+        WANDER_KEEPS.powf(days)
+    }
+}
+
 /// Moves states on by a number of days.
 fn moved(days: f64) -> impl Fn(&mut Vector) {
-    let keeps = WANDER_KEEPS.powf(days);
+    let keeps = kept(days);
     move |states: &mut Vector| {
         states[LEVEL] += days * states[DRIFT];
         states[WANDER] *= keeps;
@@ -173,7 +183,7 @@ impl States {
         if days == 0.0 {
             return days;
         }
-        let keeps = WANDER_KEEPS.powf(days);
+        let keeps = kept(days);
         let moved = moved(days);
         moved(&mut self.mean);
         // F P Fᵀ: rows, then columns.

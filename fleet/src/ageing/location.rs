@@ -11,10 +11,11 @@ const ROUNDS: usize = 8;
 pub(super) fn location(values: &[(f64, f64)]) -> Option<(f64, f64)> {
     let information: f64 = values.iter().map(|(_, variance)| 1.0 / variance).sum();
     let mut center = median(values, information)?;
+    let deviations: Vec<f64> = values.iter().map(|(_, variance)| variance.sqrt()).collect();
     for _ in 0..ROUNDS {
         let (mut sum, mut weights) = (0.0, 0.0);
-        for (value, variance) in values {
-            let u = ((value - center) / variance.sqrt()).abs();
+        for ((value, variance), deviation) in values.iter().zip(&deviations) {
+            let u = ((value - center) / deviation).abs();
             let weight = if u > BOUND { BOUND / u } else { 1.0 } / variance;
             sum += weight * value;
             weights += weight;

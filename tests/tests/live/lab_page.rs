@@ -121,9 +121,12 @@ fn a_foreign_recording_is_mapped_by_its_own_columns() {
     browser.open(&url);
     browser.click("[data-path='foreign.csv']");
     browser.find("#begin");
-    let offered =
-        browser.number("return document.querySelectorAll('#signal-position option').length");
-    assert!(offered > 2.0);
+    // The columns come after the form.
+    browser.until(
+        "its columns are offered",
+        LONG,
+        "return document.querySelectorAll('#signal-position option').length > 2",
+    );
     browser.run(
         "document.querySelector('#joint-kind').value = 'prismatic';
          const choose = (id, words) => { const s = document.querySelector(id);

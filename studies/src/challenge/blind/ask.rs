@@ -2,13 +2,12 @@
 
 use std::{collections::BTreeMap, fmt::Display};
 
-use ferntast_benches::bench::BenchConfig;
 use ferntast_identification::{
     CustomEffect, Dataset, Diagnosis, ModelSpec, Proposal, RecordedSession, Term, Verdict, add,
     design::Design, diagnose, diagnosis::NamedCandidate, fit::fit, prepare,
 };
 
-use super::{super::TestBench, Case, tally::FollowedUp};
+use super::{super::TestBench, Case, Made, tally::FollowedUp};
 
 /// Sessions of an experiment that the lab proposes.
 const MORE_SESSIONS: usize = 6;
@@ -30,22 +29,13 @@ pub(super) struct Given {
     pub(super) followed_up: Option<FollowedUp>,
 }
 
-pub(super) fn ask<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
-    let what = || case.hidden.map_or("nothing", H::id);
-    answer(case).map_err(|error| format!("{} hidden, seed {}: {error}", what(), case.seed))
+pub(super) fn ask<H: TestBench>(case: &Case<H>, made: &Made<H>) -> Result<Given, String> {
+    answer(case, made).map_err(|error| format!("{}: {error}", case.told()))
 }
 
-fn answer<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
-    let config = BenchConfig {
-        seed: case.seed,
-        hidden: case.hidden.into_iter().collect(),
-        strength: case.strength,
-        sessions: H::SESSIONS,
-        ..BenchConfig::default()
-    };
-    let bench = H::bench(&config).map_err(describe)?;
-    let recording = H::record(&bench).map_err(describe)?;
-    let (data, believed) = (H::dataset(&recording), H::model(&recording));
+fn answer<H: TestBench>(case: &Case<H>, made: &Made<H>) -> Result<Given, String> {
+    let Made { bench, recording } = made;
+    let (data, believed) = (H::dataset(recording), H::model(recording));
     let diagnosis = put(&data, &believed)?;
     let accepted = case.hidden.map_or(&[][..], H::accepted);
     let is_right = |name: &String| accepted.contains(&name.as_str());
@@ -56,7 +46,7 @@ fn answer<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
         Some(name) => {
             let term = Term::Catalogue(name.clone());
             let added = add(&data, &believed, &term).map_err(describe)?;
-            Some(added.held_out_after / true_model_reaches::<H>(&data, &believed, &recording)?)
+            Some(added.held_out_after / true_model_reaches::<H>(&data, &believed, recording)?)
         }
         None => None,
     };
@@ -69,7 +59,7 @@ fn answer<H: TestBench>(case: &Case<H>) -> Result<Given, String> {
     };
     let followed_up = match proposal {
         Some((proposal, was_family)) => {
-            let after = put(&joined::<H>(&bench, &recording, data, proposal)?, &believed)?;
+            let after = put(&joined::<H>(bench, recording, data, proposal)?, &believed)?;
             let first = after.candidates.first();
             let only = |own: &&NamedCandidate| {
                 is_right(&own.effect) && own.indistinguishable_from.iter().all(is_right)

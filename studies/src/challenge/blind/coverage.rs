@@ -9,10 +9,10 @@
 use std::collections::BTreeMap;
 
 use ferntast_benches::bench::{BenchConfig, Hideable};
-use ferntast_identification::{ModelSpec, Term, compare};
+use ferntast_identification::{ModelSpec, Term, design::Design, fit::fit, prepare};
 use serde::{Deserialize, Serialize};
 
-use super::{super::TestBench, Case, tally::Count};
+use super::{super::TestBench, Case, Made, tally::Count};
 
 /// How often intervals hold the true value.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -104,43 +104,47 @@ pub(super) struct Held {
 }
 
 /// Intervals of the true model's parameters, of the case's recording and of one session.
-pub(super) fn held<H: TestBench>(case: &Case<H>) -> Result<Vec<Held>, String> {
+pub(super) fn held<H: TestBench>(
+    case: &Case<H>,
+    recording: &H::Recording,
+) -> Result<Vec<Held>, String> {
     let is_known = case.hidden.is_none_or(Hideable::in_catalogue);
     if !is_known {
         return Ok(Vec::new());
     }
-    let mut all = of_sessions(case, H::SESSIONS, 1.0)?;
+    let mut all = of_recording(case, recording, H::SESSIONS)?;
     // One session may be too short for what is hidden between sessions.
-    all.extend(of_sessions(case, 1, 0.0).unwrap_or_default());
+    all.extend(of_one_session(case).unwrap_or_default());
     Ok(all)
 }
 
-fn of_sessions<H: TestBench>(
-    case: &Case<H>,
-    sessions: usize,
-    scatter: f64,
-) -> Result<Vec<Held>, String> {
+fn of_one_session<H: TestBench>(case: &Case<H>) -> Result<Vec<Held>, String> {
     let config = BenchConfig {
-        seed: case.seed,
-        hidden: case.hidden.into_iter().collect(),
-        strength: case.strength,
-        sessions,
-        scatter,
-        ..BenchConfig::default()
+        sessions: 1,
+        scatter: 0.0,
+        ..case.config()
     };
-    let bench = H::bench(&config).map_err(|error| error.to_string())?;
-    let recording = H::record(&bench).map_err(|error| error.to_string())?;
-    let mut model: ModelSpec = H::model(&recording);
+    let made = Made::<H>::by(&config)?;
+    of_recording(case, &made.recording, 1)
+}
+
+fn of_recording<H: TestBench>(
+    case: &Case<H>,
+    recording: &H::Recording,
+    sessions: usize,
+) -> Result<Vec<Held>, String> {
+    let mut model: ModelSpec = H::model(recording);
     let hidden = case.hidden.and_then(|own| own.accepted().first().copied());
     model
         .effects
         .extend(hidden.map(|id| Term::Catalogue(id.to_owned())));
-    let found = compare(&H::dataset(&recording), &model).map_err(|error| error.to_string())?;
-    let own = H::truth(&recording)
+    let prepared = prepare(&H::dataset(recording), &model).map_err(|error| error.to_string())?;
+    let found = fit(&prepared, &Design::new(&prepared));
+    let own = H::truth(recording)
         .iter()
         .filter(|own| own.effect.is_some());
     let own: Vec<(&str, f64)> = own.map(|own| (own.name, own.value)).collect();
-    let there = H::truth(&recording)
+    let there = H::truth(recording)
         .iter()
         .filter(|own| own.effect.is_none());
     let mut truths = values(hidden, &own);

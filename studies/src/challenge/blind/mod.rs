@@ -10,6 +10,7 @@ mod two;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use ferntast_benches::{
+    bench::BenchConfig,
     contact_bench,
     joint_bench::{self, RealLike},
 };
@@ -63,6 +64,38 @@ struct Case<H> {
     hidden: Option<H>,
     strength: f64,
     seed: u64,
+}
+
+impl<H: TestBench> Case<H> {
+    fn config(&self) -> BenchConfig<H, H::Motion> {
+        BenchConfig {
+            seed: self.seed,
+            hidden: self.hidden.into_iter().collect(),
+            strength: self.strength,
+            sessions: H::SESSIONS,
+            ..BenchConfig::default()
+        }
+    }
+
+    /// What it hides, and its seed, for an error.
+    fn told(&self) -> String {
+        let hidden = self.hidden.map_or("nothing", H::id);
+        format!("{hidden} hidden, seed {}", self.seed)
+    }
+}
+
+/// A recording, and the bench that it was made on.
+struct Made<H: TestBench> {
+    bench: H::Bench,
+    recording: H::Recording,
+}
+
+impl<H: TestBench> Made<H> {
+    fn by(config: &BenchConfig<H, H::Motion>) -> Result<Made<H>, String> {
+        let bench = H::bench(config).map_err(|error| error.to_string())?;
+        let recording = H::record(&bench).map_err(|error| error.to_string())?;
+        Ok(Made { bench, recording })
+    }
 }
 
 impl Plan {
@@ -223,15 +256,19 @@ impl Plan {
 
     fn answer<H: TestBench>(&self, question: &Question<H>) -> Result<Answer, String> {
         Ok(match question {
-            Question::One(case) => Answer {
-                given: match self.intervals_only {
-                    true => None,
-                    false => Some(ask::ask(case)?),
-                },
-                held: coverage::held(case)?,
-                of_two: None,
-                real_like: None,
-            },
+            Question::One(case) => {
+                let made = Made::by(&case.config());
+                let made = made.map_err(|error| format!("{}: {error}", case.told()))?;
+                Answer {
+                    given: match self.intervals_only {
+                        true => None,
+                        false => Some(ask::ask(case, &made)?),
+                    },
+                    held: coverage::held(case, &made.recording)?,
+                    of_two: None,
+                    real_like: None,
+                }
+            }
             Question::Two(seed) => Answer {
                 given: None,
                 held: Vec::new(),
