@@ -153,6 +153,20 @@ impl<M: Message> Subscriber<M> {
         }
     }
 
+    /// The same as `take` takes it from where it lies: in memory a long message is copied
+    /// once. Nobody publishes on the topic meanwhile.
+    pub fn newest_to<R>(&mut self, now: Time, take: impl FnOnce(Received<&M>) -> R) -> Option<R> {
+        if let Subscriber::Memory(subscriber) = self {
+            return subscriber.newest_to(now, take);
+        }
+        let own = self.newest(now)?;
+        Some(take(Received {
+            message: &own.message,
+            received: own.received,
+            source: own.source,
+        }))
+    }
+
     /// The oldest message visible at `now` that was not taken yet.
     pub fn next(&mut self, now: Time) -> Option<Received<M>> {
         match self {

@@ -113,19 +113,18 @@ impl ArmNode {
     }
 
     fn publish(&mut self, now: Time, middle: Time, reading: &Reading, output: &mut ArmOutput) {
-        let places = |values: Joints<f64>| values.into_places(0.0);
-        let sample = JointSample::empty(self.joints, now)
-            .with_position(places(reading.position))
-            .with_velocity(places(reading.velocity));
-        let effort = |torque: Option<Joints<f64>>| match torque {
-            Some(torque) => sample.with_effort(places(torque)),
-            None => sample,
-        };
-        output.measured_js = Some(effort(reading.joint_torque));
-        output.motor_js = Some(JointSample {
-            stamp: middle,
-            ..effort(reading.motor_torque)
-        });
+        let empty = JointSample::empty(self.joints, now);
+        let measured = output.measured_js.insert(empty);
+        measured.set_position(&reading.position);
+        measured.set_velocity(&reading.velocity);
+        let motor = output.motor_js.insert(*measured);
+        motor.stamp = middle;
+        if let Some(torque) = &reading.joint_torque {
+            measured.set_effort(torque);
+        }
+        if let Some(torque) = &reading.motor_torque {
+            motor.set_effort(torque);
+        }
         let Some(temperature) = reading.temperature else {
             return;
         };

@@ -71,8 +71,10 @@ impl<T: Copy> Joints<T> {
     /// What `value` gives for each of `count` joints, by their number from 0.
     pub fn from_fn(count: JointCount, mut value: impl FnMut(usize) -> T) -> Joints<T> {
         let mut joints = Joints::filled(count, value(0));
-        for (joint, place) in joints.iter_mut().enumerate().skip(1) {
-            *place = value(joint);
+        if let Some((_, rest)) = joints.split_first_mut() {
+            for (place, joint) in rest.iter_mut().zip(1..) {
+                *place = value(joint);
+            }
         }
         joints
     }

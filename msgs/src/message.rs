@@ -54,6 +54,16 @@ pub trait Message: Sample {
     /// A stamp that is zero or beyond ROS 2's, a number that is not finite, an
     /// unknown code, an orientation that is none.
     fn check(&self) -> Result<(), InvalidMessage>;
+
+    /// The same where `before` is known to be valid: what is as it was there is not looked
+    /// at again.
+    ///
+    /// # Errors
+    ///
+    /// As [`Message::check`].
+    fn check_after(&self, _before: &Self) -> Result<(), InvalidMessage> {
+        self.check()
+    }
 }
 
 /// Why a message cannot be acted on.

@@ -1,5 +1,7 @@
 //! What is refused, and with which words; what is taken though it looks odd.
 
+use std::borrow::Cow;
+
 use ferntast_msgs::{
     InvalidMessage, Message, Text, Time,
     ros::diagnostic_msgs::KeyValue,
@@ -45,10 +47,39 @@ fn joints_may_come_in_the_other_order() {
     ros.effort.reverse();
     let reversed = JointSample::from_ros(&ros).unwrap();
     assert_eq!(reversed.position(), [0.2, 0.1]);
-    assert_eq!(reversed.in_order_of(&joints), Some(sample));
+    let sorted = reversed.in_order_of(&joints).map(Cow::into_owned);
+    assert_eq!(sorted, Some(sample));
     assert_eq!(reversed.in_order_of(&JointNames::numbered(3)), None);
     let others = JointNames::new(["joint_1", "elbow"]).unwrap();
     assert_eq!(reversed.in_order_of(&others), None);
+}
+
+#[test]
+fn after_a_valid_one_a_joint_state_is_checked_alike() {
+    let sample = |names: [&'static str; 2], position| {
+        let joints = JointNames::new(names).unwrap();
+        JointSample::empty(joints, STAMP).with_position(position)
+    };
+    let before = sample(["joint_1", "joint_2"], [0.1, 0.2]);
+    before.check().unwrap();
+    let late = JointSample {
+        stamp: Time::INVALID,
+        ..before
+    };
+    let unknown = JointSample {
+        fields: JointFields(8),
+        ..before
+    };
+    for own in [
+        before,
+        late,
+        unknown,
+        sample(["joint_1", "joint_2"], [0.1, f64::INFINITY]),
+        sample(["joint_1", "elbow"], [0.1, 0.2]),
+        sample(["joint_1", "elbow"], [0.1, f64::INFINITY]),
+    ] {
+        assert_eq!(own.check_after(&before), own.check());
+    }
 }
 
 #[test]

@@ -170,8 +170,9 @@ impl SecureEnd {
 
     /// The message of the handshake to send at `now_ns`, if one is due.
     pub fn message(&mut self, now_ns: i64) -> Option<Message> {
-        if let Some(message) = self.to_send.take() {
-            return Some(message);
+        // Asked first: a message is long, and there nearly always is none.
+        if self.to_send.is_some() {
+            return self.to_send.take();
         }
         if matches!(self.role, Role::Arm { .. }) || !self.wants_keys(now_ns, LONG_SILENCE) {
             self.hello_due_ns = None;

@@ -5,7 +5,7 @@ use std::{
     fmt::{self, Write},
     sync::{
         Arc, Mutex, OnceLock, PoisonError,
-        atomic::{AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
 
@@ -33,6 +33,8 @@ pub struct Door(Arc<Seen>);
 #[derive(Debug, Default)]
 struct Seen {
     turned_away: AtomicU64,
+    /// There is something in `last`: nearly always there is not.
+    told: AtomicBool,
     last: Mutex<Reasons>,
 }
 
@@ -62,17 +64,25 @@ impl Door {
 
     /// Why the last of them was; waits for nobody.
     pub fn last_turned_away(&self) -> Option<Reason> {
-        self.0.last.try_lock().ok()?.turned_away
+        self.last(|own| own.turned_away)
     }
 
     /// Why this end was not let in when it last tried; waits for nobody.
     pub fn not_let_in(&self) -> Option<Reason> {
-        self.0.last.try_lock().ok()?.not_let_in
+        self.last(|own| own.not_let_in)
+    }
+
+    fn last(&self, which: impl FnOnce(&Reasons) -> Option<Reason>) -> Option<Reason> {
+        if !self.0.told.load(Ordering::Acquire) {
+            return None;
+        }
+        which(&*self.0.last.try_lock().ok()?)
     }
 
     fn note(&self, turned_away: bool, text: &str) {
         let reason = Some(Reason::new(essence(text)));
         let mut last = self.0.last.lock().unwrap_or_else(PoisonError::into_inner);
+        self.0.told.store(true, Ordering::Release);
         if turned_away {
             last.turned_away = reason;
             drop(last);

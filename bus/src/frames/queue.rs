@@ -2,7 +2,10 @@
 
 use std::{
     collections::VecDeque,
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use ferntast_msgs::Time;
@@ -11,7 +14,11 @@ use super::{FRAME_QUEUE, MAX_FRAME};
 
 /// A queue of fixed size; it allocates when made and never after.
 #[derive(Debug)]
-pub(super) struct Queue(Mutex<Waiting>);
+pub(super) struct Queue {
+    waiting: Mutex<Waiting>,
+    /// How many wait: who finds none need not take the lock.
+    count: AtomicUsize,
+}
 
 #[derive(Debug)]
 struct Waiting {
@@ -28,10 +35,13 @@ struct Frame {
 
 impl Queue {
     pub(super) fn new() -> Queue {
-        Queue(Mutex::new(Waiting {
-            frames: VecDeque::with_capacity(FRAME_QUEUE),
-            dropped: 0,
-        }))
+        Queue {
+            waiting: Mutex::new(Waiting {
+                frames: VecDeque::with_capacity(FRAME_QUEUE),
+                dropped: 0,
+            }),
+            count: AtomicUsize::new(0),
+        }
     }
 
     /// Appends a frame; what is longer than [`MAX_FRAME`] is cut.
@@ -49,6 +59,7 @@ impl Queue {
             length,
             bytes,
         });
+        self.count.store(waiting.frames.len(), Ordering::Release);
     }
 
     /// Takes the oldest frame, if it arrived before the time given.
@@ -57,11 +68,15 @@ impl Queue {
         before: Option<Time>,
         buffer: &mut [u8; MAX_FRAME],
     ) -> Option<(usize, Time)> {
+        if self.count.load(Ordering::Acquire) == 0 {
+            return None;
+        }
         let mut waiting = self.lock();
         let frame = waiting
             .frames
             .pop_front_if(|frame| before.is_none_or(|before| frame.arrived < before))?;
-        *buffer = frame.bytes;
+        self.count.store(waiting.frames.len(), Ordering::Release);
+        buffer[..frame.length].copy_from_slice(&frame.bytes[..frame.length]);
         Some((frame.length, frame.arrived))
     }
 
@@ -71,6 +86,6 @@ impl Queue {
 
     /// A poisoned lock only says that another thread panicked; the queue is whole.
     fn lock(&self) -> MutexGuard<'_, Waiting> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -201,6 +201,15 @@ pub struct MemorySubscriber<M: Message> {
 impl<M: Message> MemorySubscriber<M> {
     /// The newest message published before `now` and not taken yet.
     pub fn newest(&mut self, now: Time) -> Option<Received<M>> {
+        self.newest_to(now, |own| Received {
+            message: *own.message,
+            received: own.received,
+            source: own.source,
+        })
+    }
+
+    /// The same as `take` takes it from its place; the topic waits meanwhile.
+    pub fn newest_to<R>(&mut self, now: Time, take: impl FnOnce(Received<&M>) -> R) -> Option<R> {
         let from = self.next;
         if self.channel.end() <= from {
             return None;
@@ -209,9 +218,9 @@ impl<M: Message> MemorySubscriber<M> {
         let mut number = ring.newest_before(now, from, u64::MAX)?;
         self.next = number + 1;
         loop {
-            let found = ring.get(number)?;
-            if self.counts.takes(found) {
-                return Some(received(found));
+            let (found, valid) = ring.get(number)?;
+            if self.counts.takes(&found.message, valid) {
+                return Some(take(received(found)));
             }
             number = ring.newest_before(now, from, number)?;
         }
@@ -232,9 +241,13 @@ impl<M: Message> MemorySubscriber<M> {
                 self.counts.overflowed += number - self.next;
             }
             self.next = number + 1;
-            let found = ring.get(number)?;
-            if self.counts.takes(found) {
-                return Some(received(found));
+            let (found, valid) = ring.get(number)?;
+            if self.counts.takes(&found.message, valid) {
+                return Some(Received {
+                    message: found.message,
+                    received: found.at,
+                    source: 0,
+                });
             }
         }
     }
@@ -246,17 +259,17 @@ impl<M: Message> MemorySubscriber<M> {
 }
 
 impl SubscriberCounts {
-    /// Whether `found` can be acted on; counted either way.
-    fn takes<M: Message>(&mut self, found: &mut Published<M>) -> bool {
-        let takes = found.is_valid() || self.valid(&found.message);
+    /// Whether `message`, found `valid` or not, can be acted on; counted either way.
+    fn takes<M: Message>(&mut self, message: &M, valid: bool) -> bool {
+        let takes = valid || self.valid(message);
         self.delivered += u64::from(takes);
         takes
     }
 }
 
-fn received<M: Message>(found: &Published<M>) -> Received<M> {
+fn received<M: Message>(found: &Published<M>) -> Received<&M> {
     Received {
-        message: found.message,
+        message: &found.message,
         received: found.at,
         source: 0,
     }

@@ -20,14 +20,6 @@ pub(super) struct Published<M> {
     valid: Option<bool>,
 }
 
-impl<M: Message> Published<M> {
-    /// Whether it can be acted on; found once, whoever asks.
-    pub(super) fn is_valid(&mut self) -> bool {
-        let message = &self.message;
-        *self.valid.get_or_insert_with(|| message.check().is_ok())
-    }
-}
-
 /// The last messages of one topic.
 #[derive(Debug)]
 pub(super) struct Ring<M> {
@@ -97,10 +89,24 @@ impl<M: Copy> Ring<M> {
         None
     }
 
-    /// The message of that number, when it is kept.
-    pub(super) fn get(&mut self, number: u64) -> Option<&mut Published<M>> {
+    /// The message of that number, when it is kept, and whether it can be acted on: found
+    /// once, whoever asks, and by what is known of the one before it.
+    pub(super) fn get(&mut self, number: u64) -> Option<(&Published<M>, bool)>
+    where
+        M: Message,
+    {
         let index = self.index(number)?;
-        self.messages.get_mut(index)
+        let found = self.messages.get(index)?;
+        let valid = found.valid.unwrap_or_else(|| {
+            let before = index.checked_sub(1).and_then(|own| self.messages.get(own));
+            match before.filter(|own| own.valid == Some(true)) {
+                Some(before) => found.message.check_after(&before.message).is_ok(),
+                None => found.message.check().is_ok(),
+            }
+        });
+        let found = self.messages.get_mut(index)?;
+        found.valid = Some(valid);
+        Some((found, valid))
     }
 
     fn index(&self, number: u64) -> Option<usize> {

@@ -193,10 +193,9 @@ impl ContactEstimator {
             calibration,
             undetermined,
         };
-        let last = self.last;
         self.split.step(
             &self.parameters,
-            &last,
+            &self.last,
             step,
             &motion,
             &force,

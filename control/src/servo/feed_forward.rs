@@ -128,6 +128,7 @@ impl FeedForward {
             days: 0.0,
         };
         let known = self.known(&state, self.seen_now());
+        let all_known = known == state;
         let mut fed = FedTorque {
             sliding: -0.0,
             standing: -0.0,
@@ -137,7 +138,10 @@ impl FeedForward {
                 true => &mut fed.standing,
                 false => &mut fed.sliding,
             };
-            *part += own.torque_as_known(own.term.values, &state, &known);
+            *part += match all_known {
+                true => own.term.torque(&state),
+                false => own.torque_as_known(own.term.values, &state, &known),
+            };
         }
         fed
     }

@@ -171,6 +171,10 @@ pub struct Servo {
     was_held_up: bool,
     frozen: FrozenWatch,
     jumped: JumpWatch,
+    /// The most that the motors give \[Nm\].
+    torque_limits: Joints<f64>,
+    /// What is a fault, of each joint \[rad/s\].
+    overspeed: Joints<f64>,
     refusals: RefusalCounts,
     accepted: u64,
     /// What the joints carry of a serial arm's links.
@@ -223,6 +227,7 @@ impl Servo {
             JointServo::new(joint, tuning, config)
                 .map_err(|error| error.within(&format!("joint[{index}]")))
         });
+        let joints = each.collect::<Result<Vec<_>, _>>()?;
         Ok(Servo {
             period: config.period,
             command_watchdog_ns: nanoseconds(config.command_watchdog),
@@ -230,7 +235,9 @@ impl Servo {
             machine: StateMachine::default(),
             commands: CommandCheck::new(kinematics, limits, config)?,
             count,
-            joints: each.collect::<Result<_, _>>()?,
+            torque_limits: Joints::from_fn(count, |joint| joints[joint].torque_limit()),
+            overspeed: Joints::from_fn(count, |joint| joints[joint].overspeed()),
+            joints,
             last_command_ns: None,
             stall: Stall::default(),
             was_held_up: false,
@@ -412,10 +419,8 @@ impl Servo {
 
     fn supervise(&mut self, measured: &Measurement) {
         let given = Joints::from_fn(self.count, |joint| self.joints[joint].motor_torque());
-        let limits = Joints::from_fn(self.count, |joint| self.joints[joint].torque_limit());
-        let overspeed = Joints::from_fn(self.count, |joint| self.joints[joint].overspeed());
-        let frozen = self.frozen.step(measured, given, &limits);
-        let jumped = self.jumped.step(measured, &overspeed);
+        let frozen = self.frozen.step(measured, given, &self.torque_limits);
+        let jumped = self.jumped.step(measured, &self.overspeed);
         let driven = [OperatingState::Enabled, OperatingState::Paused].contains(&self.state());
         let frozen = frozen.map(Event::MeasurementFrozen);
         for event in frozen

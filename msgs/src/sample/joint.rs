@@ -1,5 +1,7 @@
 //! State or command of the joints.
 
+use std::borrow::Cow;
+
 use ferntast_derive::sample;
 
 use crate::{
@@ -89,7 +91,7 @@ impl JointSample {
     /// The same with these positions \[rad\].
     pub fn with_position<const N: usize>(self, position: [f64; N]) -> JointSample {
         JointSample {
-            position: padded(position),
+            position: padded(&position),
             fields: self.fields.with(JointFields::POSITION),
             ..self
         }
@@ -98,7 +100,7 @@ impl JointSample {
     /// The same with these velocities \[rad/s\].
     pub fn with_velocity<const N: usize>(self, velocity: [f64; N]) -> JointSample {
         JointSample {
-            velocity: padded(velocity),
+            velocity: padded(&velocity),
             fields: self.fields.with(JointFields::VELOCITY),
             ..self
         }
@@ -107,10 +109,31 @@ impl JointSample {
     /// The same with these efforts \[Nm\].
     pub fn with_effort<const N: usize>(self, effort: [f64; N]) -> JointSample {
         JointSample {
-            effort: padded(effort),
+            effort: padded(&effort),
             fields: self.fields.with(JointFields::EFFORT),
             ..self
         }
+    }
+
+    /// Gives these positions \[rad\], in place.
+    #[inline]
+    pub fn set_position(&mut self, position: &[f64]) {
+        self.position = padded(position);
+        self.fields = self.fields.with(JointFields::POSITION);
+    }
+
+    /// Gives these velocities \[rad/s\], in place.
+    #[inline]
+    pub fn set_velocity(&mut self, velocity: &[f64]) {
+        self.velocity = padded(velocity);
+        self.fields = self.fields.with(JointFields::VELOCITY);
+    }
+
+    /// Gives these efforts \[Nm\], in place.
+    #[inline]
+    pub fn set_effort(&mut self, effort: &[f64]) {
+        self.effort = padded(effort);
+        self.fields = self.fields.with(JointFields::EFFORT);
     }
 
     /// Positions of the first `N` joints \[rad\].
@@ -128,11 +151,11 @@ impl JointSample {
         first(&self.effort)
     }
 
-    /// The same with its joints in the order of `joints`; `None` where it is
-    /// not about exactly these.
-    pub fn in_order_of(&self, joints: &JointNames) -> Option<JointSample> {
+    /// The same with its joints in the order of `joints`: itself where they are in it;
+    /// `None` where it is not about exactly these.
+    pub fn in_order_of(&self, joints: &JointNames) -> Option<Cow<'_, JointSample>> {
         if self.joints == *joints {
-            return Some(*self);
+            return Some(Cow::Borrowed(self));
         }
         if self.joints.len() != joints.len() {
             return None;
@@ -147,7 +170,19 @@ impl JointSample {
             sorted.velocity[to] = self.velocity[from];
             sorted.effort[to] = self.effort[from];
         }
-        Some(sorted)
+        Some(Cow::Owned(sorted))
+    }
+
+    /// What is to be checked beside the joints' names.
+    fn check_numbers(&self) -> Result<(), InvalidMessage> {
+        for (_, name, values) in self.quantities() {
+            checks::finite(name, &values[..self.joints.len()])?;
+        }
+        if !JointFields::ALL.has(self.fields) {
+            let known = "bits 1 (position), 2 (velocity), 4 (effort)";
+            return Err(checks::unknown("fields", self.fields.0, known));
+        }
+        Ok(())
     }
 
     /// The three quantities by name.
@@ -160,10 +195,11 @@ impl JointSample {
     }
 }
 
-fn padded<const N: usize>(numbers: [f64; N]) -> Numbers {
+#[inline]
+fn padded(numbers: &[f64]) -> Numbers {
     let mut places = [0.0; MAX_JOINTS];
     for (place, number) in places.iter_mut().zip(numbers) {
-        *place = number;
+        *place = *number;
     }
     places
 }
@@ -224,13 +260,14 @@ impl Message for JointSample {
     fn check(&self) -> Result<(), InvalidMessage> {
         checks::stamp(self.stamp)?;
         self.joints.check()?;
-        for (_, name, values) in self.quantities() {
-            checks::finite(name, &values[..self.joints.len()])?;
+        self.check_numbers()
+    }
+
+    fn check_after(&self, before: &JointSample) -> Result<(), InvalidMessage> {
+        if self.joints != before.joints {
+            return self.check();
         }
-        if !JointFields::ALL.has(self.fields) {
-            let known = "bits 1 (position), 2 (velocity), 4 (effort)";
-            return Err(checks::unknown("fields", self.fields.0, known));
-        }
-        Ok(())
+        checks::stamp(self.stamp)?;
+        self.check_numbers()
     }
 }

@@ -124,7 +124,7 @@ impl Node for EstimatorNode {
         let joints = self.estimator.joints();
         let estimate = match &mut self.by_motors {
             None => {
-                let measured = measured.as_ref();
+                let measured = measured.as_deref();
                 let measurement = JointMeasurement {
                     motor_position: positions(joints, measured),
                     joint_torque: efforts(joints, measured),
@@ -135,7 +135,7 @@ impl Node for EstimatorNode {
                 by_motors.hear(input);
                 let motor = input.motor_js.message.as_ref();
                 let motor = motor.and_then(|own| own.in_order_of(&self.joints));
-                let torque = by_motors.step(dt, joints, measured.as_ref(), motor.as_ref());
+                let torque = by_motors.step(dt, joints, measured.as_deref(), motor.as_deref());
                 self.estimator.step_by_motors(dt, &torque)
             }
         };
@@ -180,8 +180,8 @@ impl EstimatorNode {
         };
         tell(health, corner);
         tell(health, singular);
-        for (joint, stuck) in self.joints.iter().zip(estimate.stuck.iter().copied()) {
-            if stuck {
+        for (joint, stuck) in estimate.stuck.iter().enumerate() {
+            if *stuck && let Some(joint) = self.joints.get(joint) {
                 health.raise(Fault::TorqueStuck, Level::WARN);
                 health.message = Text::display(format_args!(
                     "{joint} turns, but its torque stays the same: check its torque sensor"

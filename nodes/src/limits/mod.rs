@@ -125,7 +125,7 @@ impl Node for LimitsNode {
             let temperature = input.temperature.get(index).and_then(|own| own.message);
             let temperature = temperature.map(|own| own.temperature);
             for words in self
-                .near(index, name, sample.as_ref(), temperature)
+                .near(index, name, sample.as_deref(), temperature)
                 .into_iter()
                 .flatten()
             {

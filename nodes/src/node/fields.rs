@@ -61,13 +61,11 @@ impl<M: Message> Incoming for Newest<M> {
 
     fn fill(&mut self, now: Time, port: &mut InputPort<M>) {
         self.fresh = false;
-        if let Some(received) = port.subscriber.newest(now) {
-            *self = Newest {
-                message: Some(received.message),
-                received: received.received,
-                fresh: true,
-            };
-        }
+        port.subscriber.newest_to(now, |own| {
+            self.message = Some(*own.message);
+            self.received = own.received;
+            self.fresh = true;
+        });
     }
 
     fn counts(port: &InputPort<M>, each: &mut dyn FnMut(&TopicName, &SubscriberCounts)) {

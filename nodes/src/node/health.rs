@@ -7,6 +7,8 @@ use ferntast_msgs::{
 
 /// How often a node's health is published \[ns\].
 const PERIOD_NANOS: i64 = 100_000_000;
+/// Over how long rate and lateness are taken \[ns\].
+const WINDOW_NANOS: i64 = 1_000_000_000;
 
 /// What a step has to say of its node's health.
 #[derive(Clone, Copy, Debug)]
@@ -115,8 +117,8 @@ impl HealthMeter {
         self.faults.set_if(Fault::DeadlineMissed, missed > 0);
         self.level = self.level.max(health.level);
 
-        let window = now.seconds_since(self.window_start);
-        if window >= 1.0 {
+        if now.nanos_since(self.window_start) >= WINDOW_NANOS {
+            let window = now.seconds_since(self.window_start);
             self.rate = (self.steps - 1) as f64 / window;
             self.lateness_p99 = self.percentile(0.99);
             self.lateness.fill(0);

@@ -7,6 +7,8 @@ mod tests;
 
 pub use summary::{FrictionParameter, FrictionSummary};
 
+use std::borrow::Cow;
+
 use ferntast_control::{
     operating,
     orientation::Orientation,
@@ -132,7 +134,7 @@ impl ServoNode {
 /// The newest command of either kind.
 fn command(
     input: &ServoInput,
-    servo_jp: Option<JointSample>,
+    servo_jp: Option<&JointSample>,
     joints: JointCount,
 ) -> Option<Command> {
     let tip = input.servo_cp.message.map(|pose| Command {
@@ -161,6 +163,7 @@ impl Node for ServoNode {
 
     fn step(&mut self, now: Time, input: &ServoInput, output: &mut ServoOutput) {
         let measured = self.own(&input.measured_js, Fault::MeasurementInvalid, output);
+        let measured = measured.as_deref();
         let servo_jp = self.own(&input.servo_jp, Fault::CommandInvalid, output);
         let joints = self.servo.joints();
         let law_input = LawInput {
@@ -170,9 +173,9 @@ impl Node for ServoNode {
                 velocity: Joints::from_places(joints, sample.velocity),
                 torque: Joints::from_places(joints, sample.effort),
             }),
-            command: command(input, servo_jp, joints),
+            command: command(input, servo_jp.as_deref(), joints),
             state_command: self.state_command(input, output),
-            weight: measured.and_then(|sample| self.weight(&sample)),
+            weight: measured.and_then(|sample| self.weight(sample)),
         };
         self.feed_forward(now, input, output);
         let was_enabled = self.servo.state() == operating::OperatingState::Enabled;
@@ -181,15 +184,12 @@ impl Node for ServoNode {
             self.left = now;
         }
         self.report(&law, output);
-        let torque = JointSample::empty(self.joints, now).with_effort(law.torque.into_places(0.0));
-        output.torque = Some(torque);
-        let position = law.setpoint.map(|setpoint| setpoint.position);
-        let velocity = law.setpoint.map(|setpoint| setpoint.velocity);
-        output.setpoint_js = Some(
-            torque
-                .with_position(position.into_places(0.0))
-                .with_velocity(velocity.into_places(0.0)),
-        );
+        let empty = JointSample::empty(self.joints, now);
+        let torque = output.torque.insert(empty);
+        torque.set_effort(&law.torque);
+        let setpoint = output.setpoint_js.insert(*torque);
+        setpoint.set_position(&law.setpoint.map(|own| own.position));
+        setpoint.set_velocity(&law.setpoint.map(|own| own.velocity));
         output.operating_state = self
             .states
             .publish(now, law.state, law.reason, law.approaching);
@@ -258,12 +258,12 @@ impl ServoNode {
 
     /// The newest sample with its joints in the order of the arm's; one that is
     /// about others is refused.
-    fn own(
+    fn own<'a>(
         &mut self,
-        newest: &Newest<JointSample>,
+        newest: &'a Newest<JointSample>,
         fault: Fault,
         output: &mut ServoOutput,
-    ) -> Option<JointSample> {
+    ) -> Option<Cow<'a, JointSample>> {
         let sample = newest.message.as_ref()?;
         let own = sample.in_order_of(&self.joints);
         if own.is_none() && newest.fresh {

@@ -152,7 +152,7 @@ impl Node for TwinNode {
             self.heard = Some(now);
             let sample = sample.in_order_of(&self.joints);
             for own in &mut self.twins {
-                own.measured(sample.as_ref());
+                own.measured(sample.as_deref());
             }
         }
         for own in &mut self.twins {

@@ -42,7 +42,9 @@ impl Sun {
     /// Share of the sun's mean power that reaches the arm at the time `seconds`
     /// \[s\] since the start of the mission.
     pub(super) fn share(&self, seconds: f64) -> f64 {
-        let orbit = (seconds / self.orbit_period).rem_euclid(1.0);
+        let orbits = seconds / self.orbit_period;
+        // The same as `rem_euclid(1.0)`, which divides bit by bit.
+        let orbit = orbits - orbits.floor();
         if orbit >= self.sunlit {
             return 0.0;
         }

@@ -145,26 +145,87 @@ impl Gear {
         load: f64,
         temperature: f64,
     ) -> f64 {
-        let share = |speed: f64| {
-            self.temperature
-                .map_or(1.0, |dependence| dependence.at(speed, temperature))
-        };
-        let impulse = self.friction.stiction(load) * dt / inertia;
-        let free = velocity.abs();
-        // The stiction at rest first: it holds most motors most of the time.
-        if free <= impulse * share(0.0) {
-            return 0.0;
+        let [braked] = brake(
+            [Braking {
+                gear: self,
+                velocity,
+                inertia,
+                load,
+                temperature,
+            }],
+            dt,
+        );
+        braked
+    }
+
+    /// What friction is multiplied by at `speed` = |θ̇| \[rad/s\] and `temperature` \[degC\].
+    fn share(&self, speed: f64, temperature: f64) -> f64 {
+        self.temperature
+            .map_or(1.0, |dependence| dependence.at(speed, temperature))
+    }
+}
+
+/// A motor that friction is to act on; see [`Gear::brake`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Braking<'a> {
+    pub(super) gear: &'a Gear,
+    /// Without friction \[rad/s\].
+    pub(super) velocity: f64,
+    /// Of the motor \[kg m²\].
+    pub(super) inertia: f64,
+    /// Joint torque \[Nm\].
+    pub(super) load: f64,
+    /// \[degC\]
+    pub(super) temperature: f64,
+}
+
+/// [`Gear::brake`] of several motors, round by round: each round of one is a chain of
+/// divisions and exponentials, in which the processor does the others'.
+pub(super) fn brake<const N: usize>(motors: [Braking<'_>; N], dt: f64) -> [f64; N] {
+    let mut sliding = motors.each_ref().map(|motor| Sliding::begin(motor, dt));
+    for _ in 0..ROUNDS {
+        for own in sliding.iter_mut().flatten() {
+            own.settle(dt);
         }
-        // v + (τ_F(v)/|v| v + τ_C) dt/J = v_free. The change from round to round falls by
-        // the viscosity times dt/J, 0.03 of the shipped arm: to 3e-5 after these.
-        let mut speed = free;
-        for _ in 0..ROUNDS {
-            let share = share(speed);
-            let sliding = (free - impulse * share).max(0.0);
-            let viscosity = self.friction.viscosity(speed) * share;
-            speed = sliding / (1.0 + viscosity * dt / inertia);
-        }
-        speed.copysign(velocity)
+    }
+    let velocity = |own: Sliding| own.speed.copysign(own.motor.velocity);
+    sliding.map(|own| own.map_or(0.0, velocity))
+}
+
+/// A motor that friction does not stop.
+struct Sliding<'a> {
+    motor: &'a Braking<'a>,
+    /// Without friction \[rad/s\].
+    free: f64,
+    /// What Coulomb friction at the reference temperature takes away \[rad/s\].
+    impulse: f64,
+    /// With friction, as far as it is known \[rad/s\].
+    speed: f64,
+}
+
+impl<'a> Sliding<'a> {
+    /// `None` where the stiction at rest holds it, as it does most motors most of the time.
+    fn begin(motor: &'a Braking<'a>, dt: f64) -> Option<Sliding<'a>> {
+        let gear = motor.gear;
+        let impulse = gear.friction.stiction(motor.load) * dt / motor.inertia;
+        let free = motor.velocity.abs();
+        let stands = free <= impulse * gear.share(0.0, motor.temperature);
+        (!stands).then_some(Sliding {
+            motor,
+            free,
+            impulse,
+            speed: free,
+        })
+    }
+
+    /// v + (τ_F(v)/|v| v + τ_C) dt/J = v_free. The change from round to round falls by the
+    /// viscosity times dt/J, 0.03 of the shipped arm: to 3e-5 after all of them.
+    fn settle(&mut self, dt: f64) {
+        let gear = self.motor.gear;
+        let share = gear.share(self.speed, self.motor.temperature);
+        let sliding = (self.free - self.impulse * share).max(0.0);
+        let viscosity = gear.friction.viscosity(self.speed) * share;
+        self.speed = sliding / (1.0 + viscosity * dt / self.motor.inertia);
     }
 }
 

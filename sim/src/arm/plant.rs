@@ -13,7 +13,7 @@
 use super::JOINTS;
 use super::contact::Front;
 use super::elasticity::Elasticity;
-use super::friction::Gear;
+use super::friction::{Braking, Gear, brake};
 use super::parameters::ArmConfig;
 use ferntast_model::Vector2;
 use ferntast_model::arm::{Arm, solve_symmetric};
@@ -166,18 +166,23 @@ impl Plant {
         let changed = solve_symmetric(&inertia, &(drive - bias(&middle))) * dt;
         self.qd += changed;
 
-        let mut heat = [0.0; JOINTS];
-        for joint in 0..JOINTS {
+        let motors = std::array::from_fn(|joint| {
             let parameters = &self.joints[joint];
             let inertia = parameters.motor_inertia;
-            let free = self.thetad[joint] + (motor_torque[joint] - torque[joint]) * dt / inertia;
-            let braked =
-                parameters
-                    .gear
-                    .brake(free, inertia, dt, torque[joint], temperature[joint]);
-            heat[joint] = 0.5 * inertia * (free * free - braked * braked);
-            self.thetad[joint] = braked;
-        }
+            Braking {
+                gear: &parameters.gear,
+                velocity: self.thetad[joint] + (motor_torque[joint] - torque[joint]) * dt / inertia,
+                inertia,
+                load: torque[joint],
+                temperature: temperature[joint],
+            }
+        });
+        let braked = brake(motors, dt);
+        let heat = std::array::from_fn(|joint| {
+            let (free, braked) = (motors[joint].velocity, braked[joint]);
+            0.5 * motors[joint].inertia * (free * free - braked * braked)
+        });
+        self.thetad = braked.into();
 
         self.q += self.qd * half;
         self.theta += self.thetad * half;
