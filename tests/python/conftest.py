@@ -1,6 +1,7 @@
 """Fixtures of the Python tests. A skipped test is a failed test, but where it
 needs recordings that do not come with the project: then it was not run."""
 
+import importlib.util
 import os
 import sys
 from collections.abc import Iterator
@@ -12,6 +13,9 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE / "peers")]
 
 from ros_environment import Domain, free_tcp_port  # noqa: E402
+
+# Tests with stock lerobot run in an environment of their own (tests/run --lerobot).
+collect_ignore = [] if importlib.util.find_spec("lerobot") else ["stock_lerobot"]
 
 SKIPPED = "skipped, which counts as failed: "
 # As count_results.py knows it.
@@ -73,11 +77,17 @@ def data() -> Path:
     return path
 
 
-@pytest.fixture
-def ferntast() -> Path:
+@pytest.fixture(scope="session")
+def program() -> Path:
     """The ferntast program."""
     default = HERE.parents[1] / "target" / "release" / "ferntast"
     path = Path(os.environ.get("FERNTAST_BIN", default))
     if not path.is_file():
         pytest.fail(f"no program {path}: 'cargo build --release', or set FERNTAST_BIN")
     return path
+
+
+@pytest.fixture
+def ferntast(program: Path) -> Path:
+    """The ferntast program."""
+    return program

@@ -21,11 +21,13 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+# Tests in Python: with their own results, and their own bit of the exit code.
+PYTHON = ("python", "python lerobot")
 # Judged in milliseconds: nothing runs beside them.
 ALONE = ("timing", "live_faults")
 # Wait for real time or for peers most of the time, the longest first. All others compute.
 WAITING = (
-    "live", "python", "conformance", "dds_memory", "killed", "link_tls", "router_tls", "mcap_bus",
+    "live", *PYTHON, "conformance", "dds_memory", "killed", "link_tls", "router_tls", "mcap_bus",
     "motors", "process", "motor_sdks", "feetech", "topics", "limits", "leader",
 )  # fmt: skip
 # Compute for long, the longest first.
@@ -145,7 +147,7 @@ class Runner:
             if code < 0:
                 text += f"error: {job.name} was ended by signal {-code}\n"
             print(text, end="", flush=True)
-            if job.name != "python":
+            if job.name not in PYTHON:
                 with self.log.open("a") as log:
                     log.write(text)
             took = time.monotonic() - begun
@@ -233,8 +235,8 @@ def main() -> int:
         # As whoever started this expects of it.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         os.kill(os.getpid(), signal.SIGINT)
-    python = "python" in runner.failed
-    rust = len(runner.failed) > python
+    python = any(name in PYTHON for name in runner.failed)
+    rust = any(name not in PYTHON for name in runner.failed)
     return rust + 2 * python
 
 

@@ -1,8 +1,9 @@
 """Recordings for other programs, read by those that share nothing with us: messages by
 mcap-ros2-support, tables by pandas and pyarrow.
 
-A dataset of LeRobot is held against the layout that lerobot 0.6 documents and reads
-(`lerobot/datasets/{utils,feature_utils,io_utils}.py`), not loaded by it: it needs torch.
+A dataset of LeRobot is held here against the layout that lerobot 0.6 documents and reads
+(`lerobot/datasets/{utils,feature_utils,io_utils}.py`); stock lerobot itself opens it in `stock_lerobot/`, in an
+environment of its own (`./tests/run --lerobot`), since it takes PyTorch.
 """
 
 import csv

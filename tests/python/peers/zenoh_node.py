@@ -44,12 +44,14 @@ def message_class(ros_type: str) -> type:
 
 
 @contextmanager
-def zenoh_node(name: str, router: str, domain: int) -> Iterator[pyzeros.Node]:
-    """A node, as a client of the router at `router` (such as `tcp/127.0.0.1:7447`)."""
-    config = zenoh.Config()
-    config.insert_json5("mode", '"client"')
-    config.insert_json5("connect/endpoints", f'["{router}"]')
-    config.insert_json5("scouting/multicast/enabled", "false")
+def zenoh_node(name: str, router: str, domain: int, file: str | None = None) -> Iterator[pyzeros.Node]:
+    """A node, as a client of the router at `router` (such as `tcp/127.0.0.1:7447`), or as a file with a configuration of Zenoh
+    says (what ZENOH_SESSION_CONFIG_URI names to rmw_zenoh)."""
+    config = zenoh.Config.from_file(file) if file else zenoh.Config()
+    if not file:
+        config.insert_json5("mode", '"client"')
+        config.insert_json5("connect/endpoints", f'["{router}"]')
+        config.insert_json5("scouting/multicast/enabled", "false")
     session = zenoh.open(config)
     try:
         node = pyzeros.Node(name, session=session, domain_id=domain)

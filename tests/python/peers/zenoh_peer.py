@@ -197,6 +197,7 @@ def main() -> None:
     """Runs one of the jobs."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--router", default="tcp/127.0.0.1:7447")
+    parser.add_argument("--config", help="a file with the whole configuration of Zenoh, in place of --router")
     parser.add_argument("--domain", type=int, default=int(os.environ.get("ROS_DOMAIN_ID", "0")))
     jobs = parser.add_subparsers(required=True)
 
@@ -231,7 +232,7 @@ def main() -> None:
 
     arguments = parser.parse_args()
     stop = stop_on_signal()
-    with zenoh_node("ferntast_test_peer", arguments.router, arguments.domain) as node:
+    with zenoh_node("ferntast_test_peer", arguments.router, arguments.domain, arguments.config) as node:
         report = arguments.run(node, arguments, stop)
     print_report(report)
 

@@ -29,6 +29,7 @@ mod refusals;
 mod rigid_body;
 mod ros;
 mod ros_arm;
+mod router_config;
 mod serial_arm;
 mod session;
 mod soak;

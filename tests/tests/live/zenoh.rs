@@ -3,7 +3,7 @@
 use ferntast_msgs::topics;
 use ferntast_tests::{
     PATIENCE, Process, Session, arm_state, await_enabled, hand_of_strokes, messages, number,
-    operated, recording, run, start, state_of_follower,
+    operated, recording, run, start, state_of_follower, wait_until,
 };
 
 const MIDDLEWARE: [&str; 2] = ["--middleware", "zenoh"];
@@ -12,6 +12,11 @@ fn peer(session: &Session, arguments: &[&str]) -> Process {
     let router = session.router_endpoint();
     let arguments = [&["--router", router.as_str()], arguments].concat();
     Process::spawn(session.peer("zenoh_peer.py", &arguments))
+}
+
+/// Whether somebody listens at `tcp/HOST:PORT`.
+fn listens(endpoint: &str) -> bool {
+    std::net::TcpStream::connect(endpoint.trim_start_matches("tcp/")).is_ok()
 }
 
 #[test]
@@ -126,4 +131,50 @@ fn it_sets_the_law_as_a_parameter() {
     assert_eq!(told["after"], "tdpa", "{told:#}");
     process.interrupt();
     process.wait(PATIENCE).success();
+}
+
+#[test]
+fn it_hears_a_recording_that_is_played() {
+    let session = Session::new();
+    let lockstep = ["lockstep", "--duration", "3", "--seed", "3"];
+    run(&session, &[&lockstep[..], &["--record", "run"]].concat()).success();
+    let mut command = session.ferntast(&["play", "run", "--loop", "--json"]);
+    command.args(["--session", session.name()]).args(MIDDLEWARE);
+    command.args(["--router-endpoint", &session.router_endpoint()]);
+    let player = Process::spawn(command);
+    assert!(
+        wait_until(PATIENCE, || listens(&session.router_endpoint())),
+        "no router"
+    );
+    let arguments = [
+        "count",
+        "/follower/measured_js",
+        "sensor_msgs/msg/JointState",
+        "--seconds",
+        "60",
+        "--at-least",
+        "500",
+    ];
+    let heard = peer(&session, &arguments).wait(PATIENCE).success().json();
+    player.interrupt();
+    let played = player.wait(PATIENCE).success().json();
+    assert_eq!(played["lost"], 0, "{played:#}");
+    assert!(number(&heard, "received") >= 500.0, "{heard:#}");
+    assert_eq!(heard["broken"], serde_json::json!([]), "{heard:#}");
+    // What it heard last is in the recording, number by number.
+    let stamp = &heard["last"]["header"]["stamp"];
+    let part = |name: &str| stamp[name].as_i64().expect("a whole number");
+    let stamp = part("sec") * 1_000_000_000 + part("nanosec");
+    let recorded = messages(&recording(&session), topics::FOLLOWER_MEASURED_JS);
+    let recorded = recorded
+        .iter()
+        .find(|own| own.message.stamp.nanos() == stamp)
+        .unwrap_or_else(|| panic!("not recorded: {heard:#}"));
+    for (key, numbers) in [
+        ("position", recorded.message.position),
+        ("velocity", recorded.message.velocity),
+        ("effort", recorded.message.effort),
+    ] {
+        assert_eq!(heard["last"][key], serde_json::json!(numbers[..2]), "{key}");
+    }
 }
