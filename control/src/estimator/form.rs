@@ -135,7 +135,7 @@ impl TorqueOfContact {
     pub(super) fn motion(&mut self, links: &impl Links, dt: f64) -> FilteredMotion {
         let channels = &self.channels;
         let channel = |read: fn(&DerivativeFilter) -> f64, from: &Joints<DerivativeFilter>| {
-            from.map(|filter| read(&filter))
+            Joints::from_fn(from.count(), |joint| read(&from[joint]))
         };
         let position = channel(DerivativeFilter::value, &channels.positions);
         let velocity = channel(DerivativeFilter::first, &channels.positions);

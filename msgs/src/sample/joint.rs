@@ -68,23 +68,27 @@ unsafe impl Plain for JointFields {}
 
 impl JointSample {
     /// All three quantities given as zero.
+    #[inline]
     pub const fn zero(joints: JointNames, stamp: Time) -> JointSample {
+        JointSample::of(JointFields::ALL, joints, stamp)
+    }
+
+    /// Nothing given yet: see [`with_position`](Self::with_position) and its like.
+    #[inline]
+    pub const fn empty(joints: JointNames, stamp: Time) -> JointSample {
+        JointSample::of(JointFields::NONE, joints, stamp)
+    }
+
+    #[inline]
+    const fn of(fields: JointFields, joints: JointNames, stamp: Time) -> JointSample {
         JointSample {
             stamp,
             joints,
             position: [0.0; MAX_JOINTS],
             velocity: [0.0; MAX_JOINTS],
             effort: [0.0; MAX_JOINTS],
-            fields: JointFields::ALL,
+            fields,
             reserved: [0; 4],
-        }
-    }
-
-    /// Nothing given yet: see [`with_position`](Self::with_position) and its like.
-    pub const fn empty(joints: JointNames, stamp: Time) -> JointSample {
-        JointSample {
-            fields: JointFields::NONE,
-            ..JointSample::zero(joints, stamp)
         }
     }
 

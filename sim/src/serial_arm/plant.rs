@@ -202,7 +202,8 @@ impl Plant {
         let bias = self
             .chain
             .inverse_dynamics_in(&posture, &expected, &rest, &self.gravity);
-        let mut matrix: MassMatrix = self.chain.mass_matrix_in(&posture) * (2.0 / dt);
+        let mut matrix: MassMatrix = self.chain.mass_matrix_in(&posture);
+        matrix *= 2.0 / dt;
         let mut right = Joints::from_fn(count, |joint| {
             let along: f64 = (0..count.get())
                 .map(|other| matrix[(joint, other)] * self.qd[other])
@@ -219,7 +220,7 @@ impl Plant {
         }
 
         // With friction as it was in the last step; the motors' velocities without the links'.
-        let shares = self.drives.map(|drive| drive.share(dt));
+        let shares = Joints::from_fn(count, |joint| self.drives[joint].share(dt));
         let mut motor = rest;
         for joint in 0..count.get() {
             let share = &shares[joint];

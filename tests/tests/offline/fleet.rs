@@ -138,7 +138,7 @@ fn thinned(from: &Path, to: &Path) {
 }
 
 fn copied<M: Message>(bag: &BagReader, writer: &mut BagWriter, topic: topics::Topic<M>) {
-    let name = topic.name.clone();
+    let name = topic.name;
     let channel = writer.topic(topic).expect("a topic");
     for own in bag.messages::<M>(&name).expect("it was recorded") {
         let own = own.expect("it can be read");

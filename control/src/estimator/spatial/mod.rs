@@ -157,10 +157,9 @@ impl SpatialEstimator {
             delay: self.intake.delay(),
             undetermined,
         };
-        let last = self.last;
         self.split.step(
             &self.parameters,
-            &last,
+            &self.last,
             taken.passed,
             &motion,
             &force,
