@@ -26,7 +26,7 @@ ORIGINS = {
     "hidden": "simulated for this project by another program; not published",
 }
 
-RUST_PROGRAM = re.compile(r"^\s+(?:Running .*[/(](\w+)-[0-9a-f]+\)|Doc-tests (\w+))$")
+RUST_PROGRAM = re.compile(r"^\s+Running .*[/(](\w+)-[0-9a-f]+\)$")
 RUST_IGNORED = re.compile(r"^test (\S+) \.\.\. ignored(?:, (.*))?$")
 RUST_FAILED = re.compile(r"^test (\S+) \.\.\. FAILED$")
 RUST_PASSED = re.compile(r"^test (\S+) \.\.\. ok$")
@@ -39,7 +39,7 @@ def lines_by_program(log: str) -> Iterator[tuple[str, str]]:
     program = ""
     for line in log.splitlines():
         if found := RUST_PROGRAM.match(line):
-            program = found[1] or f"doc of {found[2]}"
+            program = found[1]
         else:
             yield program, line
 
@@ -166,9 +166,6 @@ def main() -> int:
     result = result.with_passed_again(len(passed_again))
     print(f"took longest: {slowest(log) or 'nothing more than 10 s'}")
     print("\n".join(explanation(result.not_run)))
-    for program, test in ended_so(log, RUST_FAILED):
-        if (program, test) not in passed_again:
-            print(f"failed: {program}::{test}")
     for program, test in passed_again:
         print(f"failed, and passed when run again alone: {program}::{test}")
     skipped = f", {len(result.not_run)} skipped" if result.not_run else ""
