@@ -71,16 +71,10 @@ def data() -> Path:
 
 
 @pytest.fixture(scope="session")
-def program() -> Path:
+def ferntast() -> Path:
     """The ferntast program."""
     default = HERE.parents[1] / "target" / "release" / "ferntast"
     path = Path(os.environ.get("FERNTAST_BIN", default))
     if not path.is_file():
         pytest.fail(f"no program {path}: 'cargo build --release', or set FERNTAST_BIN")
     return path
-
-
-@pytest.fixture
-def ferntast(program: Path) -> Path:
-    """The ferntast program."""
-    return program

@@ -31,11 +31,11 @@ TOPICS = "/follower/measured_js,/follower/contact_cf,/follower/servo_cp"
 
 
 @pytest.fixture(scope="module")
-def said(program: Path) -> Any:
+def said(ferntast: Path) -> Any:
     """What the command line says in JSON."""
 
     def run(*arguments: object) -> Any:
-        command = [str(own) for own in (program, *arguments, "--json")]
+        command = [str(own) for own in (ferntast, *arguments, "--json")]
         return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
 
     return run
