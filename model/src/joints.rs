@@ -104,8 +104,8 @@ impl<T: Copy> Joints<T> {
     }
 
     /// What `change` makes of each value.
-    pub fn map<U: Copy>(self, mut change: impl FnMut(T) -> U) -> Joints<U> {
-        Joints::from_fn(self.count, |joint| change(self.places[joint]))
+    pub fn map<U: Copy>(&self, mut change: impl FnMut(&T) -> U) -> Joints<U> {
+        Joints::from_fn(self.count, |joint| change(&self.places[joint]))
     }
 }
 
@@ -202,7 +202,7 @@ mod tests {
     fn values_are_changed_joint_by_joint() {
         let mut joints = Joints::from([1, 2]);
         joints[1] = 5;
-        assert_eq!(joints.map(|own| own > 2), [false, true]);
+        assert_eq!(joints.map(|own| *own > 2), [false, true]);
         assert_eq!(joints.into_iter().collect::<Vec<_>>(), [1, 5]);
     }
 

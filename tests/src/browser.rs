@@ -70,6 +70,15 @@ const SETTLED: Duration = Duration::from_millis(900);
 /// A desk's small and large window, and a phone's \[pixels\].
 const SIZES: [(u32, u32); 3] = [(1280, 800), (1920, 1080), (390, 844)];
 
+/// With these nothing computes what a graphics card would do, of which no test machine has one:
+/// that takes more of the processor than all else in the browser.
+const WITHOUT_GRAPHICS_CARD: [&str; 2] = ["--disable-gpu", "--disable-software-rasterizer"];
+/// Has pages believe in a graphics card.
+const A_GRAPHICS_CARD: &str = "const real = WebGLRenderingContext.prototype.getExtension;
+    WebGLRenderingContext.prototype.getExtension = function (name) {
+        return name === 'WEBGL_debug_renderer_info' ? null : real.call(this, name);
+    };";
+
 impl Browser {
     /// Starts one with a window of that many pixels.
     ///
@@ -77,6 +86,22 @@ impl Browser {
     ///
     /// `chromedriver` or `chromium` is missing.
     pub fn start(width: u32, height: u32) -> Browser {
+        Browser::launch(width, height, &WITHOUT_GRAPHICS_CARD)
+    }
+
+    /// The same on a machine with a graphics card, as pages see it; it is computed.
+    ///
+    /// # Panics
+    ///
+    /// As [`Browser::start`].
+    pub fn with_graphics_card(width: u32, height: u32) -> Browser {
+        let browser = Browser::launch(width, height, &[]);
+        let script = json!({"source": A_GRAPHICS_CARD});
+        browser.dev_tools("Page.addScriptToEvaluateOnNewDocument", script);
+        browser
+    }
+
+    fn launch(width: u32, height: u32, more: &[&str]) -> Browser {
         let port = free_tcp_port();
         let mut command = Command::new("chromedriver");
         command.arg(format!("--port={port}"));
@@ -86,20 +111,22 @@ impl Browser {
             .build()
             .unwrap_or_else(|error| panic!("no runtime: {error}"));
         let profile = TempDir::new().unwrap_or_else(|error| panic!("no scratch folder: {error}"));
+        let mut arguments = vec![
+            "--headless=new".to_owned(),
+            "--no-sandbox".to_owned(),
+            "--disable-dev-shm-usage".to_owned(),
+            "--disable-background-networking".to_owned(),
+            "--force-color-profile=srgb".to_owned(),
+            "--hide-scrollbars".to_owned(),
+            format!("--user-data-dir={}", profile.path().display()),
+            format!("--window-size={width},{height}"),
+        ];
+        arguments.extend(more.iter().map(|own| (*own).to_owned()));
         let capabilities = json!({
             // Charts are drawn in software here, beside other tests.
             "timeouts": {"script": 180_000, "pageLoad": 300_000},
             "goog:loggingPrefs": {"browser": "ALL"},
-            "goog:chromeOptions": {"args": [
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-dev-shm-usage",
-                "--disable-background-networking",
-                "--force-color-profile=srgb",
-                "--hide-scrollbars",
-                format!("--user-data-dir={}", profile.path().display()),
-                format!("--window-size={width},{height}"),
-            ]},
+            "goog:chromeOptions": {"args": arguments},
         });
         let mut capabilities = capabilities;
         if width < 500 {

@@ -43,6 +43,15 @@ function layout(more) {
   };
 }
 
+/** Whether a graphics card draws. Without one WebGL is computed, which takes far longer than lines in SVG. */
+function byGraphicsCard() {
+  const gl = document.createElement("canvas").getContext("webgl", { failIfMajorPerformanceCaveat: true });
+  const named = gl?.getExtension("WEBGL_debug_renderer_info");
+  return gl !== null && !(named && /swiftshader|llvmpipe|softpipe|software|basic render/i.test(gl.getParameter(named.UNMASKED_RENDERER_WEBGL)));
+}
+const kind = byGraphicsCard() ? "scattergl" : "scatter";
+const drawable = (trace) => (trace.type === "scattergl" ? { ...trace, type: kind } : trace);
+
 /**
  * Draws in `element`. `make` gives { data, layout, small (without buttons) } with
  * the colours of the theme, and is asked again when that changes.
@@ -51,7 +60,7 @@ export async function draw(element, make) {
   const library = await plotly();
   drawn.set(element, make);
   const chart = make();
-  await library.react(element, chart.data, layout(chart.layout), { ...CONFIG, displayModeBar: chart.small || NARROW.matches ? false : "hover" });
+  await library.react(element, chart.data.map(drawable), layout(chart.layout), { ...CONFIG, displayModeBar: chart.small || NARROW.matches ? false : "hover" });
 }
 
 /** Forgets charts that are no longer on the page. */

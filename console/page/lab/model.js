@@ -81,7 +81,7 @@ export function show(parent, { view, joint, path }, actions) {
     make("div", { className: "headline" },
       make("div", {},
         make("h1", { textContent: isFile ? own.title : `${path}, ${own.title}` }),
-        make("p", { className: "quiet small", textContent: `${own.sessions.length} sessions of ${own.recordings.join(", ")}` })),
+        make("p", { className: "quiet small", textContent: `${own.sessions.length} session${own.sessions.length === 1 ? "" : "s"} of ${own.recordings.join(", ")}` })),
       make("div", { className: "row" },
         act("Diagnose", "diagnose", actions.diagnose, { className: "primary" }),
         isFile ? act("Add until complete", "auto", actions.auto) : act("Write an experiment file", "own", actions.own),

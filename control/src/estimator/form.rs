@@ -134,9 +134,8 @@ impl TorqueOfContact {
     /// [`reset`](Self::reset).
     pub(super) fn motion(&mut self, links: &impl Links, dt: f64) -> FilteredMotion {
         let channels = &self.channels;
-        let channel = |read: fn(&DerivativeFilter) -> f64, from: &Joints<DerivativeFilter>| {
-            Joints::from_fn(from.count(), |joint| read(&from[joint]))
-        };
+        let channel =
+            |read: fn(&DerivativeFilter) -> f64, from: &Joints<DerivativeFilter>| from.map(read);
         let position = channel(DerivativeFilter::value, &channels.positions);
         let velocity = channel(DerivativeFilter::first, &channels.positions);
         let acceleration = channel(DerivativeFilter::second, &channels.positions);

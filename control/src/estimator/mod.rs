@@ -28,6 +28,7 @@ mod sensors;
 mod spatial;
 mod split;
 mod systematic;
+mod touch;
 mod zeroing;
 
 pub use calibration::{Calibrated, Calibration, Push, SelfCalibration};

@@ -1,25 +1,11 @@
 //! Which surface is touched, and what the force is along and across it.
 
 use super::systematic::{SensorErrors, split_errors};
+use super::touch::{REACH, Slide, Touch, threshold};
 use super::zeroing::CLEARANCE;
 use super::{CoefficientEstimator, ContactEstimate, EstimatorParameters, SelfCalibration};
 use ferntast_model::Vector2;
 use ferntast_model::contour::{Feature, Surface, nearest};
-
-/// How far behind the front of a feature the tip is still taken to push it \[m\].
-const REACH: f64 = 0.1;
-
-/// Where no surface is known, a force of so many times that of a contact is one [-],
-const UNKNOWN_SURFACE: f64 = 3.0;
-/// when it lasts so long [s]: of an arm that is jerked the estimate is off for as long as its
-/// filters take.
-const UNKNOWN_TIME: f64 = 0.05;
-/// A contact there ends when less than a contact's force lasts so long [s]: what the tip goes
-/// along with may push less for a while.
-const FAINT_TIME: f64 = 0.2;
-
-/// How many times the filter's delay a turn of the tip is seen in the forces.
-const TURN_DELAYS: f64 = 5.0;
 
 /// How the tip moves, base frame.
 pub(super) struct Motion<'a> {
@@ -55,16 +41,10 @@ pub(super) struct Split {
     features: Vec<Feature>,
     /// One a surface: lubricated, unlubricated.
     coefficients: [CoefficientEstimator; 2],
-    /// Way slid since the last turn or rest \[m\].
-    travel: f64,
-    /// Time since then \[s\].
-    sliding_for: f64,
+    touch: Touch,
+    slide: Slide,
     /// Direction of the last motion along the tangent: ±1.
     direction: f64,
-    /// For how long something that is not in the contour has pushed \[s\].
-    unknown_for: f64,
-    /// For how long that has pushed less than a contact does [s].
-    faint_for: f64,
 }
 
 impl Split {
@@ -72,11 +52,9 @@ impl Split {
         Self {
             features,
             coefficients: Default::default(),
-            travel: 0.0,
-            sliding_for: 0.0,
+            touch: Touch::default(),
+            slide: Slide::default(),
             direction: 1.0,
-            unknown_for: 0.0,
-            faint_for: 0.0,
         }
     }
 
@@ -112,38 +90,25 @@ impl Split {
         let tip = &motion.tip;
         let near = nearest(&self.features, tip, REACH)
             .filter(|near| near.distance <= parameters.contact_distance);
-        let threshold = if last.in_contact {
-            parameters.contact_off
-        } else {
-            parameters.contact_on
-        };
+        let threshold = threshold(parameters, last.in_contact);
         let touched = near.and_then(|near| {
             let feature = motion.turned(near.index, self.features.get(near.index)?);
             (force.dot(&feature.normal) > threshold).then_some((near.index, feature))
         });
-        let unknown = near.is_none() && force.norm() > UNKNOWN_SURFACE * parameters.contact_on;
-        self.unknown_for = if unknown { self.unknown_for + dt } else { 0.0 };
-        let faint = force.norm() <= parameters.contact_on;
-        self.faint_for = if faint { self.faint_for + dt } else { 0.0 };
-        estimate.touches = match near {
-            Some(_) => touched.is_some(),
-            None if last.touches => self.faint_for < FAINT_TIME,
-            None => self.unknown_for >= UNKNOWN_TIME,
-        };
+        let known = near.map(|_| touched.is_some());
+        let size = force.norm();
+        estimate.touches = self.touch.step(parameters, dt, size, known, last.touches);
         let Some((index, feature)) = touched else {
-            self.travel = 0.0;
-            self.sliding_for = 0.0;
+            self.slide.end();
             return;
         };
         let sliding = motion.velocity.dot(&feature.tangent());
         let (normal, tangential) = (force.dot(&feature.normal), force.dot(&feature.tangent()));
         let turned = sliding * self.direction < 0.0;
         if sliding.abs() < parameters.rest_speed || turned || last.feature != Some(index) {
-            self.travel = 0.0;
-            self.sliding_for = 0.0;
+            self.slide.end();
         } else {
-            self.travel += sliding.abs() * dt;
-            self.sliding_for += dt;
+            self.slide.go_on(sliding.abs(), dt);
         }
         if sliding.abs() >= parameters.rest_speed {
             self.direction = sliding.signum();
@@ -160,9 +125,7 @@ impl Split {
             other != index && f.faces(tip) && (-REACH..=0.0).contains(&f.distance(tip))
         });
         // Two normals, two tangents: the split is no more defined than at rest.
-        // At a turn first arm and surface wind up the other way, then the filters follow.
-        let turned_lately =
-            self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
+        let turned_lately = self.slide.turned_lately(parameters, motion.delay);
         estimate.near_rest = stopping || turned_lately || estimate.corner || motion.undetermined;
         self.identify(parameters, dt, &feature, motion, estimate);
     }

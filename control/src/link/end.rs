@@ -190,6 +190,11 @@ impl End {
         }
     }
 
+    /// Age at `now_ns` of what is acted on \[s\]; `None` before the first frame.
+    pub fn age(&self, now_ns: i64) -> Option<f64> {
+        self.newest(now_ns).map(|own| own.received.age)
+    }
+
     /// Time since the frame that is acted on \[s\]; infinite before the first.
     pub fn silence(&self, now_ns: i64) -> f64 {
         self.newest

@@ -170,7 +170,7 @@ impl FollowerLink {
 
     /// Age at `now_ns` of what this end acts on \[s\]; `None` before the first frame.
     pub fn age(&self, now_ns: i64) -> Option<f64> {
-        self.end.newest(now_ns).map(|own| own.received.age)
+        self.end.age(now_ns)
     }
 
     /// What is known at `now_ns`.

@@ -154,8 +154,8 @@ fn a_torque_is_held_against_the_weight() {
 #[test]
 fn degrees_and_places_out_of_range_are_told_apart() {
     let degrees = record(0.1, |seen| {
-        seen.reading.position = seen.reading.position.map(f64::to_degrees);
-        seen.reading.velocity = seen.reading.velocity.map(f64::to_degrees);
+        seen.reading.position = seen.reading.position.map(|own| own.to_degrees());
+        seen.reading.velocity = seen.reading.velocity.map(|own| own.to_degrees());
     });
     let report = judged(&degrees);
     let worst: Vec<&Finding> = report

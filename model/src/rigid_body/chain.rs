@@ -287,12 +287,7 @@ impl Chain {
     /// Forward kinematics: the tip's frame in the base frame at joint positions `q`
     /// \[rad\] or \[m\].
     pub fn forward(&self, q: &Joints<f64>) -> Placement {
-        self.expect_joints(q);
-        let links = self.links.iter().zip(q.iter());
-        let last = links.fold(Placement::identity(), |placed, (link, q)| {
-            placed.then(&link.placement(*q))
-        });
-        last.then(&self.tip)
+        self.tip_on(&self.link_placements(q))
     }
 
     /// The tip's frame where the links are.

@@ -220,7 +220,7 @@ impl Plant {
         }
 
         // With friction as it was in the last step; the motors' velocities without the links'.
-        let shares = Joints::from_fn(count, |joint| self.drives[joint].share(dt));
+        let shares = self.drives.map(|own| own.share(dt));
         let mut motor = rest;
         for joint in 0..count.get() {
             let share = &shares[joint];

@@ -27,6 +27,35 @@ fn stairs(browser: &Browser) -> Vec<f64> {
     serde_json::from_str(text.as_str().unwrap_or("[]")).unwrap_or_default()
 }
 
+/// Lines are computed where the processor has to draw them, and left to a graphics card where one is.
+#[test]
+fn curves_are_drawn_by_the_graphics_card_where_there_is_one() {
+    let session = Session::new();
+    let riddle = ["challenge", "new", "lab/riddle", "--seed", "89"];
+    run(&session, &riddle).success();
+    let (process, url) = serve(&session, "lab");
+    let by_card = "return document.querySelector('#chart-time .gl-canvas') !== null";
+    let by_processor =
+        "return document.querySelectorAll('#chart-time .scatterlayer path.js-line').length >= 3";
+    let others = [
+        (Browser::start(1280, 900), by_processor, by_card),
+        (
+            Browser::with_graphics_card(1280, 900),
+            by_card,
+            by_processor,
+        ),
+    ];
+    for (browser, drawn, not_drawn) in others {
+        browser.open(&url);
+        browser.click("[data-path='riddle/experiment.toml']");
+        browser.until("the curves are drawn", LONG, drawn);
+        assert_eq!(browser.run(not_drawn, Vec::new()), false);
+        assert_eq!(browser.complaints(), Vec::<String>::new());
+    }
+    process.interrupt();
+    process.wait(PATIENCE).success();
+}
+
 #[test]
 fn a_hidden_effect_is_found_added_and_the_staircase_falls() {
     let session = Session::new();

@@ -1,23 +1,12 @@
 //! Which surface is touched, and what the force is along and across it.
 
 use super::super::systematic::SensorErrors;
+use super::super::touch::{REACH, Slide, Touch, threshold};
 use super::super::zeroing::CLEARANCE;
 use super::super::{CoefficientEstimator, EstimatorParameters};
 use super::SpatialEstimate;
 use ferntast_model::serial_arm::Plane;
 use nalgebra::Vector3;
-
-/// How far behind a plane the tip is still taken to push it \[m\].
-const REACH: f64 = 0.1;
-/// Where no surface is known, a force of so many times that of a contact is one [-],
-const UNKNOWN_SURFACE: f64 = 3.0;
-/// when it lasts so long [s]: of an arm that is jerked the estimate is off for as long as its
-/// filters take.
-const UNKNOWN_TIME: f64 = 0.05;
-/// A contact there ends when less than a contact's force lasts so long [s].
-const FAINT_TIME: f64 = 0.2;
-/// How many times the filter's delay a turn of the tip is seen in the forces.
-const TURN_DELAYS: f64 = 5.0;
 
 /// How the tip moves, base frame.
 pub(super) struct Motion<'a> {
@@ -53,16 +42,10 @@ impl Surface {
 #[derive(Clone, Debug)]
 pub(super) struct Split {
     surfaces: Vec<Surface>,
-    /// Way slid since the last turn or rest \[m\].
-    travel: f64,
-    /// Time since then \[s\].
-    sliding_for: f64,
+    touch: Touch,
+    slide: Slide,
     /// Direction of the last motion along the surface, of length 1 or, before any, 0.
     direction: Vector3<f64>,
-    /// For how long something that is not believed in has pushed \[s\].
-    unknown_for: f64,
-    /// For how long that has pushed less than a contact does [s].
-    faint_for: f64,
 }
 
 impl Split {
@@ -74,11 +57,9 @@ impl Split {
         };
         Self {
             surfaces: surfaces.iter().map(surface).collect(),
-            travel: 0.0,
-            sliding_for: 0.0,
+            touch: Touch::default(),
+            slide: Slide::default(),
             direction: Vector3::zeros(),
-            unknown_for: 0.0,
-            faint_for: 0.0,
         }
     }
 
@@ -100,10 +81,7 @@ impl Split {
         force: &Vector3<f64>,
         estimate: &mut SpatialEstimate,
     ) {
-        let threshold = match last.in_contact {
-            true => parameters.contact_off,
-            false => parameters.contact_on,
-        };
+        let threshold = threshold(parameters, last.in_contact);
         let is_near = |own: &Surface| {
             let distance = own.distance(&motion.tip);
             (-REACH..=parameters.contact_distance).contains(&distance)
@@ -115,18 +93,11 @@ impl Split {
         let near = near.map(|(index, own)| (index, own.normal));
         let touched = near.filter(|(_, normal)| force.dot(normal) > threshold);
 
-        let unknown = near.is_none() && force.norm() > UNKNOWN_SURFACE * parameters.contact_on;
-        self.unknown_for = if unknown { self.unknown_for + dt } else { 0.0 };
-        let faint = force.norm() <= parameters.contact_on;
-        self.faint_for = if faint { self.faint_for + dt } else { 0.0 };
-        estimate.touches = match near {
-            Some(_) => touched.is_some(),
-            None if last.touches => self.faint_for < FAINT_TIME,
-            None => self.unknown_for >= UNKNOWN_TIME,
-        };
+        let known = near.map(|_| touched.is_some());
+        let size = force.norm();
+        estimate.touches = self.touch.step(parameters, dt, size, known, last.touches);
         if !estimate.touches {
-            self.travel = 0.0;
-            self.sliding_for = 0.0;
+            self.slide.end();
             return;
         }
         let surface = touched.map(|(index, _)| index);
@@ -134,16 +105,14 @@ impl Split {
             Some((_, normal)) => normal,
             None => across(force, &motion.velocity, parameters.rest_speed),
         };
-        self.slide(parameters, dt, &normal, surface != last.surface, motion);
+        self.follow(parameters, dt, &normal, surface != last.surface, motion);
         let corner = surface.is_some_and(|surface| {
             let others = self.surfaces.iter().enumerate();
             let mut others = others.filter(|(index, _)| *index != surface);
             others.any(|(_, own)| (-REACH..=0.0).contains(&own.distance(&motion.tip)))
         });
         let present = motion.present_velocity.dot(&self.direction);
-        // At a turn first arm and surface wind up the other way, then the filters follow.
-        let turned_lately =
-            self.travel <= parameters.rest_travel || self.sliding_for <= TURN_DELAYS * motion.delay;
+        let turned_lately = self.slide.turned_lately(parameters, motion.delay);
         let along = tangent(&normal);
         estimate.in_contact = true;
         estimate.surface = surface;
@@ -163,7 +132,7 @@ impl Split {
     }
 
     /// Follows how the tip slides on what has this normal; on another surface it begins anew.
-    fn slide(
+    fn follow(
         &mut self,
         parameters: &EstimatorParameters,
         dt: f64,
@@ -175,11 +144,9 @@ impl Split {
         let speed = sliding.norm();
         let rests = speed < parameters.rest_speed;
         if rests || other || sliding.dot(&self.direction) < 0.0 {
-            self.travel = 0.0;
-            self.sliding_for = 0.0;
+            self.slide.end();
         } else {
-            self.travel += speed * dt;
-            self.sliding_for += dt;
+            self.slide.go_on(speed, dt);
         }
         if !rests {
             self.direction = sliding / speed;

@@ -63,7 +63,7 @@ impl Defaults {
                 count.check("arm.home", home.len())?;
                 home
             }
-            None => posture(&arm.chain, &ends).map(written).to_vec(),
+            None => posture(&arm.chain, &ends).map(|own| written(*own)).to_vec(),
         };
         let rest = Joints::filled(count, 0.0);
         let at_home = Joints::from_slice(&home)?;
