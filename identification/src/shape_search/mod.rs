@@ -148,7 +148,10 @@ impl<'a> Search<'a> {
     pub fn best(&self, effect: &EffectHandle, shapes: Vec<Vec<f64>>) -> Option<Vec<f64>> {
         let (error, shape) = match &self.part {
             None => self.compare(effect, shapes)?,
-            Some(part) => self.compare_tried(effect, &try_all(part.rows(), effect, shapes))?,
+            Some(part) => {
+                let rows = part.rows_for(effect, shapes.first()?);
+                self.compare_tried(effect, &try_all(rows, effect, shapes))?
+            }
         };
         Some(self.refine(effect, shape, error))
     }
@@ -173,8 +176,9 @@ impl<'a> Search<'a> {
         let (error, shape) = match &self.part {
             None => self.compare(effect, shapes)?,
             Some(part) => {
-                let tried = try_all(part.rows(), effect, shapes);
-                if let Some(shape) = nothing_on(part.rows(), effect, &tried, notable) {
+                let rows = part.rows_for(effect, shapes.first()?);
+                let tried = try_all(rows, effect, shapes);
+                if let Some(shape) = nothing_on(rows, effect, &tried, notable) {
                     return Some(Outcome {
                         shape,
                         on_all_rows: false,
@@ -226,7 +230,8 @@ impl<'a> Search<'a> {
             |shape, at, range, error| match &self.part {
                 None => golden_section(shape, at, range, error, of_all),
                 Some(part) => {
-                    let of_part = |shape: &[f64]| part.rows().error_of(effect, shape);
+                    let rows = part.rows_for(effect, shape);
+                    let of_part = |shape: &[f64]| rows.error_of(effect, shape);
                     golden_section::in_two_stages(shape, at, range, error, of_part, of_all)
                 }
             },

@@ -5,21 +5,43 @@
 
 use super::Rows;
 use crate::design::{Design, PreparedModel};
+use crate::effects::EffectHandle;
 
 /// Rows from which on a part of them is searched first.
 const MIN_ROWS: usize = 50_000;
 /// Rows of the part, about.
 const ROWS_OF_PART: usize = 12_500;
-/// Rows of a run, about; …
-const ROWS_OF_RUN: usize = 256;
-/// … and at least, unless there are fewer.
-const MIN_ROWS_OF_RUN: usize = 64;
-/// Time \[s\] before and after a run that effects with a memory, and those that look back or
-/// ahead, are given.
-const MARGIN: f64 = 0.25;
+/// Runs for functions of the state alone: short, so that a slow motion has all its places in them.
+const OF_STATES: Runs = Runs {
+    rows: 64,
+    margin: 0.0,
+};
+/// Runs for effects with a memory, and those that look back or ahead.
+const OF_MOTIONS: Runs = Runs {
+    rows: 256,
+    margin: 0.25,
+};
+/// Share of its rows that a run has at least, unless there are fewer.
+const LEAST_OF_RUN: usize = 4;
 
-/// A model on a part of its rows.
+/// How the rows of the part are chosen.
+#[derive(Clone, Copy)]
+struct Runs {
+    /// Rows of a run, about.
+    rows: usize,
+    /// Time \[s\] before and after a run that columns are made of, besides what the filter looks
+    /// at.
+    margin: f64,
+}
+
+/// A model on parts of its rows.
 pub(super) struct Part {
+    of_states: Kept,
+    of_motions: Kept,
+}
+
+/// A model on some of its rows.
+struct Kept {
     prepared: PreparedModel,
     design: Design,
 }
@@ -34,18 +56,39 @@ impl Part {
 
     /// One row in so many.
     pub(super) fn one_in(share: usize, prepared: &PreparedModel, design: &Design) -> Self {
+        Self {
+            of_states: Kept::new(OF_STATES, share, prepared, design),
+            of_motions: Kept::new(OF_MOTIONS, share, prepared, design),
+        }
+    }
+
+    /// The rows on which `effect` is searched.
+    pub(super) fn rows_for(&self, effect: &EffectHandle, shape: &[f64]) -> Rows<'_> {
+        let Kept { prepared, design } = match effect.of_states(shape, &[]) {
+            Some(_) => &self.of_states,
+            None => &self.of_motions,
+        };
+        Rows { prepared, design }
+    }
+}
+
+impl Kept {
+    fn new(own: Runs, share: usize, prepared: &PreparedModel, design: &Design) -> Self {
         let each = design.sessions.iter();
         let numbers: Vec<Vec<usize>> = each
             .map(|session| {
                 let blocks = session.blocks.iter();
-                blocks.flat_map(|block| runs(*block, share)).collect()
+                blocks
+                    .flat_map(|block| own.of_block(*block, share))
+                    .collect()
             })
             .collect();
         let each = prepared.sessions.iter().zip(&numbers);
         let sessions = each.map(|(signals, numbers)| {
             let rows: Vec<usize> = numbers.iter().map(|row| signals.rows[*row]).collect();
             let of_filter = signals.column.taps().len() / 2;
-            signals.part(&rows, of_filter + (MARGIN / signals.period).ceil() as usize)
+            let margin = (own.margin / signals.period).ceil() as usize;
+            signals.part(&rows, of_filter + margin)
         });
         Self {
             prepared: PreparedModel {
@@ -60,28 +103,22 @@ impl Part {
             design: design.on_rows(&numbers),
         }
     }
-
-    pub(super) fn rows(&self) -> Rows<'_> {
-        Rows {
-            prepared: &self.prepared,
-            design: &self.design,
-        }
-    }
 }
 
-/// Numbers of the rows of a block of which one in `share` is kept: runs of equal length, each
-/// in the middle of its share of the block.
-fn runs((from, to): (usize, usize), share: usize) -> impl Iterator<Item = usize> {
-    let count = to - from;
-    let runs = (count / (share * ROWS_OF_RUN)).max(1);
-    let length = (count / (runs * share))
-        .max(MIN_ROWS_OF_RUN)
-        .min(count / runs);
-    (0..runs).flat_map(move |run| {
-        let (first, end) = (run * count / runs, (run + 1) * count / runs);
-        let start = from + first + (end - first - length) / 2;
-        start..start + length
-    })
+impl Runs {
+    /// Numbers of the rows of a block of which one in `share` is kept: runs of equal length, each
+    /// in the middle of its share of the block.
+    fn of_block(self, (from, to): (usize, usize), share: usize) -> impl Iterator<Item = usize> {
+        let count = to - from;
+        let runs = (count / (share * self.rows)).max(1);
+        let least = self.rows / LEAST_OF_RUN;
+        let length = (count / (runs * share)).max(least).min(count / runs);
+        (0..runs).flat_map(move |run| {
+            let (first, end) = (run * count / runs, (run + 1) * count / runs);
+            let start = from + first + (end - first - length) / 2;
+            start..start + length
+        })
+    }
 }
 
 #[cfg(test)]
@@ -90,21 +127,21 @@ mod tests {
 
     #[test]
     fn every_part_of_a_block_has_its_share() {
-        let kept: Vec<usize> = runs((1000, 11_000), 5).collect();
+        let kept: Vec<usize> = OF_STATES.of_block((1000, 11_000), 5).collect();
         assert!((1900..=2000).contains(&kept.len()), "{}", kept.len());
         assert!(kept.windows(2).all(|both| both[0] < both[1]));
         for fifth in 0..5 {
             let (from, to) = (1000 + 2000 * fifth, 3000 + 2000 * fifth);
             let here = kept.iter().filter(|row| (from..to).contains(*row)).count();
-            // Seven runs of 285.
-            assert!((285..=570).contains(&here), "{here} of {from} to {to}");
+            // 31 runs of 64.
+            assert!((384..=448).contains(&here), "{here} of {from} to {to}");
         }
     }
 
     #[test]
     fn a_short_block_is_kept() {
-        assert!(runs((30, 70), 5).eq(30..70));
-        assert_eq!(runs((0, 200), 5).count(), MIN_ROWS_OF_RUN);
-        assert_eq!(runs((5, 5), 5).count(), 0);
+        assert!(OF_STATES.of_block((30, 46), 5).eq(30..46));
+        assert_eq!(OF_STATES.of_block((0, 70), 5).count(), 16);
+        assert_eq!(OF_STATES.of_block((5, 5), 5).count(), 0);
     }
 }

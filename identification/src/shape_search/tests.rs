@@ -28,7 +28,6 @@ fn searches<'a>(prepared: &'a PreparedModel, design: &'a Design) -> [Search<'a>;
 fn a_part_has_the_columns_of_the_whole() {
     let (prepared, design) = bound(plain);
     let part = Part::one_in(SHARE, &prepared, &design);
-    let of_part = part.rows();
     for (id, shape, most_apart) in [
         ("stribeck", vec![0.05], 0.0),
         ("ripple", vec![40.0], 0.0),
@@ -36,6 +35,7 @@ fn a_part_has_the_columns_of_the_whole() {
         ("presliding_hysteresis", vec![0.002], 0.05),
     ] {
         let effect = find(id).unwrap();
+        let of_part = part.rows_for(&effect, &shape);
         let whole = design.extra_columns(&prepared, &effect, &shape);
         let own = of_part
             .design
