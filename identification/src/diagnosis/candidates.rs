@@ -188,30 +188,11 @@ pub fn try_all(prepared: &PreparedModel, design: &Design, progress: &mut dyn FnM
             true => trial.variants_between += variants,
             false => trial.variants += variants,
         }
-        let score_of = |shape: &[f64]| score(prepared, design, effect, shape);
-        let first = shapes.first().cloned();
-        let found = search.best_if_any(effect, shapes, NOTABLE_SHARE);
+        let shape = search.best_if_any(effect, shapes, NOTABLE_SHARE);
         progress((done as f64 + 0.8) / count);
-        let (Some(found), Some(first)) = (found, first) else {
-            continue;
-        };
-        let mut shape = found.shape;
-        let mut score = score_of(&shape);
-        let is_plausible =
-            |shape: &[f64], score: &Score| effect.plausible(shape, &score.coefficients);
-        if !found.on_all_rows {
-            let better = match is_plausible(&shape, &score) {
-                true if score.share() < NOTABLE_SHARE => None,
-                // What is something on all rows is searched on all.
-                true => search.best(effect, shape_search::shapes(prepared, design, effect)),
-                // As where no shape is plausible.
-                false => Some(first),
-            };
-            if let Some(better) = better {
-                (score, shape) = (score_of(&better), better);
-            }
-        }
-        let plausible = is_plausible(&shape, &score);
+        let Some(shape) = shape else { continue };
+        let score = score(prepared, design, effect, &shape);
+        let plausible = effect.plausible(&shape, &score.coefficients);
         trial.candidates.push(Candidate {
             effect: effect.clone(),
             shape,

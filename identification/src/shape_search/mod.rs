@@ -118,14 +118,6 @@ fn least(found: impl Iterator<Item = Found>) -> Option<Found> {
     found.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// What a search for an effect that may be nothing ended with.
-pub struct Outcome {
-    /// The best shape.
-    pub shape: Vec<f64>,
-    /// Whether all rows were searched for it.
-    pub on_all_rows: bool,
-}
-
 /// Searches for shapes of effects beside one model.
 pub struct Search<'a> {
     all: Rows<'a>,
@@ -156,41 +148,43 @@ impl<'a> Search<'a> {
         Some(self.refine(effect, shape, error))
     }
 
-    /// The same of an effect that the model may lack; one that explains less than `notable` of
-    /// the error on a part of the rows is not searched on the others. A shape is refined only
-    /// where a plausible one is known.
+    /// The same of an effect that the model may lack. One that explains less than `notable` of
+    /// the error on a part of the rows, and with the best shapes there on all of them, is
+    /// searched no further. A shape is refined only where a plausible one is known.
     #[must_use]
     pub fn best_if_any(
         &self,
         effect: &EffectHandle,
         shapes: Vec<Vec<f64>>,
         notable: f64,
-    ) -> Option<Outcome> {
-        let on_all_rows = |shape: Vec<f64>| Outcome {
-            shape,
-            on_all_rows: true,
-        };
+    ) -> Option<Vec<f64>> {
         if shapes.len() == 1 && effect.bounds(&self.all.prepared.facts).is_empty() {
-            return shapes.into_iter().next().map(on_all_rows);
+            return shapes.into_iter().next();
         }
         let (error, shape) = match &self.part {
             None => self.compare(effect, shapes)?,
             Some(part) => {
                 let rows = part.rows_for(effect, shapes.first()?);
                 let tried = try_all(rows, effect, shapes);
-                if let Some(shape) = nothing_on(rows, effect, &tried, notable) {
-                    return Some(Outcome {
-                        shape,
-                        on_all_rows: false,
-                    });
+                let rough = nothing_on(rows, effect, &tried, notable);
+                let found = self.compare_tried(effect, &tried)?;
+                if let Some(shape) = rough {
+                    let left = self.all.left(effect, &shape);
+                    let least = found.0.min(left.error_if_plausible());
+                    if least > (1.0 - notable) * left.before {
+                        return match left.plausible {
+                            true => Some(shape),
+                            false => Some(found.1),
+                        };
+                    }
                 }
-                self.compare_tried(effect, &tried)?
+                found
             }
         };
-        Some(on_all_rows(match error.is_finite() {
-            true => self.refine(effect, shape, error),
-            false => shape,
-        }))
+        match error.is_finite() {
+            true => Some(self.refine(effect, shape, error)),
+            false => Some(shape),
+        }
     }
 
     /// The best of `shapes` on all rows.
