@@ -10,9 +10,9 @@
 //! signals/       sessions filtered, differentiated, thinned, masked: rows
 //! effects/       the catalogue: columns over the state, formulas of the user's own
 //! design/        model and signals together: columns, blocks of time, Gram matrices
+//! validation/    error on data left out, within sessions and between them
 //! shape_search/  parameters that enter nonlinearly: grid, golden sections, periods
 //! preparation/   terms bound, shapes found, prediction made, channels compensated
-//! validation/    error on data left out, within sessions and between them
 //! fit/           parameters with standard errors; the model with one more effect
 //! comparison/    the model against the recordings: residual maps, noise, simulation
 //! diagnosis/     which effect is missing, which others explain as much, what to record next

@@ -21,16 +21,31 @@ pub fn working(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Vec<V
         }
         false => effect
             .whole(shape, &signals.points)
-            .or_else(|| of_points(effect, shape, &signals.points)),
+            .or_else(|| of_points(effect, shape, &signals.points, Point::friction_state)),
     };
     whole.unwrap_or_else(|| evaluated(signals, effect, shape, signals.points.iter()))
 }
 
-/// Columns of an effect that is a function of the states alone, asked once for all of them.
-fn of_points(effect: &EffectHandle, shape: &[f64], points: &[Point]) -> Option<Vec<Vec<f64>>> {
-    effect.of_states(shape, &[])?;
-    let states: Vec<FrictionState> = points.iter().map(Point::friction_state).collect();
-    effect.of_states(shape, &states)
+/// Points whose states are at hand at a time.
+const POINTS_AT_ONCE: usize = 1024;
+
+/// Columns of an effect that is a function of the states alone, `state` at each point.
+fn of_points(
+    effect: &EffectHandle,
+    shape: &[f64],
+    points: &[Point],
+    state: impl Fn(&Point) -> FrictionState,
+) -> Option<Vec<Vec<f64>>> {
+    let mut columns = effect.of_states(shape, &[])?;
+    for column in &mut columns {
+        column.reserve_exact(points.len());
+    }
+    for some in points.chunks(POINTS_AT_ONCE) {
+        let states: Vec<FrictionState> = some.iter().map(&state).collect();
+        let each = columns.iter_mut().zip(effect.of_states(shape, &states)?);
+        each.for_each(|(column, next)| column.extend(next));
+    }
+    Some(columns)
 }
 
 /// The same of a term of a model, kept where it is of the motion alone.
@@ -39,9 +54,40 @@ pub fn kept(signals: &Signals, effect: &EffectHandle, shape: &[f64]) -> Columns 
     match effect.is_of_motion() {
         true => {
             let key = Key::new(&effect.description().id, shape, 0.0);
-            (signals.kept).working(key, || working(signals, effect, shape))
+            // Asked once, so that no states are kept for it.
+            let states = || of_points(effect, shape, &signals.points, Point::friction_state);
+            (signals.kept).working(key, || {
+                states().unwrap_or_else(|| working(signals, effect, shape))
+            })
         }
         false => Arc::new(working(signals, effect, shape)),
+    }
+}
+
+/// A velocity at each point in place of the measured one, by a step \[rad/s\].
+#[derive(Clone, Copy, Debug)]
+pub enum OtherVelocity {
+    /// Faster by the step.
+    Faster(f64),
+    /// The step alone.
+    AboveRest(f64),
+}
+
+impl OtherVelocity {
+    fn at(self, point: &Point) -> f64 {
+        match self {
+            Self::Faster(step) => point.velocity + step * point.sign(),
+            Self::AboveRest(step) => step * point.sign(),
+        }
+    }
+
+    /// What its columns are kept by.
+    fn key(self, effect: &EffectHandle, shape: &[f64]) -> Key {
+        let id = &effect.description().id;
+        match self {
+            Self::Faster(step) => Key::new(&format!("{id}, faster"), shape, step),
+            Self::AboveRest(step) => Key::new(&format!("{id}, above rest"), shape, step),
+        }
     }
 }
 
@@ -51,22 +97,34 @@ pub fn at_velocity(
     signals: &Signals,
     effect: &EffectHandle,
     shape: &[f64],
-    velocity: impl Fn(&Point) -> f64,
+    velocity: OtherVelocity,
 ) -> Columns {
     if !effect.reads_velocity() {
         return kept(signals, effect, shape);
     }
-    let changed = |point: &Point| Point {
-        velocity: velocity(point),
-        ..*point
+    let make = || {
+        let state = |point: &Point| FrictionState {
+            velocity: velocity.at(point),
+            ..point.friction_state()
+        };
+        if let Some(columns) = of_points(effect, shape, &signals.points, state) {
+            return columns;
+        }
+        let changed = |point: &Point| Point {
+            velocity: velocity.at(point),
+            ..*point
+        };
+        let points: Vec<Point> = signals.points.iter().map(changed).collect();
+        let whole = match effect.is_of_motion() {
+            true => None,
+            false => effect.whole(shape, &points),
+        };
+        whole.unwrap_or_else(|| evaluated(signals, effect, shape, points.iter()))
     };
-    let points: Vec<Point> = signals.points.iter().map(changed).collect();
-    let whole = match effect.is_of_motion() {
-        true => None,
-        false => effect.whole(shape, &points),
-    };
-    let whole = whole.or_else(|| of_points(effect, shape, &points));
-    Arc::new(whole.unwrap_or_else(|| evaluated(signals, effect, shape, points.iter())))
+    match effect.is_of_motion() {
+        true => (signals.kept).working(velocity.key(effect, shape), make),
+        false => Arc::new(make()),
+    }
 }
 
 /// Columns of an effect that goes through `points` one by one, with the session's extra signals.

@@ -108,6 +108,37 @@ impl Design {
         design
     }
 
+    /// The same regression on a part of its rows: of each session those with these numbers, in
+    /// order. Parameters are those of all rows.
+    #[must_use]
+    pub fn on_rows(&self, numbers: &[Vec<usize>]) -> Self {
+        let sessions = self.sessions.iter().zip(numbers);
+        let sessions: Vec<SessionDesign> = sessions.map(|(own, rows)| own.on_rows(rows)).collect();
+        let count = |sessions: &[SessionDesign]| -> usize {
+            sessions.iter().map(|own| own.measured.len()).sum()
+        };
+        // What the data say weighs less against what draws a session's parameters.
+        let share = count(&sessions) as f64 / count(&self.sessions).max(1) as f64;
+        Self {
+            sessions,
+            hold: &self.hold * share,
+            ..self.clone_without_rows()
+        }
+    }
+
+    /// Everything but the rows.
+    fn clone_without_rows(&self) -> Self {
+        Self {
+            sessions: Vec::new(),
+            base: self.base,
+            folds: self.folds.clone(),
+            left_out: self.left_out.clone(),
+            shared: self.shared.clone(),
+            covariance: self.covariance.clone(),
+            hold: self.hold.clone(),
+        }
+    }
+
     /// Number of blocks of time that each of so many sessions is cut into.
     #[must_use]
     pub const fn blocks_per_session(sessions: usize) -> usize {
@@ -267,11 +298,7 @@ impl SessionDesign {
             base.extend(own.iter().cloned());
         }
         let blocks = blocks(rows.len(), count);
-        let views: Vec<&[f64]> = base.iter().map(Vec::as_slice).collect();
-        let grams = blocks
-            .iter()
-            .map(|(from, to)| Gram::from_columns(&views, &measured, *from, *to))
-            .collect();
+        let grams = grams(&base, &measured, &blocks);
         let judged = rows.iter();
         let judged = judged.map(|row| signals.unjudged_rows.binary_search(row).is_err());
         Self {
@@ -280,6 +307,26 @@ impl SessionDesign {
             judged: judged.collect(),
             blocks,
             grams,
+        }
+    }
+
+    /// The rows with these numbers, in order, in the same blocks of time.
+    fn on_rows(&self, rows: &[usize]) -> Self {
+        let of = |column: &Vec<f64>| -> Vec<f64> { rows.iter().map(|row| column[*row]).collect() };
+        let base: Vec<Vec<f64>> = self.base.iter().map(of).collect();
+        let measured = of(&self.measured);
+        let place = |row: usize| rows.partition_point(|own| *own < row);
+        let blocks = self
+            .blocks
+            .iter()
+            .map(|(from, to)| (place(*from), place(*to)));
+        let blocks: Vec<(usize, usize)> = blocks.collect();
+        Self {
+            grams: grams(&base, &measured, &blocks),
+            judged: rows.iter().map(|row| self.judged[*row]).collect(),
+            measured,
+            base,
+            blocks,
         }
     }
 
@@ -312,6 +359,14 @@ impl SessionDesign {
             .chain([self.measured.as_slice()])
             .collect()
     }
+}
+
+/// Gram of each block: columns and y.
+fn grams(columns: &[Vec<f64>], measured: &[f64], blocks: &[(usize, usize)]) -> Vec<Gram> {
+    let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    let each = blocks.iter();
+    each.map(|(from, to)| Gram::from_columns(&views, measured, *from, *to))
+        .collect()
 }
 
 /// Whether sessions are left out as a whole: of three or more each, of two where

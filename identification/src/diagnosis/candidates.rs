@@ -3,8 +3,7 @@
 use super::equivalents::SUSPECT_MAX_P_VALUE;
 use crate::design::{Design, PreparedModel};
 use crate::effects::{self, BoundTerm, EffectHandle, Row};
-use crate::shape_search;
-use crate::shape_search::periodicity;
+use crate::shape_search::{self, Search, periodicity};
 use crate::validation::session_variation::{MIN_SESSIONS, trend};
 use crate::validation::{Score, agreement, between, within};
 
@@ -13,6 +12,12 @@ const MAX_DISAGREEMENT_P_VALUE: f64 = 0.005;
 
 /// Fewest sessions of which one test of the variation between them is enough.
 const MIN_SESSIONS_ALONE: usize = 4;
+
+/// Smallest share of the mean square that a named effect explains.
+pub(super) const MIN_SHARE: f64 = 0.01;
+/// Share of the mean square that an effect has to explain on a part of very many rows to be
+/// searched on all: half of what it has to, to be named.
+const NOTABLE_SHARE: f64 = 0.5 * MIN_SHARE;
 
 /// One effect at its best shape, scored on rows left out.
 #[derive(Clone)]
@@ -171,39 +176,21 @@ pub fn try_all(prepared: &PreparedModel, design: &Design, progress: &mut dyn FnM
         variants_between: 0,
     };
     let count = effects.len().max(1) as f64;
+    let search = Search::new(prepared, design);
     for (done, effect) in effects.iter().enumerate() {
-        let mut shapes = shape_search::grid(prepared, effect);
-        let mut searched = 0;
-        if effect.row().is_periodic {
-            shapes.extend(
-                periodicity::peaks(prepared, design, effect, 3)
-                    .into_iter()
-                    .map(|k| vec![k]),
-            );
-            searched = periodicity::tried(prepared, effect);
-        }
+        let shapes = shape_search::shapes(prepared, design, effect);
+        let searched = match effect.row().is_periodic {
+            true => periodicity::tried(prepared, effect),
+            false => 0,
+        };
         let variants = shapes.len() + searched;
         match effect.row().is_between_sessions() {
             true => trial.variants_between += variants,
             false => trial.variants += variants,
         }
-        let best = shapes
-            .into_iter()
-            .map(|shape| {
-                (
-                    shape_search::error_of(prepared, design, effect, &shape),
-                    shape,
-                )
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        progress((done as f64 + 0.6) / count);
-        let Some((error, shape)) = best else { continue };
-        // A shape is refined only where the grid has a plausible point.
-        let shape = if error.is_finite() {
-            shape_search::polish(prepared, design, effect, &shape)
-        } else {
-            shape
-        };
+        let shape = search.best_if_any(effect, shapes, NOTABLE_SHARE);
+        progress((done as f64 + 0.8) / count);
+        let Some(shape) = shape else { continue };
         let score = score(prepared, design, effect, &shape);
         let plausible = effect.plausible(&shape, &score.coefficients);
         trial.candidates.push(Candidate {

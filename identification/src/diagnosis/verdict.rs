@@ -1,14 +1,12 @@
 //! Which candidates pass, and whether the best of them is the answer.
 
-use super::candidates::{Candidate, Trial, try_all};
+use super::candidates::{Candidate, MIN_SHARE, Trial, try_all};
 use super::dependence::{self, Dependence};
 use super::equivalents;
 use super::results::{Verdict, WhyNot};
 use crate::design::{Design, PreparedModel};
 use crate::preparation::extend;
 
-/// Smallest share of the mean square that a named effect explains.
-const MIN_SHARE: f64 = 0.01;
 /// Smallest certainty of its prediction of rows left out, in standard errors.
 const MIN_CERTAINTY: f64 = 3.0;
 /// Probability of a false alarm over all variants tried that show within a session …

@@ -26,13 +26,24 @@ row!(
 /// `signal` advanced by `samples`, with cubic interpolation; beyond the end it
 /// keeps its last value.
 fn advanced(signal: &[f64], samples: f64) -> Vec<f64> {
+    if signal.iter().all(|value| *value == 0.0) {
+        return signal.to_vec();
+    }
     let last = signal.len().saturating_sub(1) as f64;
     let value = |at: f64| signal[at.clamp(0.0, last) as usize];
+    let around = |from: f64| {
+        let first = (from as usize).checked_sub(1);
+        match first.and_then(|first| signal.get(first..first + 4)) {
+            Some(&[a, b, c, d]) => [a, b, c, d],
+            _ => [-1.0, 0.0, 1.0, 2.0].map(|by| value(from + by)),
+        }
+    };
     (0..signal.len())
         .map(|at| {
             let place = (at as f64 + samples).clamp(0.0, last);
-            let from = place.floor();
-            let [a, b, c, d] = [-1.0, 0.0, 1.0, 2.0].map(|by| value(from + by));
+            // Not negative, so that this is the floor.
+            let from = place as usize as f64;
+            let [a, b, c, d] = around(from);
             let x = place - from;
             let (slope, curve) = (0.5 * (c - a), a - 2.5 * b + 2.0 * c - 0.5 * d);
             b + x * (slope + x * (curve + x * (0.5 * (d - a) + 1.5 * (b - c))))
@@ -54,13 +65,12 @@ impl Effect for ChannelDelay {
             return None;
         };
         let period = points.first()?.period;
-        let late = |value: &dyn Fn(&Point) -> f64, by: f64| -> Vec<f64> {
-            let values: Vec<f64> = points.iter().map(value).collect();
+        let late = |values: Vec<f64>, by: f64| -> Vec<f64> {
             let last = values.len() - 1;
             (0..values.len())
                 .map(|at| {
                     let place = (at as f64 - by / period).clamp(0.0, last as f64);
-                    let before = place.floor() as usize;
+                    let before = place as usize;
                     let share = place - before as f64;
                     let after = values[(before + 1).min(last)];
                     // Per second of delay: the coefficient is the delay itself.
@@ -68,18 +78,19 @@ impl Effect for ChannelDelay {
                 })
                 .collect()
         };
+        let each = |value: fn(&Point) -> f64| -> Vec<f64> { points.iter().map(value).collect() };
         Some(vec![match channel.round() as i64 {
-            0 => late(&|p| p.motor_predicted, *delay),
+            0 => late(each(|p| p.motor_predicted), *delay),
             // Friction that grows with the load is late with it.
-            1 => late(&|p| p.load, -delay)
+            1 => late(each(|p| p.load), -delay)
                 .into_iter()
-                .zip(late(&|p| p.load.abs(), -delay))
+                .zip(late(each(|p| p.load.abs()), -delay))
                 .zip(points)
                 .map(|((load, size), p)| load + p.load_slope * size * p.sign())
                 .collect(),
-            2 => late(&|p| p.motor_predicted - p.load, -delay),
+            2 => late(each(|p| p.motor_predicted - p.load), -delay),
             // The load is modelled from the position, and late with it.
-            _ => late(&|p| p.motor_predicted, -delay),
+            _ => late(each(|p| p.motor_predicted), -delay),
         }])
     }
 

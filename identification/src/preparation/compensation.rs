@@ -6,6 +6,7 @@
 //! linearised again around the coefficients reached (Gauss-Newton method).
 
 use std::iter::repeat;
+use std::sync::Arc;
 
 use nalgebra::DVector;
 
@@ -29,8 +30,9 @@ const NUDGE: f64 = 1e-3;
 
 impl PreparedModel {
     /// Compensates the channels for the model's effects that act on them, if that
-    /// leaves a smaller error than their columns do.
-    pub(super) fn compensate(&mut self) {
+    /// leaves a smaller error than their columns do. Load and prediction are made anew where
+    /// they are read.
+    pub(super) fn compensate(&mut self, is_read: bool) {
         if !self.terms.iter().any(|t| t.effect.row().acts_on_channels) {
             return;
         }
@@ -45,7 +47,7 @@ impl PreparedModel {
                 return;
             };
             let mut tried = self.clone();
-            tried.compensate_with(&next);
+            tried.compensate_with(&next, is_read);
             let then = Design::new(&tried);
             let (after, kept) = remainder(&then);
             if after < error && kept as f64 > MIN_KEPT_SHARE * rows as f64 {
@@ -85,7 +87,7 @@ impl PreparedModel {
     }
 
     /// Compensates the channels with these `coefficients`, one vector for each term.
-    fn compensate_with(&mut self, coefficients: &[Vec<f64>]) {
+    fn compensate_with(&mut self, coefficients: &[Vec<f64>], is_read: bool) {
         for (term, own) in self.terms.iter_mut().zip(coefficients) {
             term.compensated.clone_from(own);
         }
@@ -97,8 +99,10 @@ impl PreparedModel {
         if self.reversals {
             self.keep_reversals();
         }
-        self.model_load();
-        self.predict();
+        if is_read {
+            self.model_load();
+        }
+        self.predict_if_read(is_read);
         self.differentiate();
     }
 
@@ -125,7 +129,8 @@ impl PreparedModel {
             let mut nudged = signals.clone();
             nudged.replace_channels(channels, lost, &self.filters);
             if !facts.joint_torque {
-                for (point, known) in nudged.points.iter_mut().zip(&signals.points) {
+                let points = Arc::make_mut(&mut nudged.points).iter_mut();
+                for (point, known) in points.zip(signals.points.iter()) {
                     point.load = known.load;
                 }
             }

@@ -23,44 +23,82 @@ fn has_formula_of_load(dataset: &Dataset, spec: &ModelSpec) -> bool {
     })
 }
 
-/// Gathers them: ranges of the signals over the rows of `sessions`, and what
-/// `dataset` and `spec` state.
+/// Ranges of the signals, which are the same whatever the model.
+pub(super) struct Ranges {
+    /// Whether every session has a temperature.
+    pub(super) temperature: bool,
+    /// Mean temperature \[degC\].
+    pub(super) reference_temperature: f64,
+    temperature_range: f64,
+    days: f64,
+    position: [f64; 2],
+    speed: [f64; 2],
+    motor_torque: f64,
+    common_torque: f64,
+}
+
+impl Ranges {
+    /// Over the rows of `sessions`, those of `dataset` made ready.
+    pub(super) fn new(dataset: &Dataset, sessions: &[Signals]) -> Self {
+        let mut positions = Vec::new();
+        let mut speeds = Vec::new();
+        let mut torques = Vec::new();
+        for signals in sessions {
+            for &at in &signals.rows {
+                let point = &signals.points[at];
+                positions.push(point.position);
+                speeds.push(point.velocity.abs());
+                torques.push(point.motor_torque.abs());
+            }
+        }
+        let temperatures: Vec<f64> = dataset
+            .sessions
+            .iter()
+            .filter_map(|s| s.temperature.as_ref())
+            .flat_map(|t| t.iter().step_by(10).copied())
+            .collect();
+        let starts: Vec<f64> = dataset
+            .sessions
+            .iter()
+            .map(|s| s.start / 86_400.0)
+            .collect();
+        Self {
+            temperature: dataset.sessions.iter().all(|s| s.temperature.is_some()),
+            reference_temperature: temperatures.iter().sum::<f64>()
+                / temperatures.len().max(1) as f64,
+            temperature_range: span(&temperatures),
+            days: span(&starts),
+            position: [
+                quantile_or_zero(&mut positions, 0.02),
+                quantile_or_zero(&mut positions, 0.98),
+            ],
+            speed: [
+                quantile_or_zero(&mut speeds, 0.02),
+                quantile_or_zero(&mut speeds, 0.98),
+            ],
+            motor_torque: quantile_or_zero(&mut torques, 0.999),
+            common_torque: quantile_or_zero(&mut torques, 0.75),
+        }
+    }
+}
+
+/// Largest less least value; 0 of none.
+fn span(values: &[f64]) -> f64 {
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+            (l.min(*x), h.max(*x))
+        });
+    if low <= high { high - low } else { 0.0 }
+}
+
+/// Gathers them: `ranges` of the signals, and what `dataset` and `spec` state.
 pub(super) fn gather(
     dataset: &Dataset,
     spec: &ModelSpec,
-    sessions: &[Signals],
+    ranges: &Ranges,
     filters: &Filters,
 ) -> Facts {
-    let mut positions = Vec::new();
-    let mut speeds = Vec::new();
-    let mut torques = Vec::new();
-    for signals in sessions {
-        for &at in &signals.rows {
-            let point = &signals.points[at];
-            positions.push(point.position);
-            speeds.push(point.velocity.abs());
-            torques.push(point.motor_torque.abs());
-        }
-    }
-    let temperatures: Vec<f64> = dataset
-        .sessions
-        .iter()
-        .filter_map(|s| s.temperature.as_ref())
-        .flat_map(|t| t.iter().step_by(10).copied())
-        .collect();
-    let span = |values: &[f64]| {
-        let (low, high) = values
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-                (l.min(*x), h.max(*x))
-            });
-        if low <= high { high - low } else { 0.0 }
-    };
-    let starts: Vec<f64> = dataset
-        .sessions
-        .iter()
-        .map(|s| s.start / 86_400.0)
-        .collect();
     Facts {
         joint: dataset.joint,
         inertia: match spec.inertia {
@@ -72,30 +110,22 @@ pub(super) fn gather(
         torque_is_modelled: (dataset.sessions.iter())
             .any(|s| s.torque_is_modelled || s.torque_is_of_links),
         torque_is_of_links: dataset.sessions.iter().any(|s| s.torque_is_of_links),
-        temperature: dataset.sessions.iter().all(|s| s.temperature.is_some()),
-        reference_temperature: temperatures.iter().sum::<f64>() / temperatures.len().max(1) as f64,
-        temperature_range: span(&temperatures),
+        temperature: ranges.temperature,
+        reference_temperature: ranges.reference_temperature,
+        temperature_range: ranges.temperature_range,
         sessions: dataset.sessions.len(),
-        days: span(&starts),
-        position: [
-            quantile_or_zero(&mut positions, 0.02),
-            quantile_or_zero(&mut positions, 0.98),
-        ],
-        speed: [
-            quantile_or_zero(&mut speeds, 0.02),
-            quantile_or_zero(&mut speeds, 0.98),
-        ],
-        motor_torque: quantile_or_zero(&mut torques, 0.999),
-        common_torque: quantile_or_zero(&mut torques, 0.75),
+        days: ranges.days,
+        position: ranges.position,
+        speed: ranges.speed,
+        motor_torque: ranges.motor_torque,
+        common_torque: ranges.common_torque,
         resolved: RESOLVED * filters.position_noise,
         loaded: dataset.joint.is_contact()
             || dataset.sessions.iter().all(|s| s.joint_torque.is_some())
             || spec.inertia != Inertia::Given(0.0)
             || has_row(spec, |row| row.is_load)
             || has_formula_of_load(dataset, spec),
-        period: sessions
-            .first()
-            .map_or(filters.thinning as f64, |s| s.period),
+        period: dataset.sessions.first().map_or(1.0, |s| s.period) * filters.thinning as f64,
         load_coulomb: has_row(spec, Row::is_load_coulomb),
     }
 }

@@ -7,6 +7,8 @@ mod facts;
 mod prediction;
 mod shapes;
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 
 use crate::data::check::check;
@@ -16,6 +18,8 @@ use crate::design::PreparedModel;
 use crate::effects::BoundTerm;
 use crate::signals::{Filters, Signals};
 
+use facts::Ranges;
+
 /// Recordings filtered, to which any model can be bound: filters go by the noise
 /// in the recordings alone.
 pub(crate) struct Filtered<'a> {
@@ -23,6 +27,7 @@ pub(crate) struct Filtered<'a> {
     filters: Filters,
     sessions: Vec<Signals>,
     held_out: Vec<Signals>,
+    ranges: Ranges,
 }
 
 /// A shape that has been found already: none is searched.
@@ -56,11 +61,22 @@ impl<'a> Filtered<'a> {
             let sessions = sessions.iter();
             sessions.map(|s| Signals::new(s, &filters)).collect()
         };
+        let mut sessions = filtered(&dataset.sessions);
+        let mut held_out = filtered(&dataset.held_out);
+        let ranges = Ranges::new(dataset, &sessions);
+        if ranges.temperature {
+            for signals in sessions.iter_mut().chain(&mut held_out) {
+                for point in Arc::make_mut(&mut signals.points) {
+                    point.temperature -= ranges.reference_temperature;
+                }
+            }
+        }
         Self {
             dataset,
             filters,
-            sessions: filtered(&dataset.sessions),
-            held_out: filtered(&dataset.held_out),
+            sessions,
+            held_out,
+            ranges,
         }
     }
 
@@ -70,7 +86,8 @@ impl<'a> Filtered<'a> {
     }
 
     /// The same, to be fitted and no more: where no term needs the model's own prediction,
-    /// none is made, and no effect that needs one can be tried.
+    /// none is made, nor is the load modelled where no term depends on it; no effect that needs
+    /// either can be tried.
     pub(crate) fn bind_to_fit(
         &self,
         spec: &ModelSpec,
@@ -108,32 +125,29 @@ impl<'a> Filtered<'a> {
             prepared.model_load();
         }
         prepared.find_shapes(known.map(|own| own.effect));
-        prepared.model_load();
+        if predict || !of_motion {
+            prepared.model_load();
+        }
         let mut terms = prepared.terms.iter();
         if predict || terms.any(|term| term.effect.row().needs_prediction) {
             prepared.predict();
         }
-        prepared.compensate();
+        // What is compensated reads neither load nor prediction.
+        let is_compensated = |term: &BoundTerm| term.effect.row().acts_on_channels;
+        let mut others = prepared.terms.iter().filter(|term| !is_compensated(term));
+        let is_read = predict || others.any(|term| !term.effect.is_of_motion());
+        prepared.compensate(is_read);
         prepared.refine_shapes_on_determined_rows();
         Ok(prepared)
     }
 
     /// Signals and facts, without any term yet.
     fn without_terms(&self, spec: &ModelSpec) -> PreparedModel {
-        let (mut sessions, mut held_out) = (self.sessions.clone(), self.held_out.clone());
-        let facts = facts::gather(self.dataset, spec, &sessions, &self.filters);
-        for signals in sessions.iter_mut().chain(&mut held_out) {
-            for point in &mut signals.points {
-                if facts.temperature {
-                    point.temperature -= facts.reference_temperature;
-                }
-            }
-        }
         PreparedModel {
-            facts,
+            facts: facts::gather(self.dataset, spec, &self.ranges, &self.filters),
             filters: self.filters,
-            sessions,
-            held_out,
+            sessions: self.sessions.clone(),
+            held_out: self.held_out.clone(),
             terms: Vec::new(),
             reversals: false,
             predicted: DVector::zeros(0),
@@ -150,7 +164,7 @@ pub fn extend(prepared: &PreparedModel, term: BoundTerm) -> PreparedModel {
     extended.terms.push(term);
     extended.predict();
     if acts_on_channels {
-        extended.compensate();
+        extended.compensate(true);
     }
     extended.leave_out_undetermined_rows();
     extended

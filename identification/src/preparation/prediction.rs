@@ -1,10 +1,13 @@
 //! The model's own prediction of load, friction and motor torque, for effects that
 //! are functions of it.
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 
-use crate::design::{Design, PreparedModel, columns};
-use crate::effects::{BoundTerm, EffectHandle, Point, Row, with_columns};
+use crate::design::columns::{self, OtherVelocity};
+use crate::design::{Design, PreparedModel};
+use crate::effects::{BoundTerm, EffectHandle, Row, with_columns};
 use crate::signals::{Columns, Signals};
 
 /// Fits of a model whose effects act on its own prediction, at most, …
@@ -23,24 +26,30 @@ impl PreparedModel {
         }
         // Where nothing is fitted by the load, once is enough.
         let rounds = if self.is_of_motion() { 1 } else { 2 };
+        let mut before: Option<DVector<f64>> = None;
         for _ in 0..rounds {
             let coefficients = Design::new(self).shared;
+            if before.as_ref() == Some(&coefficients) {
+                break;
+            }
             let (inertia, terms) = (self.facts.inertia, &self.terms);
             for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
-                let load = working(signals, terms, &coefficients, |effect| {
+                let mut loads = working(signals, terms, &coefficients, |effect| {
                     effect.row().is_modelled_load()
                 });
-                for (point, load) in signals.points.iter_mut().zip(load) {
-                    point.load = load + inertia.unwrap_or(0.0) * point.acceleration;
+                for (load, point) in loads.iter_mut().zip(signals.points.iter()) {
+                    *load += inertia.unwrap_or(0.0) * point.acceleration;
                 }
-                let loads: Vec<f64> = signals.points.iter().map(|p| p.load).collect();
                 let rates = slope(&loads, signals.period);
                 let jerks = slope(&rates, signals.period);
-                for (point, (rate, jerk)) in signals.points.iter_mut().zip(rates.iter().zip(jerks))
+                let points = Arc::make_mut(&mut signals.points).iter_mut();
+                for (point, (load, (rate, jerk))) in
+                    points.zip(loads.iter().zip(rates.iter().zip(jerks)))
                 {
-                    (point.load_rate, point.load_jerk) = (*rate, jerk);
+                    (point.load, point.load_rate, point.load_jerk) = (*load, *rate, jerk);
                 }
             }
+            before = Some(coefficients);
         }
     }
 
@@ -53,14 +62,26 @@ impl PreparedModel {
     /// together with the others, but are no part of the prediction; all are fitted
     /// again until it does not change.
     pub(super) fn predict(&mut self) {
+        self.predict_if_read(true);
+    }
+
+    /// The same; of a prediction that is not read only the coefficients.
+    pub(super) fn predict_if_read(&mut self, is_read: bool) {
         let mut own = self.terms.clone();
         own.retain(|t| !t.effect.row().needs_prediction);
         let all = std::mem::replace(&mut self.terms, own.clone());
         let mut predicted = Design::new(self).shared;
-        self.write_prediction(&predicted, &own);
         self.terms = all;
+        let mut acting = self.terms.iter();
+        let mut acting = acting.by_ref().filter(|t| t.effect.row().needs_prediction);
+        // What is taken out of the channels is fitted by columns that do not read it.
+        let acts = acting.any(|t| t.compensated.is_empty());
         if own.len() == self.terms.len() {
+            self.write_if(is_read, &predicted, &own);
             return;
+        }
+        if acts {
+            self.write_prediction(&predicted, &own);
         }
         // Where a prediction depends strongly on itself, as where a sensor is
         // clipped, fixed-point iteration converges slowly: Aitken's relaxation
@@ -84,11 +105,18 @@ impl PreparedModel {
             for ((own, step), k) in predicted.iter_mut().zip(&step).zip(&kept) {
                 *own += stride * step * error(k);
             }
-            self.write_prediction(&predicted, &own);
+            self.write_if(is_read || acts, &predicted, &own);
             if step.amax() < MIN_STEP_IN_STD_ERRORS {
                 return;
             }
             before = Some(step);
+        }
+    }
+
+    fn write_if(&mut self, is_read: bool, coefficients: &DVector<f64>, terms: &[BoundTerm]) {
+        match is_read {
+            true => self.write_prediction(coefficients, terms),
+            false => self.predicted.clone_from(coefficients),
         }
     }
 
@@ -117,15 +145,14 @@ impl PreparedModel {
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             let friction = working(signals, terms, coefficients, is_friction);
             let inertial = working(signals, terms, coefficients, |effect| !is_friction(effect));
-            let friction_at = |velocity: fn(&Point, f64) -> f64| {
+            let friction_at = |velocity: OtherVelocity| {
                 sum_of(signals, terms, coefficients, is_friction, |term| {
-                    let velocity = |point: &Point| velocity(point, nudge);
                     columns::at_velocity(signals, &term.effect, &term.shape, velocity)
                 })
             };
-            let faster = friction_at(|point, nudge| point.velocity + nudge * point.sign());
-            let slowest = friction_at(|point, nudge| nudge * point.sign());
-            for (at, point) in signals.points.iter_mut().enumerate() {
+            let faster = friction_at(OtherVelocity::Faster(nudge));
+            let slowest = friction_at(OtherVelocity::AboveRest(nudge));
+            for (at, point) in Arc::make_mut(&mut signals.points).iter_mut().enumerate() {
                 point.friction_predicted = friction[at];
                 point.friction_level = slowest[at].abs();
                 point.load_slope = load_slope;

@@ -2,6 +2,7 @@
 
 mod filters;
 mod kept;
+mod part;
 mod point;
 mod sliding;
 
@@ -33,8 +34,9 @@ pub struct Signals {
     /// Columns of terms that a model needs again and again.
     pub(crate) kept: Arc<Kept>,
     /// States at the working rate, smoothed only as far as their signs and
-    /// derivatives need.
-    pub points: Vec<Point>,
+    /// derivatives need. Shared by models of the same session until one of them writes its own
+    /// load or prediction.
+    pub points: Arc<Vec<Point>>,
     /// Extra signals at the working rate by name, in the units of the recording.
     pub extra: BTreeMap<String, Vec<f64>>,
     /// Channels at the working rate before smoothing, compensated for the model's
@@ -104,7 +106,7 @@ impl Signals {
             period,
             column: filters.column_kernel(period),
             kept: Arc::default(),
-            points,
+            points: Arc::new(points),
             extra: session
                 .extra
                 .iter()
@@ -140,15 +142,24 @@ impl Signals {
         let raw = &self.raw;
         let [smooth, slope, curvature] = filters.state_kernels(filters.state, self.period);
         let [_, load_rate, load_jerk] = filters.state_kernels(filters.load, self.period);
-        for (at, point) in self.points.iter_mut().enumerate() {
-            point.position = smooth.at(&raw.position, at);
-            point.velocity = slope.at(&raw.position, at);
-            point.acceleration = curvature.at(&raw.position, at);
-            point.motor_torque = smooth.at(&raw.motor_torque, at);
-            point.load = smooth.at(load, at);
-            point.load_rate = load_rate.at(load, at);
-            point.load_jerk = load_jerk.at(load, at);
-        }
+        let is_loaded = load.iter().any(|load| *load != 0.0);
+        let derived = |(at, point): (usize, &Point)| {
+            let loads = match is_loaded {
+                true => [&smooth, &load_rate, &load_jerk].map(|kernel| kernel.at(load, at)),
+                false => [0.0; 3],
+            };
+            Point {
+                position: smooth.at(&raw.position, at),
+                velocity: slope.at(&raw.position, at),
+                acceleration: curvature.at(&raw.position, at),
+                motor_torque: smooth.at(&raw.motor_torque, at),
+                load: loads[0],
+                load_rate: loads[1],
+                load_jerk: loads[2],
+                ..*point
+            }
+        };
+        self.points = Arc::new(self.points.iter().enumerate().map(derived).collect());
         let points = &self.points;
         let reach = Kernel::reach(filters.column);
         let last = points.len().saturating_sub(reach + lost);

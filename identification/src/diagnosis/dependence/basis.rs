@@ -1,11 +1,12 @@
 //! Signals at the rows of the regression, and piecewise linear columns over them.
 
-use nalgebra::DMatrix;
+use std::cell::OnceCell;
 
 use crate::design::{BlockGrams, Design, PreparedModel};
 use crate::effects::Direction;
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::quantile_or_zero;
+use crate::signals::Signals;
 
 /// Knots of a map over one signal, …
 const KNOTS_ALONE: usize = 7;
@@ -21,21 +22,86 @@ pub(super) struct Channel {
     pub(super) values: Vec<Vec<f64>>,
     /// Whether it hardly varies within a session (temperature, date).
     pub(super) slow: bool,
+    /// Hat functions over it, by the number of knots asked for; made once.
+    hats: [OnceCell<Hats>; 3],
+}
+
+/// Hat functions over a signal.
+struct Hats {
+    knots: usize,
+    /// At the rows of every session.
+    rows: Vec<Vec<Hat>>,
+}
+
+/// The hat functions that are not zero at a row, at most two neighbours.
+#[derive(Clone, Copy)]
+struct Hat {
+    first: usize,
+    /// Of the first and of the next.
+    values: [f64; 2],
+}
+
+impl Hat {
+    fn new(knots: &[f64], x: f64) -> Self {
+        let (first, last) = (knots.first().copied(), knots.last().copied());
+        let x = x.clamp(first.unwrap_or(x), last.unwrap_or(x));
+        match knots.iter().position(|k| *k >= x).unwrap_or(0) {
+            0 => Self {
+                first: 0,
+                values: [1.0, 0.0],
+            },
+            upper => {
+                let share = (x - knots[upper - 1]) / (knots[upper] - knots[upper - 1]);
+                Self {
+                    first: upper - 1,
+                    values: [1.0 - share, share],
+                }
+            }
+        }
+    }
+
+    /// Number and value of both, of which one may be zero.
+    const fn both(self) -> [(usize, f64); 2] {
+        let [first, next] = self.values;
+        [(self.first, first), (self.first + 1, next)]
+    }
+}
+
+impl Channel {
+    fn new(name: &str, slow: bool, values: Vec<Vec<f64>>) -> Self {
+        Self {
+            name: name.to_owned(),
+            values,
+            slow,
+            hats: Default::default(),
+        }
+    }
+
+    fn hats(&self, count: usize) -> &Hats {
+        let at = match count {
+            KNOTS_ALONE => 0,
+            KNOTS_PAIR => 1,
+            _ => 2,
+        };
+        self.hats[at].get_or_init(|| {
+            let knots = knots(self, count);
+            let hats = |values: &Vec<f64>| values.iter().map(|x| Hat::new(&knots, *x)).collect();
+            Hats {
+                rows: self.values.iter().map(hats).collect(),
+                knots: knots.len(),
+            }
+        })
+    }
 }
 
 /// Every signal on which the residual may depend.
-pub(super) fn channels(prepared: &PreparedModel) -> Vec<Channel> {
+fn channels(prepared: &PreparedModel) -> Vec<Channel> {
     let facts = &prepared.facts;
-    let collect =
-        |name: &str, slow: bool, value: &dyn Fn(&crate::signals::Signals, usize) -> f64| Channel {
-            name: facts.joint.signal(name).to_owned(),
-            slow,
-            values: prepared
-                .sessions
-                .iter()
-                .map(|s| s.rows.iter().map(|at| value(s, *at)).collect())
-                .collect(),
-        };
+    let collect = |name: &str, slow: bool, value: &dyn Fn(&Signals, usize) -> f64| {
+        let sessions = prepared.sessions.iter();
+        let values = sessions.map(|s| s.rows.iter().map(|at| value(s, *at)).collect());
+        Channel::new(facts.joint.signal(name), slow, values.collect())
+    };
     let mut all = vec![
         collect("position", false, &|s, at| s.points[at].position),
         collect("velocity", false, &|s, at| s.points[at].velocity.abs()),
@@ -94,112 +160,156 @@ fn knots(channel: &Channel, count: usize) -> Vec<f64> {
     knots
 }
 
-/// The hat functions that are not zero at `x`, at most two: number and value.
-fn hats(knots: &[f64], x: f64) -> impl Iterator<Item = (usize, f64)> + Clone + use<> {
-    let (first, last) = (knots.first().copied(), knots.last().copied());
-    let x = x.clamp(first.unwrap_or(x), last.unwrap_or(x));
-    let upper = knots.iter().position(|k| *k >= x).unwrap_or(0);
-    let share = match upper {
-        0 => 1.0,
-        _ => (x - knots[upper - 1]) / (knots[upper] - knots[upper - 1]),
-    };
-    let below = upper.saturating_sub(1);
-    let both = [(below, 1.0 - share), (upper, share)];
-    both.into_iter().filter(|(_, value)| *value != 0.0)
-}
-
 /// Products of a map's functions with each other and with the model's columns and y, over the
 /// rows of a block in one direction of motion.
 #[derive(Clone)]
 struct Products {
+    functions: usize,
+    columns: usize,
     /// Function by function, the second no earlier than the first.
-    own: DMatrix<f64>,
-    /// Column by function, y the last.
-    base: DMatrix<f64>,
+    own: Vec<f64>,
+    /// Function by column, y the last.
+    base: Vec<f64>,
 }
 
 impl Products {
     fn empty(functions: usize, columns: usize) -> Self {
         Self {
-            own: DMatrix::zeros(functions, functions),
-            base: DMatrix::zeros(columns, functions),
+            functions,
+            columns,
+            own: vec![0.0; functions * functions],
+            base: vec![0.0; functions * columns],
         }
     }
 
-    /// Adds a row, at which these `functions` are not zero and the others are.
-    fn add(&mut self, functions: &[(usize, f64)], base: &[&[f64]], row: usize) {
+    /// Adds a row, at which these `functions` are not zero and the others are; `base` are the
+    /// model's columns and y there.
+    fn add(&mut self, functions: &[(usize, f64)], base: &[f64]) {
         for (number, (at, value)) in functions.iter().enumerate() {
+            let own = &mut self.own[at * self.functions..][..self.functions];
             for (other, factor) in &functions[number..] {
-                self.own[(*at, *other)] += value * factor;
+                own[*other] += value * factor;
             }
-            let mut products = self.base.column_mut(*at);
+            let products = &mut self.base[at * self.columns..][..self.columns];
             for (product, column) in products.iter_mut().zip(base) {
-                *product += value * column[row];
+                *product += value * column;
             }
         }
+    }
+
+    fn own(&self, function: usize, other: usize) -> f64 {
+        self.own[function.min(other) * self.functions + function.max(other)]
+    }
+
+    fn base(&self, column: usize, function: usize) -> f64 {
+        self.base[function * self.columns + column]
     }
 }
 
-/// The design's Gram matrices with the columns of a map: hat functions as they are, times
-/// sign(q̇), or both. Most are zero at a row: at most two of each signal are not.
-pub(super) fn grams(
-    prepared: &PreparedModel,
-    design: &Design,
-    chosen: &[&Channel],
-    direction: Direction,
-    knots_of_pair: usize,
-) -> BlockGrams {
-    let fast: Vec<&&Channel> = chosen.iter().filter(|c| !c.slow).collect();
-    let count = if fast.len() > 1 {
-        knots_of_pair
-    } else {
-        KNOTS_ALONE
-    };
-    let knots: Vec<Vec<f64>> = fast.iter().take(2).map(|c| knots(c, count)).collect();
-    let functions = knots.iter().map(Vec::len).product::<usize>().max(1);
-    let slow = chosen.iter().find(|c| c.slow);
-    let mean = slow.map_or(0.0, |c| {
-        let all: Vec<f64> = c.values.iter().flatten().copied().collect();
-        all.iter().sum::<f64>() / all.len().max(1) as f64
-    });
-    let at_row = |s: usize, row: usize, out: &mut Vec<(usize, f64)>| {
-        out.clear();
-        let scale = slow.map_or(1.0, |c| c.values[s][row] - mean);
-        let hats = |number: usize| hats(&knots[number], fast[number].values[s][row]);
-        match knots.as_slice() {
-            [] => out.push((0, scale)),
-            [_] => out.extend(hats(0).map(|(at, value)| (at, value * scale))),
-            [_, second, ..] => {
-                let of_second = hats(1);
-                for (i, a) in hats(0) {
-                    let both = of_second.clone();
-                    out.extend(both.map(|(j, b)| (i * second.len() + j, a * b * scale)));
+/// Rows of a session as maps are fitted to them.
+struct SessionRows {
+    /// The model's columns and y, row by row.
+    base: Vec<f64>,
+    /// Direction of motion: forwards, backwards, neither.
+    direction: Vec<usize>,
+}
+
+/// A model with the signals over which its residual is mapped.
+pub(super) struct Ground<'a> {
+    pub(super) channels: Vec<Channel>,
+    design: &'a Design,
+    sessions: Vec<SessionRows>,
+}
+
+impl<'a> Ground<'a> {
+    pub(super) fn new(prepared: &PreparedModel, design: &'a Design) -> Self {
+        let sessions = design.sessions.iter().zip(&prepared.sessions);
+        let sessions = sessions.map(|(session, signals)| {
+            let columns = session.base_and_measured();
+            let rows = 0..session.measured.len();
+            let direction = |at: &usize| match signals.points[*at].sign() {
+                sign if sign > 0.0 => 0,
+                sign if sign < 0.0 => 1,
+                _ => 2,
+            };
+            SessionRows {
+                base: rows
+                    .flat_map(|row| columns.iter().map(move |column| column[row]))
+                    .collect(),
+                direction: signals.rows.iter().map(direction).collect(),
+            }
+        });
+        Self {
+            channels: channels(prepared),
+            design,
+            sessions: sessions.collect(),
+        }
+    }
+
+    /// The design's Gram matrices with the columns of a map over `chosen` channels: hat functions
+    /// as they are, times sign(q̇), or both. Most are zero at a row: at most two of each signal
+    /// are not.
+    pub(super) fn grams(
+        &self,
+        chosen: &[&Channel],
+        direction: Direction,
+        knots_of_pair: usize,
+    ) -> BlockGrams {
+        let fast: Vec<&&Channel> = chosen.iter().filter(|c| !c.slow).collect();
+        let count = if fast.len() > 1 {
+            knots_of_pair
+        } else {
+            KNOTS_ALONE
+        };
+        let hats: Vec<&Hats> = fast.iter().take(2).map(|c| c.hats(count)).collect();
+        let functions = hats.iter().map(|own| own.knots).product::<usize>().max(1);
+        let slow = chosen.iter().find(|c| c.slow);
+        let mean = slow.map_or(0.0, |c| {
+            let all: Vec<f64> = c.values.iter().flatten().copied().collect();
+            all.iter().sum::<f64>() / all.len().max(1) as f64
+        });
+        let at_row = |s: usize, row: usize, out: &mut Vec<(usize, f64)>| {
+            out.clear();
+            let scale = slow.map_or(1.0, |c| c.values[s][row] - mean);
+            match hats.as_slice() {
+                [] => out.push((0, scale)),
+                [only] => {
+                    for (i, a) in only.rows[s][row].both() {
+                        if a != 0.0 {
+                            out.push((i, a * scale));
+                        }
+                    }
+                }
+                [first, second, ..] => {
+                    let of_second = second.rows[s][row].both();
+                    for (i, a) in first.rows[s][row].both() {
+                        for (j, b) in of_second {
+                            if a != 0.0 && b != 0.0 {
+                                out.push((i * second.knots + j, a * b * scale));
+                            }
+                        }
+                    }
                 }
             }
-        }
-    };
-    let sessions = design.sessions.iter().zip(&prepared.sessions).enumerate();
-    let each = sessions.map(|(s, (session, signals))| {
-        let base = session.base_and_measured();
-        let mut of_row = Vec::with_capacity(4);
-        let blocks = session.blocks.iter().zip(&session.grams);
-        let each = blocks.map(|((from, to), gram)| {
-            // By direction of motion: forwards, backwards, neither.
-            let mut products = vec![Products::empty(functions, base.len()); 3];
-            for row in *from..*to {
-                at_row(s, row, &mut of_row);
-                let of = match signals.points[signals.rows[row]].sign() {
-                    sign if sign > 0.0 => 0,
-                    sign if sign < 0.0 => 1,
-                    _ => 2,
-                };
-                products[of].add(&of_row, &base, row);
-            }
-            put_together(gram, &products, direction)
+        };
+        let columns = self.design.base + 1;
+        let sessions = self.design.sessions.iter().zip(&self.sessions).enumerate();
+        let each = sessions.map(|(s, (session, rows))| {
+            let mut of_row = Vec::with_capacity(4);
+            let blocks = session.blocks.iter().zip(&session.grams);
+            let each = blocks.map(|((from, to), gram)| {
+                let mut products = vec![Products::empty(functions, columns); 3];
+                for row in *from..*to {
+                    at_row(s, row, &mut of_row);
+                    let base = &rows.base[row * columns..][..columns];
+                    products[rows.direction[row]].add(&of_row, base);
+                }
+                put_together(gram, &products, direction)
+            });
+            each.collect()
         });
         each.collect()
-    });
-    each.collect()
+    }
 }
 
 /// The Gram of base columns, the map's columns and y, from that without the map and the
@@ -208,7 +318,7 @@ fn put_together(base: &Gram, products: &[Products], direction: Direction) -> Gra
     let [forwards, backwards, neither] = products else {
         return base.clone();
     };
-    let functions = forwards.own.nrows();
+    let functions = forwards.functions;
     // Whether columns have the sign of motion.
     let kinds: &[bool] = match direction {
         Direction::Either => &[false, true],
@@ -235,14 +345,13 @@ fn put_together(base: &Gram, products: &[Products], direction: Direction) -> Gra
         for function in 0..functions {
             let at = p + k * functions + function;
             for i in 0..=p {
-                let product = sum([*sign, false], &|own| own.base[(i, function)]);
+                let product = sum([*sign, false], &|own| own.base(i, function));
                 gram.products[(at, place(i))] = product;
                 gram.products[(place(i), at)] = product;
             }
             for (l, other_sign) in kinds.iter().enumerate() {
                 for other in 0..functions {
-                    let (low, high) = (function.min(other), function.max(other));
-                    let product = sum([*sign, *other_sign], &|own| own.own[(low, high)]);
+                    let product = sum([*sign, *other_sign], &|own| own.own(function, other));
                     gram.products[(at, p + l * functions + other)] = product;
                 }
             }

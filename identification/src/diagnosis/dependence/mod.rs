@@ -6,7 +6,7 @@
 
 mod basis;
 
-use basis::{Channel, KNOTS_PAIR, KNOTS_PRODUCT, channels, grams};
+use basis::{Channel, Ground, KNOTS_PAIR, KNOTS_PRODUCT};
 use serde::Serialize;
 
 use crate::design::{Design, PreparedModel};
@@ -48,7 +48,8 @@ pub struct Map {
 /// All dependences that pass the tests, strongest first.
 #[must_use]
 pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
-    let channels = channels(prepared);
+    let ground = Ground::new(prepared, design);
+    let channels = &ground.channels;
     let mut choices: Vec<Vec<usize>> = (0..channels.len()).map(|i| vec![i]).collect();
     for i in 0..channels.len() {
         for j in 0..i {
@@ -64,7 +65,7 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
     let mut found: Vec<Dependence> = Vec::new();
     for choice in choices {
         let chosen: Vec<&Channel> = choice.iter().map(|i| &channels[*i]).collect();
-        let with_knots = |knots| grams(prepared, design, &chosen, Direction::Either, knots);
+        let with_knots = |knots| ground.grams(&chosen, Direction::Either, knots);
         let all = with_knots(KNOTS_PAIR);
         // The model's own parameters, one set a session, can absorb what changes
         // with temperature or date only; shared ones cannot, but the variation of
@@ -147,7 +148,8 @@ impl Origin {
 #[must_use]
 pub fn on_own_signals(prepared: &PreparedModel, design: &Design, effect: &EffectHandle) -> f64 {
     let own = effect.row().own_signals;
-    let channels = channels(prepared);
+    let ground = Ground::new(prepared, design);
+    let channels = &ground.channels;
     let is_own = |c: &Channel| own.names.contains(&c.name.as_str());
     let mut choices: Vec<Vec<&Channel>> = channels
         .iter()
@@ -163,7 +165,7 @@ pub fn on_own_signals(prepared: &PreparedModel, design: &Design, effect: &Effect
     choices
         .iter()
         .filter_map(|chosen| {
-            let grams = grams(prepared, design, chosen, own.direction, KNOTS_PAIR);
+            let grams = ground.grams(chosen, own.direction, KNOTS_PAIR);
             let slow = chosen.iter().any(|c| c.slow);
             let score = if slow {
                 between(design, &grams)
