@@ -67,8 +67,8 @@ pub struct Arguments {
     normal_force: Option<String>,
 
     /// The columns that are x and y of a contact's tip, which is laid on --contour.
-    #[arg(long, value_names = ["X[:UNIT]", "Y[:UNIT]"], num_args = 2, value_delimiter = ',', requires = "contour", conflicts_with_all = ["position", "urdf"])]
-    tip: Vec<String>,
+    #[arg(long, value_name = "X[:UNIT],Y[:UNIT]", value_parser = tip, requires = "contour", conflicts_with_all = ["position", "urdf"])]
+    tip: Option<Tip>,
 
     /// Corners in m of what the tip slides along, in order: '0.2 -0.03, 0.4 -0.03'.
     #[arg(long, value_name = "X Y, X Y …", value_parser = corners, conflicts_with_all = ["position", "urdf"])]
@@ -137,6 +137,15 @@ enum Kind {
     Contact,
 }
 
+/// The columns that are x and y.
+#[derive(Clone, Debug)]
+struct Tip([String; 2]);
+
+fn tip(text: &str) -> Result<Tip, String> {
+    let (x, y) = text.split_once(',').ok_or("say two columns, X,Y")?;
+    Ok(Tip([x, y].map(|own| own.trim().to_owned())))
+}
+
 /// Corners, in order.
 #[derive(Clone, Debug)]
 struct Contour(Vec<[f64; 2]>);
@@ -158,12 +167,12 @@ fn extra(text: &str) -> Result<(String, String), String> {
 
 impl Arguments {
     fn request(self) -> Request {
-        let mut tip = self.tip.into_iter();
-        let by_tip = tip.len() > 0 || self.contour.is_some();
+        let by_tip = self.tip.is_some() || self.contour.is_some();
+        let [x, y] = self.tip.map_or([None, None], |own| own.0.map(Some));
         let is_contact = by_tip || self.tangential_force.is_some() || self.normal_force.is_some();
         let said = [
-            (Role::TipX, tip.next()),
-            (Role::TipY, tip.next()),
+            (Role::TipX, x),
+            (Role::TipY, y),
             (Role::TangentialForce, self.tangential_force),
             (Role::NormalForce, self.normal_force),
             (Role::Position, self.position),
@@ -289,12 +298,14 @@ fn tell(made: &Made) {
         }
     }
     println!("{} Hz", significant(made.rate_hz));
+    let widths = made.signals.iter().map(|own| own.signal.chars().count());
+    let width = widths.max().unwrap_or(0).max(14);
     for signal in &made.signals {
         let range = signal.range.map_or(String::new(), |[least, greatest]| {
             format!("{} … {} ", significant(least), significant(greatest))
         });
         println!(
-            "  {:<14} {:<20} {range}{}{}",
+            "  {:<width$} {:<20} {range}{}{}",
             signal.signal,
             signal.column,
             signal.unit,

@@ -63,6 +63,9 @@ export function trials(parent, now, told) {
       const found = await work("/api/lab/trial", asked);
       if (latest()) {
         told(found);
+        // As they stand in the form.
+        const order = Object.keys(columns);
+        found.signals.sort((a, b) => order.indexOf(a.signal) - order.indexOf(b.signal));
         await show(parent, found, held, columns);
         if (latest()) parent.dataset.state = found.troubles.length ? "refused" : found.missing.length ? "asking" : "read";
       }

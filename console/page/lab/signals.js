@@ -96,7 +96,7 @@ export function extra({ list, columns, units, drawn, tried }) {
     name.oninput = () => { own.name = name.value.trim(); twice(); tried(); };
     twice();
     const column = columnMenu(columns, own.column, "choose …", { id: id("column"), required: true, className: "column", "aria-label": `column of extra signal ${number + 1}` });
-    const unit = make("select", { id: id("unit"), className: "unit", "aria-label": `unit of extra signal ${number + 1}` }, make("option", { value: "", textContent: "no unit" }),
+    const unit = make("select", { id: id("unit"), className: "unit", "aria-label": `unit of extra signal ${number + 1}` }, make("option", { value: "", textContent: "none" }),
       units.map((text) => make("option", { value: text, textContent: text, selected: text === own.unit })));
     column.onchange = () => {
       own.column = column.value;

@@ -4,7 +4,7 @@ import { make } from "../common/dom.js";
 import { urdfs } from "./files.js";
 
 export const KINDS = [
-  ["revolute", "revolute (rad, Nm)"], ["prismatic", "prismatic (m, N)"], ["contact", "no joint, a contact (m, N)"], ["arm", "a whole arm, by its URDF"],
+  ["revolute", "revolute (rad, Nm)"], ["prismatic", "prismatic (m, N)"], ["contact", "no joint, a contact (m, N)"], ["arm", "a whole arm (URDF)"],
 ];
 
 /** Signals: key, what it is, whether it must be. */
@@ -85,11 +85,13 @@ function typing(id, value, placeholder, read, set) {
 export function rows(own, look, tried) {
   const label = (id, text, unit) => make("label", { for: id }, text, unit ? make("small", { className: "quiet", textContent: ` ${unit}` }) : null);
   if (own.joint === "contact") {
-    const by = make("select", { id: "by-tip" }, [["", "a place along it"], ["tip", "the tip's x and y, laid on a contour"]].map(([value, text]) => make("option", { value, textContent: text, selected: (value === "tip") === own.byTip })));
+    const by = make("select", { id: "by-tip" }, [["", "a place along it"], ["tip", "the tip's x and y"]].map(([value, text]) => make("option", { value, textContent: text, selected: (value === "tip") === own.byTip })));
     by.onchange = () => { own.byTip = by.value === "tip"; look(); };
     const contour = typing("contour", own.contour, "0.2 -0.03, 0.4 -0.03", corners, (text) => { own.contour = text; tried(); });
     contour.required = true;
-    return [label("by-tip", "where it is touched, by"), by, own.byTip ? [label("contour", "corners of the contour", "x y, x y, … [m]"), contour] : []];
+    // Corners are long.
+    const laid = make("div", { className: "wide" }, label("contour", "contour that the tip is laid on", "corners x y, x y, … [m]"), contour);
+    return [label("by-tip", "where it is touched, by"), by, own.byTip ? laid : []];
   }
   if (own.joint !== "arm") return [];
   const { arm } = own;

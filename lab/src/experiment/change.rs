@@ -295,7 +295,8 @@ impl Editor {
                 let mut keys = new;
                 keys.sort_by_key(|key| {
                     let place = first.iter().position(|own| own == key);
-                    place.unwrap_or(first.len())
+                    let last = usize::from(key.starts_with("extra."));
+                    place.unwrap_or(first.len() + last)
                 });
                 keys
             }
