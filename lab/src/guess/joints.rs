@@ -23,28 +23,29 @@ pub fn array_by_name(array: &str, joint: &str) -> String {
 
 /// For each of `joints`, those of `names` that can be called after the role of this joint: the
 /// best ones, which fit equally well. A name says of which joint it is by the joint's name
-/// (`q_elbow`, also without what all joints have in common, as in `elbow_joint`) or, where no
-/// joint is called so, by a number (`q1`).
+/// (`q_elbow`, also without what all joints have in common, as in `elbow_joint`) or, where that
+/// tells more of them, by a number (`q1`).
 #[must_use]
 pub fn by_joint<'a>(role: Role, joints: &[&str], names: &[&'a str]) -> Vec<Found<'a>> {
-    let short = in_short(joints);
-    let of_whom = [joints.to_vec(), short];
-    for called in of_whom {
-        let found: Vec<Found<'a>> = called
-            .iter()
-            .map(|joint| {
-                let rest = names.iter().map(|name| (*name, without(name, joint)));
-                best(rest.map(|(name, rest)| {
-                    let fit = rest.and_then(|rest| fit_plain(role, &rest));
-                    (name, fit)
-                }))
-            })
-            .collect();
-        if found.iter().any(|own| !own.is_empty()) {
-            return found;
-        }
-    }
-    by_number(role, joints, names)
+    let by_name = |called: &[&str]| -> Vec<Found<'a>> {
+        let each = called.iter().map(|joint| {
+            let rest = names.iter().map(|name| (*name, without(name, joint)));
+            best(rest.map(|(name, rest)| (name, rest.and_then(|rest| fit_plain(role, &rest)))))
+        });
+        each.collect()
+    };
+    let ways = [
+        by_name(joints),
+        by_name(&in_short(joints)),
+        by_number(role, joints, names),
+    ];
+    // One way for all joints: `joint1` may be the first one of some columns, and the second
+    // one, counted from 0, of others.
+    let known = |found: &Vec<Found<'a>>| found.iter().filter(|own| !own.is_empty()).count();
+    let most = ways.iter().map(known).max();
+    let mut ways = ways.into_iter();
+    let found = ways.find(|own| Some(known(own)) == most);
+    found.unwrap_or_else(|| vec![Vec::new(); joints.len()])
 }
 
 /// What is left of a name that has the joint's in it as a word of its own, without its unit.
