@@ -413,17 +413,21 @@ fn arm_table(called: impl Fn(usize) -> [String; 2]) -> String {
     let mut text = format!("t,{}\n", names.join(","));
     for n in 0..COUNT {
         let t = f64::from(n) * 0.002;
-        let mut all = [[0.0; 3]; 3];
-        for joint in 0..3 {
+        let states = [0, 1, 2].map(|joint| {
+            let (mut q, mut qd, mut qdd) = (0.0, 0.0, 0.0);
             for (size, rate) in [(0.6, 0.9), (0.25, 2.3), (0.1, 5.1)] {
-                let rate = rate * (1.0 + 0.3 * joint as f64);
-                let (sine, cosine) = (rate * t + joint as f64).sin_cos();
-                all[0][joint] += size * sine;
-                all[1][joint] += size * rate * cosine;
-                all[2][joint] -= size * rate * rate * sine;
+                let rate = rate * (1.0 + 0.3 * f64::from(joint));
+                let (sine, cosine) = (rate * t + f64::from(joint)).sin_cos();
+                q += size * sine;
+                qd += size * rate * cosine;
+                qdd -= size * rate * rate * sine;
             }
-        }
-        let [q, qd, qdd] = all.map(|own| Joints::from_slice(&own).unwrap());
+            [q, qd, qdd]
+        });
+        let [q, qd, qdd] = [0, 1, 2].map(|order| {
+            let each = states.map(|own| own[order]);
+            Joints::from_slice(&each).unwrap()
+        });
         let links = chain.inverse_dynamics(&q, &qd, &qdd, &gravity);
         write!(text, "{t:.3}").unwrap();
         for joint in 0..3 {
