@@ -72,6 +72,8 @@ const ASSETS: &[Asset] = assets![
     "/lab/model.js" SCRIPT "lab/model.js",
     "/lab/reading.js" SCRIPT "lab/reading.js",
     "/lab/recordings.js" SCRIPT "lab/recordings.js",
+    "/lab/signals.js" SCRIPT "lab/signals.js",
+    "/lab/subject.js" SCRIPT "lab/subject.js",
 ];
 
 /// plotly.js as the crate `plotly` carries it: the first of its script elements.

@@ -5,6 +5,19 @@ use ferntast_msgs::Time;
 
 use crate::schema::{Layout, Reader, numeric_paths};
 
+/// The arrays of an arm's joints in the recording, which say by names of which: those of
+/// `sensor_msgs/JointState`.
+pub(crate) fn joint_arrays_of(bag: &BagReader) -> Vec<String> {
+    let states = bag.topics().filter(|topic| {
+        let name = topic.schema_name.as_str();
+        name == "sensor_msgs/msg/JointState" || name == "sensor_msgs/JointState"
+    });
+    let arrays = states.flat_map(|topic| {
+        ["position", "velocity", "effort"].map(|array| format!("{}.{array}", topic.name))
+    });
+    arrays.collect()
+}
+
 /// The paths of all numbers in the recording, arrays as long as in the first
 /// message of their topic. Topics that cannot be read are left out.
 pub(crate) fn numbers_of(bag: &BagReader) -> Vec<String> {

@@ -175,6 +175,11 @@ impl Unit {
         }
     }
 
+    /// Names of all units that are known, those of a quantity together.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        UNITS.iter().map(|unit| unit.name)
+    }
+
     /// As it is written.
     #[must_use]
     pub fn name(&self) -> &'static str {

@@ -9,10 +9,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ferntast_identification::JointType;
 use ferntast_lab::{
     guess::Role,
-    work::{self, Made, NewError, Request, Said, make},
+    work::{self, Made, NewError, OfArm, Request, Said, make},
 };
+use ferntast_model::{Joints, rigid_body::Vector3};
 
 /// The joint: τ_m = J q̈ + b₀ sign(q̇) + b₁ q̇.
 const INERTIA: f64 = 0.8;
@@ -312,4 +314,282 @@ fn what_is_not_certain_is_refused_with_what_to_say() {
     assert!(notes.contains("unit = \"ms\""), "{notes}");
     let none = make(&Request::default());
     assert!(matches!(none, Err(NewError::NoFile)));
+}
+
+/// Of a tip on a straight edge: F_T = μ F_N sign(ṙ), μ = 0.3; x and y in mm, r in m.
+fn edge(n: u32) -> (f64, [f64; 2], f64, f64) {
+    let t = f64::from(n) * 0.002;
+    let r = 0.1 + 0.05 * (2.0 * t).sin() + 0.02 * (5.3 * t).sin();
+    let speed = 0.1 * (2.0 * t).cos() + 0.106 * (5.3 * t).cos();
+    let normal = 5.0 + 2.0 * (0.7 * t).sin();
+    // The edge goes up to the right by 30 degrees from (0.2, 0.1).
+    let tip = [200.0 + 866.025_403_8 * r, 100.0 + 500.0 * r];
+    (r, tip, 0.3 * normal * speed.signum(), normal)
+}
+
+#[test]
+fn a_contact_is_made_of_a_place_or_of_its_tip_on_a_contour() {
+    let bench = Bench::new();
+    let text = rows(|n, t, _, _| {
+        let (r, tip, tangential, normal) = edge(n);
+        format!(
+            "{t:.3},{:.6},{:.6},{:.6},{tangential:.6},{normal:.6}",
+            1000.0 * r,
+            tip[0],
+            tip[1]
+        )
+    });
+    bench.write(
+        "edge.csv",
+        format!("t,place_mm,tip_x_mm,tip_y_mm,F_T,F_N\n{text}"),
+    );
+    let friction = |made: &Made| {
+        let opened = work::open_file(&made.experiment).unwrap();
+        assert_eq!(opened.torque_unit(), "N");
+        let found = opened.compare().unwrap();
+        found.parameters["b0T"].value
+    };
+    let joint = Some(JointType::Contact);
+    let request = bench.request(&["edge.csv"], &[]);
+    let by_place = make(&Request {
+        joint,
+        ..request.clone()
+    })
+    .unwrap();
+    assert!((friction(&by_place) - 0.3).abs() < 0.005);
+    let output = Some(bench.folder.path().join("tip.toml"));
+    let by_tip = Request {
+        joint,
+        by_tip: true,
+        output,
+        ..request
+    };
+    let told = make(&by_tip).unwrap_err().to_string();
+    assert!(
+        told.contains("contact.contour") && told.contains("corners"),
+        "{told}"
+    );
+    let contour = Some(vec![
+        [0.2, 0.1],
+        [0.286_602_540_4, 0.15],
+        [0.373_205_080_8, 0.2],
+    ]);
+    let made = make(&Request { contour, ..by_tip }).unwrap();
+    assert!((friction(&made) - 0.3).abs() < 0.005);
+    let keys: Vec<&str> = made.signals.iter().map(|own| own.signal.as_str()).collect();
+    assert_eq!(
+        keys,
+        [
+            "time",
+            "tip[0]",
+            "tip[1]",
+            "tangential_force",
+            "normal_force"
+        ]
+    );
+    // Both ways to the same place.
+    let [place, tip] = [by_place, made].map(|own| work::open_file(&own.experiment).unwrap());
+    let pairs = place.dataset.sessions[0].position.iter();
+    for (a, b) in pairs.zip(&tip.dataset.sessions[0].position) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}
+
+const THREE: &str = r#"<robot name="three"><link name="base"/>
+<link name="upper"><inertial><origin xyz="0.2 0 0"/><mass value="2"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.03"/></inertial></link>
+<link name="lower"><inertial><origin xyz="0.15 0 0"/><mass value="1"/><inertia ixx="0.005" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+<link name="hand"><inertial><origin xyz="0.05 0 0"/><mass value="0.5"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/></inertial></link>
+<joint name="shoulder_joint" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+<joint name="elbow_joint" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0.4 0 0"/><axis xyz="0 1 0"/></joint>
+<joint name="wrist_joint" type="continuous"><parent link="lower"/><child link="hand"/><origin xyz="0.3 0 0"/><axis xyz="1 0 0"/></joint></robot>"#;
+
+/// A table of an arm of three joints, whose columns are called by `called` of a number; positions
+/// in degrees.
+fn arm_table(called: impl Fn(usize) -> [String; 2]) -> String {
+    let robot = ferntast_urdf::Robot::read(THREE.as_bytes()).unwrap();
+    let chain = robot.whole_arm().unwrap().chain;
+    let gravity = Vector3::new(0.0, 0.0, -9.81);
+    let names: Vec<String> = (0..3).flat_map(called).collect();
+    let mut text = format!("t,{}\n", names.join(","));
+    for n in 0..COUNT {
+        let t = f64::from(n) * 0.002;
+        let states = [0, 1, 2].map(|joint| {
+            let (mut q, mut qd, mut qdd) = (0.0, 0.0, 0.0);
+            for (size, rate) in [(0.6, 0.9), (0.25, 2.3), (0.1, 5.1)] {
+                let rate = rate * (1.0 + 0.3 * f64::from(joint));
+                let (sine, cosine) = (rate * t + f64::from(joint)).sin_cos();
+                q += size * sine;
+                qd += size * rate * cosine;
+                qdd -= size * rate * rate * sine;
+            }
+            [q, qd, qdd]
+        });
+        let [q, qd, qdd] = [0, 1, 2].map(|order| {
+            let each = states.map(|own| own[order]);
+            Joints::from_slice(&each).unwrap()
+        });
+        let links = chain.inverse_dynamics(&q, &qd, &qdd, &gravity);
+        write!(text, "{t:.3}").unwrap();
+        for joint in 0..3 {
+            let friction = 0.8 * qd[joint].signum() + 0.5 * qd[joint];
+            let torque = links[joint] + [0.3, 0.1, 0.05][joint] * qdd[joint] + friction;
+            write!(text, ",{:.9},{torque:.9}", q[joint].to_degrees()).unwrap();
+        }
+        text.push('\n');
+    }
+    text
+}
+
+#[test]
+fn a_whole_arm_is_made_by_its_urdf_and_names_or_numbers_of_columns() {
+    let bench = Bench::new();
+    let urdf = bench.write("three.urdf", THREE);
+    let joints = ["shoulder", "elbow", "wrist"];
+    let named = arm_table(|at| ["q", "tau"].map(|own| format!("{own}_{}", joints[at])));
+    bench.write("named.csv", named);
+    bench.write(
+        "numbers.csv",
+        arm_table(|at| [format!("q{}_deg", at + 1), format!("tau_{}", at + 1)]),
+    );
+    bench.write(
+        "strange.csv",
+        arm_table(|at| [format!("a{at}x"), format!("b{at}y")]),
+    );
+    let arm = Some(OfArm {
+        urdf,
+        joints: Vec::new(),
+    });
+    let with = |file: &str, said: &[(Role, &str)]| {
+        let request = bench.request(&[file], said);
+        make(&Request {
+            arm: arm.clone(),
+            force: true,
+            ..request
+        })
+    };
+    let holds = |made: &Made| {
+        let whole: Vec<String> = joints.iter().map(|own| format!("{own}_joint")).collect();
+        assert_eq!(made.joints, whole);
+        assert!((made.rate_hz - 500.0).abs() < 0.5 && made.share_used > 0.99);
+        let opened = work::open_arm(&made.experiment).unwrap().unwrap();
+        let found = opened.compare().unwrap();
+        for (joint, inertia) in whole.iter().zip([0.3, 0.1, 0.05]) {
+            let own = &found.joints[joint];
+            let value = |name: &str| own.parameters[name].value;
+            assert!(
+                (value("inertia") / inertia - 1.0).abs() < 0.03,
+                "{joint}: {}",
+                value("inertia")
+            );
+            assert!(
+                (value("b0") - 0.8).abs() < 0.02 && (value("b1") - 0.5).abs() < 0.02,
+                "{joint}"
+            );
+        }
+    };
+    // Degrees that nothing says are asked for, joint by joint.
+    let told = with("named.csv", &[]).unwrap_err().to_string();
+    for word in [
+        "position of shoulder_joint",
+        "may be in deg",
+        "--position",
+        "{joint}",
+    ] {
+        assert!(told.contains(word), "{word}: {told}");
+    }
+    holds(
+        &with(
+            "named.csv",
+            &[(Role::Position, "q_shoulder,q_elbow,q_wrist:deg")],
+        )
+        .unwrap(),
+    );
+    holds(&with("numbers.csv", &[]).unwrap());
+    let text = fs::read_to_string(bench.folder.path().join("numbers.toml")).unwrap();
+    assert!(text.contains("urdf = \"three.urdf\""), "{text}");
+    let told = with("strange.csv", &[]).unwrap_err().to_string();
+    assert!(
+        told.contains("nothing is called like a position of shoulder_joint"),
+        "{told}"
+    );
+    let position = (Role::Position, "a0x:deg,a1x:deg,a2x:deg");
+    let told = with("strange.csv", &[position, (Role::MotorTorque, "b0y")]);
+    let told = told.unwrap_err().to_string();
+    assert!(told.contains("is one column for 3 joints"), "{told}");
+    let torque = (Role::MotorTorque, "b0y,b1y,b2y");
+    holds(&with("strange.csv", &[position, torque]).unwrap());
+    // A pattern, and one joint said by itself.
+    let request = bench.request(&["strange.csv"], &[torque]);
+    let mut request = Request {
+        arm: arm.clone(),
+        force: true,
+        ..request
+    };
+    for (at, joint) in joints.iter().enumerate() {
+        let said = Said::parse(&format!("a{at}x:deg"));
+        request
+            .of_joint
+            .push((Role::Position, format!("{joint}_joint"), said));
+    }
+    holds(&make(&request).unwrap());
+    // A part of the arm is an arm; a URDF that is none is told.
+    let part = Some(OfArm {
+        joints: vec!["nonsense".to_owned()],
+        ..arm.clone().unwrap()
+    });
+    let told = make(&Request {
+        arm: part,
+        ..request.clone()
+    })
+    .unwrap_err()
+    .to_string();
+    assert!(
+        told.contains("three.urdf") && told.contains("nonsense"),
+        "{told}"
+    );
+    let none = Some(OfArm {
+        urdf: bench.write("no.urdf", "<x/>"),
+        joints: Vec::new(),
+    });
+    let told = make(&Request {
+        arm: none,
+        ..request
+    })
+    .unwrap_err()
+    .to_string();
+    assert!(told.contains("no.urdf"), "{told}");
+}
+
+#[test]
+fn an_extra_signal_is_written_with_its_unit_and_read() {
+    let bench = Bench::new();
+    let text =
+        rows(|n, t, q, tau| format!("{t:.3},{q:.9},{tau:.9},{}", 20.0 + 1e-3 * f64::from(n)));
+    bench.write("oil.csv", format!("t,q,tau,oil_K\n{text}"));
+    let request = bench.request(&["oil.csv"], &[]);
+    let extra = vec![("oil".to_owned(), Said::parse("oil_K"))];
+    let made = make(&Request {
+        extra,
+        ..request.clone()
+    })
+    .unwrap();
+    let own = made.signals.last().unwrap();
+    assert_eq!((own.signal.as_str(), own.unit.as_str()), ("extra.oil", "K"));
+    let opened = work::open_file(&made.experiment).unwrap();
+    assert_eq!(
+        opened.dataset.sessions[0].extra["oil"].len(),
+        COUNT as usize
+    );
+    let extra = vec![("oil".to_owned(), Said::parse("water"))];
+    let told = make(&Request {
+        extra,
+        force: true,
+        ..request
+    })
+    .unwrap_err()
+    .to_string();
+    assert!(
+        told.contains("extra.oil") && told.contains("water"),
+        "{told}"
+    );
 }

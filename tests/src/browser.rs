@@ -199,6 +199,12 @@ impl Browser {
             let element = self.find(selector);
             let enabled = self.runtime.block_on(element.is_enabled()).unwrap_or(false);
             let clicked = enabled && self.runtime.block_on(element.click()).is_ok();
+            if !clicked {
+                // What sticks to the window's top may lie on it.
+                let middle =
+                    "document.querySelector(arguments[0])?.scrollIntoView({ block: 'center' })";
+                self.run(middle, vec![json!(selector)]);
+            }
             clicked.then_some(())
         });
         assert!(

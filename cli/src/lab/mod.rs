@@ -74,7 +74,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Action {
     /// Make an experiment file on recordings of your own.
-    New(new::Arguments),
+    New(Box<new::Arguments>),
     /// Fit the model on one part of the recordings, tell its error on the rest, and where it fails.
     Compare(compare::Arguments),
     /// Tell which effect is missing, if any.
@@ -102,7 +102,7 @@ enum Action {
 /// Runs it.
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     match arguments.action {
-        Action::New(arguments) => new::run(arguments, json),
+        Action::New(arguments) => new::run(*arguments, json),
         Action::Compare(arguments) => compare::run(&arguments, json),
         Action::Diagnose(arguments) => diagnose::run(&arguments, json),
         Action::Discover(arguments) => discover::run(&arguments, json),

@@ -51,6 +51,11 @@ export function recordings() {
   return listing.files.filter((file) => file.kind === "recording").map((file) => file.path);
 }
 
+/** Paths of all arms that an experiment can be about. */
+export function urdfs() {
+  return listing.files.filter((file) => file.kind === "urdf").map((file) => file.path);
+}
+
 /** Reads the list anew. */
 export async function load() {
   try {

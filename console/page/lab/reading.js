@@ -11,7 +11,21 @@ const REST = 250;
 /** More recordings than these are not named above the chart. */
 const NAMED = 4;
 
-const words = (key) => key.replace("extra.", "").replaceAll("_", " ");
+const AXES = { "tip[0]": "tip x", "tip[1]": "tip y" };
+
+/** A signal in words: of an arm the joint and what of it. */
+function words(key) {
+  const [role, joint] = key.replace("extra.", "").split("@");
+  const text = AXES[role] ?? role.replaceAll("_", " ");
+  return joint ? `${joint}: ${text}` : text;
+}
+
+/** The same for an axis, which has little room. */
+function shortened(key) {
+  const [role, joint] = key.split("@");
+  const last = words(role).split(" ").pop();
+  return joint ? `${joint.length > 12 ? `${joint.slice(0, 11)}…` : joint}<br>${last}` : AXES[role] ?? last;
+}
 const short = (path) => path.split("/").pop();
 
 /** Tells that files are read. */
@@ -20,10 +34,16 @@ export function wait(parent, text) {
   fill(parent, make("p", { className: "small quiet", textContent: `Reading ${text} …` }));
 }
 
+/** Tells what has to be said before anything can be read. */
+function want(parent, text) {
+  parent.dataset.state = "asking";
+  fill(parent, make("h2", { textContent: "What is read" }), make("p", { className: "note", id: "to-choose", textContent: `Still to choose: ${text}` }));
+}
+
 /**
  * Tries the mapping, one trial at a time, and shows it in `parent`. Gives `ask`, to be
  * called whenever the mapping is another, and `stop`. `now` gives { asked (of the server),
- * held, columns }, `told` is called with each trial.
+ * held, columns }, or { wanting } where that is not enough; `told` is called with each trial.
  */
 export function trials(parent, now, told) {
   let wanted = 0, timer = 0, running = false, due = false;
@@ -33,11 +53,19 @@ export function trials(parent, now, told) {
     due = false;
     const mine = wanted;
     const latest = () => mine === wanted && parent.isConnected;
-    const { asked, held, columns } = now();
+    const { asked, held, columns, wanting } = now();
+    if (wanting) {
+      want(parent, wanting);
+      running = false;
+      return;
+    }
     try {
       const found = await work("/api/lab/trial", asked);
       if (latest()) {
         told(found);
+        // As they stand in the form.
+        const order = Object.keys(columns);
+        found.signals.sort((a, b) => order.indexOf(a.signal) - order.indexOf(b.signal));
         await show(parent, found, held, columns);
         if (latest()) parent.dataset.state = found.troubles.length ? "refused" : found.missing.length ? "asking" : "read";
       }
@@ -122,7 +150,7 @@ function curves(signals, held, columns) {
   keys.forEach((key, n) => {
     const unit = signals.find((own) => own.signal === key).unit;
     const top = 1 - n * (height + gap);
-    const text = words(key).split(" ").pop();
+    const text = shortened(key);
     layout[n ? `yaxis${n + 1}` : "yaxis"] = axis("", "", { domain: [Math.max(0, top - height), top], title: { text: `${text}<br>[${unit || "–"}]`, font: { size: 11 }, standoff: 4 }, nticks: 4 });
   });
   const data = signals.map((own) => {

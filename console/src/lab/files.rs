@@ -15,18 +15,18 @@ const MOST: usize = 2000;
 pub struct Listing {
     /// The folder's own name.
     pub folder: String,
-    /// Experiment files and recordings, the newest first.
+    /// Experiment files, recordings and arms, the newest first.
     pub files: Vec<Entry>,
     /// Whether there are more than are listed.
     pub more: bool,
 }
 
-/// An experiment file or a recording.
+/// An experiment file, a recording, or an arm that one can be about.
 #[derive(Debug, Serialize)]
 pub struct Entry {
     /// Relative to the folder.
     pub path: String,
-    /// Which of both.
+    /// Which of them.
     pub kind: Kind,
     /// \[bytes\]; of a directory all of its files.
     pub size: u64,
@@ -42,6 +42,8 @@ pub enum Kind {
     Experiment,
     /// A rosbag2 directory, `.mcap` or a table.
     Recording,
+    /// A `.urdf`.
+    Urdf,
 }
 
 /// Lists the folder at `root` and those in it.
@@ -115,6 +117,7 @@ fn look_into(root: &Path, folder: &Path, depth: usize, listing: &mut Listing) {
 fn kind_of(path: &Path) -> Option<Kind> {
     match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
         "mcap" => Some(Kind::Recording),
+        "urdf" => Some(Kind::Urdf),
         // Words, too, lie in files of that ending.
         "txt" | "dat" => {
             let table = Table::open(path, &[]).ok()?;
@@ -154,6 +157,7 @@ mod tests {
         fs::write(root.join("a/y.txt"), "0 1 2\n1 2 3\n").unwrap();
         fs::write(root.join("notes.txt"), "The bench was cold.\nMore oil.\n").unwrap();
         fs::write(root.join("Cargo.toml"), "[package]").unwrap();
+        fs::write(root.join("two.urdf"), "<robot name=\"two\"/>").unwrap();
         fs::write(
             root.join("e.toml"),
             "recording = \"a/x.csv\"\n[signals]\n[model]\n",
@@ -174,6 +178,7 @@ mod tests {
                 ("a/x.csv", Kind::Recording, 4),
                 ("a/y.txt", Kind::Recording, 12),
                 ("e.toml", Kind::Experiment, 40),
+                ("two.urdf", Kind::Urdf, 19),
             ]
         );
     }

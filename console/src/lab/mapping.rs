@@ -17,7 +17,8 @@ use axum::{
 use ferntast_identification::JointType;
 use ferntast_lab::{
     experiment::{Join, Mapped, Mapping, data_folder, recording_at, turned, units_for},
-    work::{self, Again, Look, Request, Trial, WorkError},
+    unit::Unit,
+    work::{self, Again, Look, OfArm, Request, Trial, WorkError},
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -39,6 +40,20 @@ pub struct Files {
     join: Option<Join>,
     #[serde(default)]
     joint: Option<JointType>,
+    /// Whether the tip's coordinates say where a contact is.
+    #[serde(default)]
+    by_tip: bool,
+    #[serde(default)]
+    arm: Option<Arm>,
+}
+
+/// The arm that files are of.
+#[derive(Debug, Deserialize)]
+pub struct Arm {
+    urdf: String,
+    /// From the base on; none: all of the URDF's arm.
+    #[serde(default)]
+    joints: Vec<String>,
 }
 
 /// A mapping, and where it goes.
@@ -67,13 +82,14 @@ pub struct Current {
     version: String,
 }
 
-/// What an experiment file calls a recording, by what the page calls it.
+/// What an experiment file calls a recording or its URDF, by what the page calls it.
 type Names = BTreeMap<String, String>;
 
 impl Lab {
-    /// The page's names of the recordings of `mapping`, an experiment in `folder`.
+    /// The page's names of the files of `mapping`, an experiment in `folder`.
     fn names_of(&self, mapping: &Mapping, folder: &Path) -> Names {
         let files = mapping.recordings.iter().chain(&mapping.held_out).flatten();
+        let files = files.chain(mapping.arm.iter().map(|arm| &arm.urdf));
         let named = files.map(|text| {
             let path = recording_at(text, folder, &data_folder());
             let path = path.canonicalize().unwrap_or(path);
@@ -111,8 +127,7 @@ impl Lab {
                 (Some(again), Some((names, folder)))
             }
         };
-        let lists = [&mut mapping.recordings, &mut mapping.held_out];
-        for file in lists.into_iter().flatten().flatten() {
+        for file in files_of(&mut mapping) {
             let of_file = known.as_ref().and_then(|(names, from)| {
                 let text = names.get(file)?;
                 Some(turned(text, from, &to))
@@ -138,6 +153,13 @@ impl Lab {
     }
 }
 
+/// Every file that a mapping names.
+fn files_of(mapping: &mut Mapping) -> impl Iterator<Item = &mut String> {
+    let lists = [&mut mapping.recordings, &mut mapping.held_out];
+    let urdf = mapping.arm.as_mut().map(|arm| &mut arm.urdf);
+    lists.into_iter().flatten().flatten().chain(urdf)
+}
+
 struct Resolved {
     mapping: Mapping,
     again: Option<Again>,
@@ -151,25 +173,34 @@ pub async fn look(State(lab): State<Arc<Lab>>, Json(asked): Json<Files>) -> Resp
             Some(path) => Some(lab.current(path)?),
             None => None,
         };
-        let (mut files, mut called) = (Vec::new(), BTreeMap::new());
-        for name in &asked.files {
+        let found = |name: &String| {
             let elsewhere = known.as_ref().and_then(|(_, names, folder)| {
                 let text = names.get(name)?;
                 Some(recording_at(text, folder, &data_folder()))
             });
-            let path = match elsewhere {
-                Some(path) => path,
-                None => lab.there(name)?,
-            };
+            elsewhere.map_or_else(|| lab.there(name), Ok)
+        };
+        let (mut files, mut called) = (Vec::new(), BTreeMap::new());
+        for name in &asked.files {
+            let path = found(name)?;
             files.push(path.clone());
             called.insert(path, name.clone());
         }
+        let arm = match asked.arm {
+            None => None,
+            Some(Arm { urdf, joints }) => {
+                let urdf = found(&urdf)?;
+                Some(OfArm { urdf, joints })
+            }
+        };
         let request = Request {
             files,
             columns: asked.columns,
             rate_hz: asked.rate_hz,
             join: asked.join,
-            joint: asked.joint.filter(|joint| !joint.is_contact()),
+            joint: asked.joint,
+            by_tip: asked.by_tip,
+            arm,
             ..Request::default()
         };
         let mut looked = work::look(&request).map_err(|error| lab.told(&error))?;
@@ -192,9 +223,7 @@ pub async fn current(
             mut mapped,
             version,
         } = present;
-        let mapping = &mut mapped.mapping;
-        let lists = [&mut mapping.recordings, &mut mapping.held_out];
-        for file in lists.into_iter().flatten().flatten() {
+        for file in files_of(&mut mapped.mapping) {
             if let Some((name, _)) = names.iter().find(|(_, text)| *text == file) {
                 file.clone_from(name);
             }
@@ -255,7 +284,7 @@ impl Lab {
     }
 }
 
-/// Units of signals, by kind of joint and signal.
+/// Units of signals, by kind of joint and signal; those of an extra signal are all that are known.
 pub async fn units() -> Json<BTreeMap<&'static str, BTreeMap<&'static str, Vec<&'static str>>>> {
     let kinds = [
         ("revolute", JointType::Revolute),
@@ -265,13 +294,18 @@ pub async fn units() -> Json<BTreeMap<&'static str, BTreeMap<&'static str, Vec<&
     let keys = [
         "time",
         "position",
+        "tip[0]",
+        "tip[1]",
         "motor_torque",
         "joint_torque",
         "tangential_force",
         "normal_force",
         "temperature",
     ];
-    let of = |joint: JointType| keys.map(|key| (key, units_for(key, joint))).into();
+    let of = |joint: JointType| {
+        let own = keys.map(|key| (key, units_for(key, joint))).into_iter();
+        own.chain([("extra", Unit::names().collect())]).collect()
+    };
     Json(kinds.map(|(name, joint)| (name, of(joint))).into())
 }
 

@@ -9,7 +9,7 @@
 //! gravity = [0.0, 0.0, -9.81]                 # m/s², in the base's frame; this is the default
 //! gear_ratio = [100, 100]                     # optional
 //! [signals]                                   # arrays by joint name, or one path or column each:
-//! position = "/joint_states.position"         # ["q1", "q2"], "q_{joint}"
+//! position = "/joint_states.position"         # ["q1", { column = "q2", unit = "deg" }], "q_{joint}"
 //! motor_torque = "/joint_states.effort"
 //! [model]                                     # of every joint, of one, of the arm
 //! effects = ["coulomb", "viscous", "stribeck@panda_joint2", "payload", "link_inertia@panda_joint1"]
@@ -18,6 +18,7 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use ferntast_identification::JointType;
+use ferntast_model::rigid_body::JointKind;
 use ferntast_urdf::{Arm, JointType as UrdfJointType, Robot};
 
 use super::{Experiment, ExperimentError, Signals, file};
@@ -26,8 +27,8 @@ use crate::unit::{Quantity, Unit};
 /// Gravity in the frame of a base that stands upright \[m/s²\].
 const UPRIGHT: [f64; 3] = [0.0, 0.0, -9.81];
 /// Extra signals that are a joint's position or torque have its name behind these.
-const POSITION: &str = "position ";
-const MOTOR_TORQUE: &str = "motor_torque ";
+const POSITION: &str = "position@";
+const MOTOR_TORQUE: &str = "motor_torque@";
 
 /// The table `[arm]`.
 #[derive(Clone, Debug)]
@@ -58,6 +59,24 @@ impl ArmTable {
     #[must_use]
     pub fn joints(&self) -> &[String] {
         &self.arm.joints
+    }
+
+    /// Kind of the joint of that name.
+    fn kind(&self, joint: &str) -> Option<JointType> {
+        let at = self.arm.joints.iter().position(|own| own == joint)?;
+        Some(kind_of(*self.arm.chain.kinds().get(at)?))
+    }
+}
+
+/// The units that a joint of an arm may have its `position` or `motor_torque` in: the torques of
+/// the links are known, so that what goes into a drive is not among them.
+#[must_use]
+pub fn units_of_joint(key: &str, joint: JointType) -> Vec<&'static str> {
+    match (key, joint) {
+        ("position", JointType::Revolute) => Quantity::Angle.units(),
+        ("position", _) => Quantity::Length.units(),
+        (_, JointType::Revolute) => Quantity::Torque.units(),
+        _ => Quantity::Force.units(),
     }
 }
 
@@ -147,8 +166,8 @@ pub(super) fn signals(
             let reason = "it is missing: an array by joint name, as in \"/joint_states.position\"";
             refuse(&format!("signals.{key}"), reason.to_owned())
         })?;
-        let (paths, unit) = paths(arm, key, source, refuse)?;
-        for (at, (path, joint)) in paths.into_iter().zip(arm.joints()).enumerate() {
+        let places = places(arm, key, source, refuse)?;
+        for (at, ((path, unit), joint)) in places.into_iter().zip(arm.joints()).enumerate() {
             let name = match at {
                 0 => key.to_owned(),
                 _ => format!("extra.{prefix}{joint}"),
@@ -184,14 +203,15 @@ pub(super) fn signals(
     Ok(signals)
 }
 
-type Paths = (Vec<String>, Option<Unit>);
+/// Path or column of each joint, and its unit.
+type Places = Vec<(String, Option<Unit>)>;
 
-fn paths(
+fn places(
     arm: &ArmTable,
     key: &str,
     source: file::Source,
     refuse: &impl Fn(&str, String) -> ExperimentError,
-) -> Result<Paths, ExperimentError> {
+) -> Result<Places, ExperimentError> {
     let joints = arm.joints();
     let wrong = |reason: String| refuse(&format!("signals.{key}"), reason);
     let one = |text: &str| -> Result<Vec<String>, ExperimentError> {
@@ -214,29 +234,41 @@ fn paths(
             .map(|joint| format!("{array}[:]{{name=={joint:?}}}{function}"))
             .collect())
     };
+    let stated = |text: Option<&str>| -> Result<Option<Unit>, ExperimentError> {
+        let unit = text.and_then(Unit::parse);
+        let allowed: &[Quantity] = match key {
+            "position" => &[Quantity::Angle, Quantity::Length],
+            _ => &[Quantity::Torque, Quantity::Force],
+        };
+        let fits = unit.is_none_or(|unit| allowed.contains(&unit.quantity()));
+        match text {
+            Some(text) if unit.is_none() || !fits => Err(wrong(format!(
+                "unit {text:?} is none of it: the torques of an arm's links are in Nm, so that the motors' have to be, too"
+            ))),
+            _ => Ok(unit),
+        }
+    };
+    let all = |paths: Vec<String>, unit: Option<Unit>| {
+        let places = paths.into_iter().map(|path| (path, unit));
+        places.collect::<Places>()
+    };
     match source {
-        file::Source::Path(text) => Ok((one(&text)?, None)),
-        file::Source::Each(paths) if paths.len() == joints.len() => Ok((paths, None)),
-        file::Source::Each(paths) => Err(wrong(format!(
+        file::Source::Path(text) => Ok(all(one(&text)?, None)),
+        file::Source::Each(each) if each.len() == joints.len() => {
+            let places = each.into_iter().map(|own| match own {
+                file::OneSource::Path(path) => Ok((path, None)),
+                file::OneSource::Table(table) => Ok((table.column, stated(table.unit.as_deref())?)),
+            });
+            places.collect()
+        }
+        file::Source::Each(each) => Err(wrong(format!(
             "{} paths for {} joints; give one each",
-            paths.len(),
+            each.len(),
             joints.len()
         ))),
         file::Source::Table(table) => {
-            let text = table.unit.as_deref();
-            let unit = text.and_then(Unit::parse);
-            let allowed: &[Quantity] = match key {
-                "position" => &[Quantity::Angle, Quantity::Length],
-                _ => &[Quantity::Torque, Quantity::Force],
-            };
-            let fits = unit.is_none_or(|unit| allowed.contains(&unit.quantity()));
-            if text.is_some() && (unit.is_none() || !fits) {
-                return Err(wrong(format!(
-                    "unit {:?} is none of it: the torques of an arm's links are in Nm, so that the motors' have to be, too",
-                    text.unwrap_or_default()
-                )));
-            }
-            Ok((one(&table.column)?, unit))
+            let unit = stated(table.unit.as_deref())?;
+            Ok(all(one(&table.column)?, unit))
         }
     }
 }
@@ -259,13 +291,62 @@ impl Experiment {
         };
         Some([all(position, POSITION)?, all(motor_torque, MOTOR_TORQUE)?])
     }
+
+    /// What the signals of an arm's first joint are called where each joint has one: `position@elbow`.
+    pub(crate) fn key_in_arm(&self, signal: &str) -> Option<String> {
+        let first = self.arm.as_ref()?.joints().first()?;
+        match signal {
+            "position" => Some(format!("{POSITION}{first}")),
+            "motor_torque" => Some(format!("{MOTOR_TORQUE}{first}")),
+            _ => None,
+        }
+    }
+
+    /// The unit, after conversion, of a joint's signal of an arm.
+    pub(super) fn unit_in_arm(&self, signal: &str) -> Option<&'static str> {
+        let arm = self.arm.as_ref()?;
+        let (key, joint) = signal.split_once('@')?;
+        units_of_joint(key, arm.kind(joint)?).first().copied()
+    }
+
+    /// Where positions and torques of an arm's joints are, by `position@elbow`, with units as they
+    /// are stated.
+    pub(super) fn places_in_arm(&self) -> Vec<(String, String, Option<Unit>)> {
+        let Some(arm) = &self.arm else {
+            return Vec::new();
+        };
+        let signals = &self.signals;
+        let firsts = [
+            ("position", POSITION, &signals.position),
+            ("motor_torque", MOTOR_TORQUE, &signals.motor_torque),
+        ];
+        let mut places = Vec::new();
+        for (at, joint) in arm.joints().iter().enumerate() {
+            for (key, prefix, first) in firsts {
+                let name = format!("{prefix}{joint}");
+                let extra = format!("extra.{name}");
+                let (path, key) = match at {
+                    0 => (Some(first), key),
+                    _ => (signals.extra.get(&name), extra.as_str()),
+                };
+                if let Some(path) = path {
+                    places.push((name, path.clone(), signals.unit(key)));
+                }
+            }
+        }
+        places
+    }
 }
 
 /// Kind of the first joint, whose signals stand for it.
 pub(super) fn joint_type(arm: &ArmTable) -> JointType {
-    use ferntast_model::rigid_body::JointKind;
-    match arm.arm.chain.kinds().first() {
-        Some(JointKind::Prismatic) => JointType::Prismatic,
-        _ => JointType::Revolute,
+    let kinds = arm.arm.chain.kinds();
+    kinds.first().copied().map(kind_of).unwrap_or_default()
+}
+
+const fn kind_of(kind: JointKind) -> JointType {
+    match kind {
+        JointKind::Prismatic => JointType::Prismatic,
+        JointKind::Revolute => JointType::Revolute,
     }
 }

@@ -8,10 +8,9 @@ use serde::Serialize;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value, value};
 
 use super::{
-    ExperimentError, Join, Mapping, Place, folder_of,
+    ArmPart, ExperimentError, Join, Mapping, folder_of, of_each,
     write::{push_value, turn_paths},
 };
-use crate::unit::Unit;
 
 /// What is replaced in a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -65,6 +64,9 @@ impl Mapping {
             if let Some(item) = document.get_mut(key) {
                 turn_paths(item, &from, &to);
             }
+        }
+        if let Some(urdf) = document.get_mut("arm").and_then(|arm| arm.get_mut("urdf")) {
+            turn_paths(urdf, &from, &to);
         }
         let lineage = document.get_mut("lineage");
         if let Some(parent) = lineage.and_then(|lineage| lineage.get_mut("parent")) {
@@ -206,69 +208,124 @@ impl Editor {
         }
     }
 
+    /// What it is about: a joint, a contact or an arm, each with a table of its own.
     fn joint(&mut self, document: &mut DocumentMut, wanted: &Mapping) {
-        let was = self.present.as_ref().map(|own| own.joint);
-        if was == Some(wanted.joint) {
-            return;
+        let present = self.present.clone();
+        let word = |own: &Mapping| match (&own.arm, own.joint) {
+            (Some(_), _) => "arm",
+            (None, JointType::Revolute) => "revolute",
+            (None, JointType::Prismatic) => "prismatic",
+            (None, JointType::Contact) => "contact",
+        };
+        let (was, now) = (present.as_ref().map(word), word(wanted));
+        let own = match now {
+            "arm" | "contact" => now,
+            _ => "joint",
+        };
+        if was != Some(now) {
+            let before = was.unwrap_or_default().to_owned();
+            self.note("joint.type", before, now.to_owned());
+            for other in ["joint", "contact", "arm"] {
+                if other != own {
+                    document.remove(other);
+                }
+            }
+            let table = document.entry(own).or_insert(Item::Table(Table::new()));
+            if let Some(table) = table.as_table_like_mut()
+                && own == "joint"
+            {
+                put(table, "type", now.into());
+            }
         }
-        let word = |joint: JointType| match joint {
-            JointType::Revolute => "revolute",
-            JointType::Prismatic => "prismatic",
-            JointType::Contact => "contact",
+        let Some(table) = document.get_mut(own).and_then(Item::as_table_like_mut) else {
+            return;
         };
-        let before = was.map_or(String::new(), |was| word(was).to_owned());
-        self.note("joint.type", before, word(wanted.joint).to_owned());
-        let (own, other) = match wanted.joint.is_contact() {
-            true => ("contact", "joint"),
-            false => ("joint", "contact"),
-        };
-        document.remove(other);
-        let table = document.entry(own).or_insert(Item::Table(Table::new()));
-        if let Some(table) = table.as_table_like_mut()
-            && !wanted.joint.is_contact()
-        {
-            put(table, "type", word(wanted.joint).into());
+        let was = |of: Part| present.as_ref().and_then(of);
+        if wanted.arm.is_some() {
+            let parts: [(&str, Part); 4] = [
+                ("urdf", |own| Some(own.arm.as_ref()?.urdf.as_str().into())),
+                ("joints", |own| {
+                    let joints = own.arm.as_ref()?.joints.iter();
+                    Some(Array::from_iter(joints.map(String::as_str)).into())
+                }),
+                ("armature", |own| numbers(own, |arm| arm.armature.as_ref())),
+                ("gear_ratio", |own| {
+                    numbers(own, |arm| arm.gear_ratio.as_ref())
+                }),
+            ];
+            for (key, of) in parts {
+                // Joints that stay may be said by the links at their ends.
+                let (was, now) = (was(of), of(wanted));
+                if key == "joints" && was.as_ref().map(plain) != now.as_ref().map(plain) {
+                    table.remove("base");
+                    table.remove("tip");
+                }
+                self.set(table, key, &format!("arm.{key}"), was, now);
+            }
+        }
+        if own == "contact" {
+            self.set(
+                table,
+                "contour",
+                "contact.contour",
+                was(contour),
+                contour(wanted),
+            );
         }
     }
 
     fn signals(&mut self, document: &mut DocumentMut, wanted: &Mapping) {
-        let present = self.present.as_ref().map(|own| own.signals.clone());
-        let present = present.unwrap_or_default();
+        let present = self.present.clone();
         let table = document.entry("signals");
         let table = table.or_insert(Item::Table(Table::new()));
         let Some(table) = table.as_table_like_mut() else {
             return;
         };
-        let keys: Vec<&String> = match self.present {
+        let new = of_each::keys(&wanted.signals);
+        let keys: Vec<&str> = match &present {
             // A new file has them in the order in which people read them.
             None => {
-                let first = ["time", "position", "motor_torque", "tangential_force"];
-                let mut keys: Vec<&String> = wanted.signals.keys().collect();
+                let first = [
+                    "time",
+                    "position",
+                    "tip",
+                    "motor_torque",
+                    "tangential_force",
+                ];
+                let mut keys = new;
                 keys.sort_by_key(|key| {
                     let place = first.iter().position(|own| own == key);
-                    place.unwrap_or(first.len())
+                    let last = usize::from(key.starts_with("extra."));
+                    place.unwrap_or(first.len() + last)
                 });
                 keys
             }
-            Some(_) => {
-                let new = wanted.signals.keys();
-                let new = new.filter(|key| !present.contains_key(*key));
-                present.keys().chain(new).collect()
+            Some(present) => {
+                let known = of_each::keys(&present.signals);
+                let new = new.into_iter().filter(|key| !known.contains(key));
+                known.iter().copied().chain(new).collect()
             }
         };
         for key in keys {
-            let was = present.get(key).map(source);
-            let now = wanted.signals.get(key).map(source);
+            let was = present.as_ref().and_then(|own| of_each::item(own, key));
+            let now = of_each::item(wanted, key);
             let name = format!("signals.{key}");
             match key.strip_prefix("extra.") {
                 None => self.set(table, key, &name, was, now),
                 Some(key) => {
-                    let extra = table.entry("extra").or_insert(Item::Table(Table::new()));
+                    let mut new = Table::new();
+                    // `extra.supply = …`, among the others.
+                    new.set_dotted(true);
+                    let extra = table.entry("extra").or_insert(Item::Table(new));
                     if let Some(extra) = extra.as_table_like_mut() {
                         self.set(extra, key, &name, was, now);
                     }
                 }
             }
+        }
+        let extra = table.get("extra").and_then(Item::as_table_like);
+        if extra.is_some_and(TableLike::is_empty) {
+            table.remove("extra");
         }
     }
 
@@ -363,8 +420,20 @@ fn join(mapping: &Mapping) -> Option<Value> {
     Some(join.into())
 }
 
+fn contour(mapping: &Mapping) -> Option<Value> {
+    let corners = mapping.contour.as_ref()?.iter();
+    let corners = corners.map(|corner| Value::from(Array::from_iter(*corner)));
+    Some(Array::from_iter(corners).into())
+}
+
+/// A number of each joint of an arm.
+fn numbers(mapping: &Mapping, of: fn(&ArmPart) -> Option<&Vec<f64>>) -> Option<Value> {
+    let values = of(mapping.arm.as_ref()?)?.iter().copied();
+    Some(Array::from_iter(values).into())
+}
+
 fn inertia(mapping: &Mapping) -> Option<Value> {
-    if mapping.joint.is_contact() {
+    if mapping.joint.is_contact() || mapping.arm.is_some() {
         return None;
     }
     Some(match mapping.inertia {
@@ -375,28 +444,4 @@ fn inertia(mapping: &Mapping) -> Option<Value> {
             fit.into()
         }
     })
-}
-
-/// A column, with its unit where there is one.
-fn source(place: &Place) -> Value {
-    let Place { column, unit, time } = place;
-    if unit.is_none() && time.is_none() {
-        return column.as_str().into();
-    }
-    let mut table = InlineTable::new();
-    let key = if column.starts_with('/') {
-        "path"
-    } else {
-        "column"
-    };
-    table.insert(key, column.as_str().into());
-    if let Some(text) = unit {
-        // One that is not known is refused where the file is read.
-        let name = Unit::parse(text).map_or(text.as_str(), |unit| unit.name());
-        table.insert("unit", name.into());
-    }
-    if let Some(time) = time {
-        table.insert("time", time.as_str().into());
-    }
-    table.into()
 }

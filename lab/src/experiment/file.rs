@@ -117,13 +117,33 @@ impl Default for ColumnNames {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a column or message path, { column = \"…\", unit = \"…\" }, or of an arm a list of paths"
+    expecting = "expected a column or message path, { column = \"…\", unit = \"…\" }, or of an arm a list of these"
 )]
 pub(super) enum Source {
     Path(String),
     /// Of an arm, one for each joint.
-    Each(Vec<String>),
+    Each(Vec<OneSource>),
     Table(SourceTable),
+}
+
+/// Where one of several signals is.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a column or message path, or { column = \"…\", unit = \"…\" }"
+)]
+pub(super) enum OneSource {
+    Path(String),
+    Table(SourceTable),
+}
+
+impl From<OneSource> for Source {
+    fn from(one: OneSource) -> Source {
+        match one {
+            OneSource::Path(path) => Source::Path(path),
+            OneSource::Table(table) => Source::Table(table),
+        }
+    }
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -174,7 +194,7 @@ pub(super) struct Arm {
 pub(super) struct SignalsTable {
     pub(super) position: Option<Source>,
     /// Of a contact, in place of the position: x and y of the tip.
-    pub(super) tip: Option<[String; 2]>,
+    pub(super) tip: Option<[OneSource; 2]>,
     pub(super) motor_torque: Option<Source>,
     pub(super) joint_torque: Option<Source>,
     pub(super) tangential_force: Option<Source>,

@@ -41,6 +41,7 @@
 //! normal_force = "/follower/contact_cf.wrench.force.z"               # N, pushes the tip out
 //! position = "/follower/measured_cp.pose.position.x"                 # place along the contour [m]
 //! # tip = ["/follower/measured_cp.pose.position.x", "/follower/measured_cp.pose.position.y"]
+//! # tip = [{ column = "x", unit = "mm" }, { column = "y", unit = "mm" }]    # in place of position
 //! temperature = "/temperature.temperature"    # degC, optional; time and extra as of a joint
 //! [model]
 //! effects = ["contact_coulomb", { name = "film", expression = "c*F_N*rd" }]
@@ -68,6 +69,7 @@ mod lineage;
 mod mapping;
 #[cfg(test)]
 mod mapping_tests;
+mod of_each;
 mod own;
 mod reading;
 mod signals;
@@ -84,12 +86,12 @@ use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, State
 
 use crate::table::Format;
 
-pub use arm::ArmTable;
+pub use arm::{ArmTable, units_of_joint};
 pub use change::{Change, Changed};
 pub use contact::Contour;
 pub use error::{ExperimentError, WriteError};
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
-pub use mapping::{Mapped, Mapping, Place};
+pub use mapping::{ArmPart, Mapped, Mapping, Place};
 pub use own::RECORD;
 pub use reading::{Join, Reading};
 pub use signals::{Signals, units_for};

@@ -52,13 +52,18 @@ impl Signals {
         let optional = [
             ("joint_torque", &self.joint_torque),
             ("normal_force", &self.normal_force),
+            ("tip[1]", &self.tip_y),
             ("temperature", &self.temperature),
             ("time", &self.time),
         ];
         let optional = optional.into_iter();
         let optional = optional.filter_map(|(name, path)| Some((name, path.as_deref()?)));
+        let place = match self.tip_y {
+            Some(_) => "tip[0]",
+            None => "position",
+        };
         [
-            ("position", self.position.as_str()),
+            (place, self.position.as_str()),
             ("motor_torque", self.motor_torque.as_str()),
         ]
         .into_iter()
@@ -91,13 +96,16 @@ impl Experiment {
         let revolute = self.joint == JointType::Revolute;
         let unit = match key {
             "position" | "place" if revolute => "rad",
-            "position" | "place" => "m",
+            "position" | "place" | "tip[0]" | "tip[1]" => "m",
             "motor_torque" | "joint_torque" | "normal_force" | "tangential_force" => {
                 self.force_unit()
             }
             "temperature" => "degC",
             "time" => "s",
-            key => self.signals.unit(key).map_or("", |unit| unit.name()),
+            key => match self.unit_in_arm(key) {
+                Some(unit) => unit,
+                None => self.signals.unit(key).map_or("", |unit| unit.name()),
+            },
         };
         unit.to_owned()
     }
@@ -107,7 +115,7 @@ impl Experiment {
 fn quantities(key: &str, joint: JointType) -> &'static [Quantity] {
     match (key, joint) {
         ("position", JointType::Revolute) => &[Quantity::Angle],
-        ("position" | "tip", _) => &[Quantity::Length],
+        ("position" | "tip[0]" | "tip[1]", _) => &[Quantity::Length],
         ("motor_torque" | "joint_torque", JointType::Revolute) => {
             &[Quantity::Torque, Quantity::Drive]
         }
@@ -206,7 +214,12 @@ pub(super) fn signals(
             return Err(refuse("signals.tip", reason));
         }
         (position, None) => (must("position", position, contact::position(joint))?, None),
-        (None, Some([x, y])) => (file::Source::Path(x), Some(y)),
+        (None, Some([x, y])) => (x.into(), Some(y.into())),
+    };
+    let place = if tip_y.is_some() {
+        "tip[0]"
+    } else {
+        "position"
     };
     let (force, key, normal_force) = match joint.is_contact() {
         true => {
@@ -230,8 +243,8 @@ pub(super) fn signals(
         refuse,
     };
     let mut signals = Signals {
-        position: taker.take("position", position)?,
-        tip_y,
+        position: taker.take(place, position)?,
+        tip_y: taker.maybe("tip[1]", tip_y)?,
         motor_torque: taker.take(key, force)?,
         normal_force: taker.maybe("normal_force", normal_force)?,
         joint_torque: taker.maybe("joint_torque", table.joint_torque)?,

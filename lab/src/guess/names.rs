@@ -6,10 +6,13 @@ use crate::unit::Unit;
 /// `q [deg]`, `current (A)`, `t/ms`.
 #[must_use]
 pub fn unit_in_name(name: &str) -> (&str, Option<Unit>) {
-    // A path into messages, or with functions at its end, says nothing; and the m of τ_m is
-    // the motor.
+    // A path into messages, or with functions at its end, says nothing; the m of τ_m is
+    // the motor, and the N of F_N the normal.
     if name.starts_with('/') || name.contains(".@") || name == "tau_m" {
         return (name, None);
+    }
+    if name == "F_N" {
+        return (name, Unit::parse("N"));
     }
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some(inner) = name.trim_end().strip_suffix(close)
@@ -64,6 +67,7 @@ mod tests {
             ("qd_rad_s", "qd", Some("rad/s")),
             ("q_1", "q_1", None),
             ("tau_m", "tau_m", None),
+            ("F_N", "F_N", Some("N")),
             ("q", "q", None),
             ("/js.position_deg", "/js.position_deg", None),
         ] {

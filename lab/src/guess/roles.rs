@@ -19,6 +19,16 @@ pub enum Role {
     JointTorque,
     /// Temperature.
     Temperature,
+    /// r, the place along a contour.
+    Place,
+    /// x of the tip of a contact.
+    TipX,
+    /// y of that.
+    TipY,
+    /// F_T, which opposes a motion to larger places.
+    TangentialForce,
+    /// F_N, which pushes the tip out.
+    NormalForce,
 }
 
 impl Role {
@@ -27,7 +37,11 @@ impl Role {
     pub const fn key(self) -> &'static str {
         match self {
             Role::Time => "time",
-            Role::Position => "position",
+            Role::Position | Role::Place => "position",
+            Role::TipX => "tip[0]",
+            Role::TipY => "tip[1]",
+            Role::TangentialForce => "tangential_force",
+            Role::NormalForce => "normal_force",
             Role::MotorTorque => "motor_torque",
             Role::JointTorque => "joint_torque",
             Role::Temperature => "temperature",
@@ -77,18 +91,96 @@ impl Role {
                 ("load_torque", None),
             ],
             Role::Temperature => &[("temperature", None), ("temp", None)],
+            Role::Place => &[
+                ("place", None),
+                ("along", None),
+                ("position", None),
+                ("pos", None),
+                ("r", None),
+                ("x", None),
+            ],
+            Role::TipX => &[("tip_x", None), ("x_tip", None), ("x", None)],
+            Role::TipY => &[("tip_y", None), ("y_tip", None), ("y", None)],
+            Role::TangentialForce => &[
+                ("tangential_force", None),
+                ("force_tangential", None),
+                ("tangential", None),
+                ("f_t", None),
+                ("ft", None),
+                ("friction_force", None),
+                ("friction", None),
+            ],
+            Role::NormalForce => &[
+                ("normal_force", None),
+                ("force_normal", None),
+                ("normal", None),
+                ("f_n", None),
+                ("fn", None),
+            ],
+        }
+    }
+
+    /// Ends of message paths that are this of a contact, the best ones first: what our own
+    /// recordings have, and others with poses and wrenches by those names.
+    const fn paths(self) -> &'static [&'static str] {
+        match self {
+            Role::Place | Role::TipX => &[
+                "/follower/measured_cp.pose.position.x",
+                "/measured_cp.pose.position.x",
+            ],
+            Role::TipY => &[
+                "/follower/measured_cp.pose.position.y",
+                "/measured_cp.pose.position.y",
+            ],
+            Role::TangentialForce => &[
+                "/follower/contact_cf.wrench.force.x",
+                "/contact_cf.wrench.force.x",
+            ],
+            Role::NormalForce => &[
+                "/follower/contact_cf.wrench.force.z",
+                "/contact_cf.wrench.force.z",
+            ],
+            _ => &[],
         }
     }
 }
 
+/// A path whose values have the sign of a tangential force, for one that is the force on the tip,
+/// which the tip's motion goes against; `None` for any other.
+#[must_use]
+pub fn opposes(path: &str) -> Option<String> {
+    let ends = Role::TangentialForce.paths().iter();
+    let mut ends = ends.filter(|end| path.ends_with(**end));
+    ends.next().map(|_| format!("{path}.@negative"))
+}
+
 /// How well a name fits; the greater the better.
-fn fit(role: Role, name: &str) -> Option<(u32, Option<&'static str>)> {
+fn fit(role: Role, name: &str) -> Fit {
+    let end = role.paths().iter().position(|end| name.ends_with(end));
+    if let Some(rank) = end {
+        return Some((2000 - rank as u32, None));
+    }
+    // Every message has an x.
+    let is_letter = name
+        .rsplit(['.', '/'])
+        .next()
+        .is_some_and(|own| own.len() == 1);
+    if !role.paths().is_empty() && name.starts_with('/') && is_letter {
+        return None;
+    }
     // Of a message path what is below the topic, without its index.
     let plain = match name.starts_with('/') {
         true => name.rsplit(['.', '/']).next().unwrap_or(name),
         false => unit_in_name(name).0,
     };
-    let plain = plain.split('[').next().unwrap_or(plain);
+    fit_plain(role, plain.split('[').next().unwrap_or(plain))
+}
+
+/// The greater the better, and what such a name says of its unit.
+pub(super) type Fit = Option<(u32, Option<&'static str>)>;
+
+/// The same of a name without its unit.
+pub(super) fn fit_plain(role: Role, plain: &str) -> Fit {
     let plain = plain.trim().to_lowercase().replace([' ', '-', '.'], "_");
     let mut best = None;
     for (rank, (word, unit)) in role.words().iter().enumerate() {
@@ -111,13 +203,16 @@ fn fit(role: Role, name: &str) -> Option<(u32, Option<&'static str>)> {
 /// equally well; with what such a name says of its unit.
 #[must_use]
 pub fn by_name<'a>(role: Role, names: &[&'a str]) -> Vec<(&'a str, Option<&'static str>)> {
-    let rated: Vec<(u32, &str, Option<&str>)> = names
-        .iter()
-        .filter_map(|name| fit(role, name).map(|(score, unit)| (score, *name, unit)))
-        .collect();
+    best(names.iter().map(|name| (*name, fit(role, name))))
+}
+
+/// Those that fit best, equally well.
+pub(super) fn best<T>(rated: impl Iterator<Item = (T, Fit)>) -> Vec<(T, Option<&'static str>)> {
+    let rated = rated.filter_map(|(own, fit)| fit.map(|(score, unit)| (score, own, unit)));
+    let rated: Vec<(u32, T, Option<&'static str>)> = rated.collect();
     let best = rated.iter().map(|(score, ..)| *score).max();
     let best = rated.into_iter().filter(|(score, ..)| Some(*score) == best);
-    best.map(|(_, name, unit)| (name, unit)).collect()
+    best.map(|(_, own, unit)| (own, unit)).collect()
 }
 
 #[cfg(test)]
@@ -143,6 +238,27 @@ mod tests {
         );
         assert_eq!(one(Role::Temperature), Some(("temp_C", None)));
         assert_eq!(one(Role::JointTorque), None);
+        let contact = ["t", "x_mm", "F_T", "F_N", "tip x [mm]", "tip y [mm]"];
+        let one = |role| by_name(role, &contact).first().copied();
+        assert_eq!(one(Role::Place), Some(("x_mm", None)));
+        assert_eq!(one(Role::TangentialForce), Some(("F_T", None)));
+        assert_eq!(one(Role::NormalForce), Some(("F_N", None)));
+        assert_eq!(one(Role::TipX), Some(("tip x [mm]", None)));
+        assert_eq!(one(Role::TipY), Some(("tip y [mm]", None)));
+        let own = [
+            "/leader/measured_cp.pose.position.x",
+            "/follower/measured_cp.pose.position.x",
+            "/follower/measured_cv.twist.linear.x",
+            "/follower/contact_cf.wrench.force.x",
+            "/follower/contact_cf.wrench.force.z",
+        ];
+        let all = |role| by_name(role, &own);
+        assert_eq!(all(Role::Place), [(own[1], None)]);
+        assert_eq!(all(Role::TangentialForce), [(own[3], None)]);
+        assert_eq!(all(Role::NormalForce), [(own[4], None)]);
+        assert!(all(Role::TipY).is_empty());
+        let turned = format!("{}.@negative", own[3]);
+        assert_eq!((opposes(own[3]), opposes(own[4])), (Some(turned), None));
         let paths = ["/js.position[0]", "/js.position[1]", "/js.effort[0]"];
         assert_eq!(by_name(Role::Position, &paths).len(), 2);
         assert_eq!(

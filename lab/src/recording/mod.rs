@@ -164,7 +164,7 @@ fn wanted(experiment: &Experiment) -> Vec<Wanted> {
     wanted.extend(extra.map(|(name, path)| (format!("extra.{name}"), path.clone())));
     let wanted = wanted.into_iter().map(|(signal, path)| {
         let key = match signal.as_str() {
-            TIP_X | TIP_Y => "tip",
+            "tangential_force" => "motor_torque",
             key => key,
         };
         // The unit of an extra signal is for people, but where it is that of a joint.
@@ -173,7 +173,10 @@ fn wanted(experiment: &Experiment) -> Vec<Wanted> {
         Wanted {
             unit,
             time: signals.times.get(key).cloned(),
-            signal,
+            signal: match (&experiment.arm, signal.strip_prefix("extra.")) {
+                (Some(_), Some(of_joint)) => of_joint.to_owned(),
+                _ => signal,
+            },
             path,
         }
     });

@@ -13,7 +13,7 @@ const MOST: usize = 1200;
 /// One signal of one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Seen {
-    /// The signal's key.
+    /// The signal's key; of an arm's joint `position@elbow`.
     pub signal: String,
     /// The recording.
     pub recording: PathBuf,
@@ -72,13 +72,15 @@ pub fn preview(experiment: &Experiment) -> (Vec<Seen>, Vec<LoadError>) {
         }
         let starts = all.iter().filter_map(|own| own.times.first().copied());
         let start = starts.min().unwrap_or(0);
-        seen.extend(all.iter().map(|own| Seen {
-            recording: recording.clone(),
-            unit: experiment.unit_of(match own.signal.as_str() {
-                "tip[0]" | "tip[1]" => "position",
-                key => key,
-            }),
-            ..of_series(own, start)
+        seen.extend(all.iter().map(|own| {
+            let key = experiment.key_in_arm(&own.signal);
+            let signal = key.unwrap_or_else(|| own.signal.clone());
+            Seen {
+                recording: recording.clone(),
+                unit: experiment.unit_of(&signal),
+                signal,
+                ..of_series(own, start)
+            }
         }));
     }
     (seen, troubles)

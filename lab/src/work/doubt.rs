@@ -53,7 +53,9 @@ fn doubt(own: &Taken<'_>) -> Option<Doubt> {
         let text = format!("{column:?} is called as if it were in {said}, and taken for {name}");
         return told(text, said);
     }
-    match (own.key, name) {
+    // Of an arm, position@elbow.
+    let key = own.key.split('@').next().unwrap_or(own.key);
+    match (key, name) {
         ("time", "s") => {
             let unit = time_unit(own.first, own.step)?;
             let text = match own.step {

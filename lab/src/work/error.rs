@@ -132,11 +132,21 @@ pub enum NewError {
     /// Tables and messages together.
     #[error("tables and MCAP recordings cannot be in one experiment: name one kind")]
     Mixed,
+    /// The URDF of an arm cannot be used.
+    #[error("{}: {reason}", path.display())]
+    Urdf {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// The user has to say which column is a signal.
-    #[error("which column is the {}? {why}; say {} COLUMN or COLUMN:UNIT{}; columns: {}", role.key(), option(*role), suggested(choices), columns.join(", "))]
+    #[error("which column is the {}? {why}; say {} {}{}; columns: {}", called(*role, joint.as_deref()), option(*role), form(joint.is_some()), suggested(choices), columns.join(", "))]
     Unsure {
         /// The signal.
         role: Role,
+        /// Of an arm, whose.
+        joint: Option<String>,
         /// Why it is not clear.
         why: String,
         /// What it can be, best first; may be empty.
@@ -149,9 +159,26 @@ pub enum NewError {
     Work(#[from] WorkError),
 }
 
+/// A signal as a question calls it.
+fn called(role: Role, joint: Option<&str>) -> String {
+    match joint {
+        Some(joint) => format!("{} of {joint}", role.key()),
+        None => role.key().to_owned(),
+    }
+}
+
+/// What the option takes.
+const fn form(of_arm: bool) -> &'static str {
+    match of_arm {
+        true => "a COLUMN for each joint with commas between, or one name with {joint} in it",
+        false => "COLUMN or COLUMN:UNIT",
+    }
+}
+
 /// The option that says which column a signal is.
 fn option(role: Role) -> String {
     match role {
+        Role::TipX | Role::TipY => "--tip COLUMN,COLUMN, each as".to_owned(),
         // There may be none.
         Role::Time => "--rate HZ where there is none, or --time".to_owned(),
         _ => format!("--{}", role.key().replace('_', "-")),

@@ -7,7 +7,10 @@ use serde::Serialize;
 
 use super::{
     NewError,
-    new::{NewSignal, Request, guess, joint_of},
+    chain::ArmChain,
+    new::kind,
+    request::Request,
+    signals::{NewSignal, guess},
     sources::Sources,
 };
 use crate::{guess::unit_in_name, table::ColumnSurvey};
@@ -15,8 +18,8 @@ use crate::{guess::unit_in_name, table::ColumnSurvey};
 /// What has to be asked.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Question {
-    /// The signal's key.
-    pub signal: &'static str,
+    /// The signal's key; of an arm's joint `position@elbow`.
+    pub signal: String,
     /// Why it is not clear.
     pub why: String,
     /// What it can be, best first, `COLUMN` or `COLUMN:UNIT`; may be empty.
@@ -37,8 +40,10 @@ pub struct Look {
     pub named: bool,
     /// Signals as far as they are clear.
     pub signals: Vec<NewSignal>,
-    /// Kind of joint, by the units.
+    /// Kind of joint, by the units; of an arm that of its first joint.
     pub joint: JointType,
+    /// The arm's joints, where it is about one.
+    pub arm: Option<ArmChain>,
     /// What is not clear.
     pub questions: Vec<Question>,
     /// What was taken for granted.
@@ -54,16 +59,24 @@ pub fn look(request: &Request) -> Result<Look, NewError> {
     if request.files.is_empty() {
         return Err(NewError::NoFile);
     }
-    let mut sources = Sources::look(request)?;
-    let guessed = guess(request, &sources);
+    let chain = request.arm.as_ref().map(ArmChain::read).transpose()?;
+    let mut sources = Sources::look(request, chain.as_ref())?;
+    let guessed = guess(request, &sources, chain.as_ref());
     let questions = guessed
         .questions
         .into_iter()
         .filter_map(|error| match error {
             NewError::Unsure {
-                role, why, choices, ..
+                role,
+                joint,
+                why,
+                choices,
+                ..
             } => Some(Question {
-                signal: role.key(),
+                signal: match joint {
+                    Some(joint) => format!("{}@{joint}", role.key()),
+                    None => role.key().to_owned(),
+                },
                 why,
                 choices,
             }),
@@ -76,7 +89,8 @@ pub fn look(request: &Request) -> Result<Look, NewError> {
     }
     Ok(Look {
         questions: questions.collect(),
-        joint: request.joint.unwrap_or_else(|| joint_of(&guessed.signals)),
+        joint: kind(request, chain.as_ref(), &guessed.signals),
+        arm: chain,
         signals: guessed.signals,
         warnings: guessed.taken.into_iter().map(|taken| taken.text).collect(),
         recordings: sources.recordings,

@@ -5,12 +5,19 @@ mod add;
 mod arm;
 mod arm_auto;
 mod auto;
+mod chain;
 mod doubt;
 mod equation;
 mod error;
 mod look;
 mod new;
 mod paths;
+mod read;
+mod request;
+mod signals;
+mod signals_of_arm;
+mod signals_of_contact;
+mod signals_of_joint;
 mod sources;
 mod start;
 mod trend;
@@ -39,12 +46,16 @@ pub use add::{Added, beside, output_of, own_effect, refuse_existing};
 pub use arm::{AddedToArm, OpenedArm, open_arm};
 pub use arm_auto::{ArmAutoEvent, AutomaticArm, auto_arm, name_of};
 pub use auto::{AutoEvent, AutoOptions, Automatic, Step, auto};
+pub use chain::{ArmChain, ArmJoint};
 pub use doubt::Doubt;
 pub use equation::Formula;
 pub use error::{NewError, WorkError};
 pub use look::{Look, Question, look};
-pub use new::{Made, NewSignal, Request, Said, make};
+pub use new::{Made, make};
 pub use paths::{Offered, offered};
+pub use read::WhatIsRead;
+pub use request::{OfArm, Request, Said};
+pub use signals::NewSignal;
 pub use start::{Again, Present, Started, mapping_of, start};
 pub use trend::{Point, Trend, TrendError, trends};
 pub use trial::{Trial, trial};
@@ -80,26 +91,6 @@ impl Opened {
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
         self.experiment.force_unit()
-    }
-
-    /// Mean rate of what is used \[Hz\].
-    #[must_use]
-    pub fn rate_hz(&self) -> f64 {
-        let sessions = self.dataset.sessions.iter();
-        let (samples, seconds) = sessions.fold((0, 0.0), |(samples, seconds), session| {
-            let count = session.len();
-            (samples + count, seconds + count as f64 * session.period)
-        });
-        samples as f64 / f64::max(seconds, f64::MIN_POSITIVE)
-    }
-
-    /// Share of all samples that is used.
-    #[must_use]
-    pub fn share_used(&self) -> f64 {
-        let all: usize = self.tallies.iter().map(|tally| tally.samples).sum();
-        let used = self.tallies.iter();
-        let used = used.map(|tally| tally.used.saturating_sub(tally.bridged));
-        used.sum::<usize>() as f64 / all.max(1) as f64
     }
 
     /// The model's equation, part by part.

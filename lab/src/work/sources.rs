@@ -3,8 +3,15 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{NewError, WorkError, new::Request, offered};
-use crate::table::{ColumnSurvey, Format, Table};
+use ferntast_bus::mcap::BagReader;
+
+use super::{NewError, WorkError, chain::ArmChain, request::Request};
+use crate::{
+    experiment::ExperimentError,
+    guess::{array_by_name, opposes},
+    numbers::{joint_arrays_of, numbers_of},
+    table::{ColumnSurvey, Format, Table},
+};
 
 /// What the files are.
 #[derive(Clone, Debug)]
@@ -25,7 +32,14 @@ impl Sources {
         self.columns.iter().find(|own| own.name == name)
     }
 
-    pub(super) fn look(request: &Request) -> Result<Sources, NewError> {
+    /// The column that a path is made from, which may end in functions.
+    pub(super) fn of(&self, path: &str) -> Option<&ColumnSurvey> {
+        let bare = path.split(".@").next().unwrap_or_default();
+        self.column(path).or_else(|| self.column(bare))
+    }
+
+    /// Looks at the files; `chain` is the arm's that they are of.
+    pub(super) fn look(request: &Request, chain: Option<&ArmChain>) -> Result<Sources, NewError> {
         let mut files = Vec::new();
         for file in &request.files {
             files.extend(tables_in(file)?);
@@ -34,7 +48,7 @@ impl Sources {
         match (files.iter().all(is_table), files.iter().any(is_table)) {
             (true, _) => tables(request, files),
             (false, true) => Err(NewError::Mixed),
-            (false, false) => messages(files),
+            (false, false) => messages(files, request, chain),
         }
     }
 }
@@ -67,15 +81,30 @@ fn tables_in(file: &Path) -> Result<Vec<PathBuf>, NewError> {
     }
 }
 
-fn messages(files: Vec<PathBuf>) -> Result<Sources, NewError> {
-    let mut columns = Vec::new();
+fn messages(
+    files: Vec<PathBuf>,
+    request: &Request,
+    chain: Option<&ArmChain>,
+) -> Result<Sources, NewError> {
+    let mut paths = Vec::new();
     if let Some(first) = files.first() {
-        let paths = offered(first)?.paths.into_iter();
-        columns = paths.map(|name| ColumnSurvey::new(name, None)).collect();
+        let bag = BagReader::open(first)
+            .map_err(|error| WorkError::from(ExperimentError::from(error)))?;
+        // An arm's joints by their names: their order in the array may be another.
+        for array in chain.map_or_else(Vec::new, |_| joint_arrays_of(&bag)) {
+            let joints = chain.map_or_else(Vec::new, ArmChain::names).into_iter();
+            paths.extend(joints.map(|joint| array_by_name(&array, joint)));
+        }
+        for path in numbers_of(&bag) {
+            let turned = opposes(&path).filter(|_| request.is_contact());
+            paths.push(path);
+            paths.extend(turned);
+        }
     }
+    let columns = paths.into_iter().map(|name| ColumnSurvey::new(name, None));
     Ok(Sources {
         recordings: files.into_iter().map(|file| vec![file]).collect(),
-        columns,
+        columns: columns.collect(),
         tables: false,
         named: true,
     })

@@ -9,7 +9,7 @@ use std::{
 
 use sha2::{Digest, Sha256};
 
-use super::{Opened, WorkError};
+use super::{WorkError, read::WhatIsRead};
 use crate::experiment::{self, Change, Changed, Experiment, Mapped, Mapping};
 
 /// An experiment file that is mapped again.
@@ -33,8 +33,8 @@ pub struct Present {
 /// What was written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Started {
-    /// The experiment with its recordings.
-    pub opened: Opened,
+    /// What is read of its recordings.
+    pub read: WhatIsRead,
     /// What of an experiment file that was mapped again is replaced.
     pub changes: Vec<Change>,
 }
@@ -43,7 +43,7 @@ pub struct Started {
 ///
 /// # Errors
 ///
-/// [`WorkError`]: it is no experiment file, or one of a whole arm.
+/// [`WorkError`]: it is no experiment file; the URDF that it names cannot be read.
 pub fn mapping_of(path: &Path) -> Result<Present, WorkError> {
     let text = read(path)?;
     Ok(Present {
@@ -94,13 +94,16 @@ pub fn start(
     }
     let Changed { text, changes } = text(mapping, again, output)?;
     let experiment = Experiment::parse(&text, output, &experiment::data_folder())?;
-    let opened = Opened::read(experiment)?;
+    let what = WhatIsRead::of(&experiment)?;
     let written = match over {
         true => replace(output, &text),
         false => fs::File::create_new(output).and_then(|mut file| file.write_all(text.as_bytes())),
     };
     match written {
-        Ok(()) => Ok(Started { opened, changes }),
+        Ok(()) => Ok(Started {
+            read: what,
+            changes,
+        }),
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(WorkError::Exists {
             path: output.to_owned(),
         }),

@@ -5,8 +5,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::{
-    Again, Doubt, Opened, WorkError,
+    Again, Doubt, WorkError,
     doubt::{Taken, doubts},
+    read::WhatIsRead,
     start::text,
 };
 use crate::{
@@ -18,7 +19,7 @@ use crate::{
 /// What would be read and written.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trial {
-    /// Keys of signals that are to be chosen yet.
+    /// Keys of signals that are to be chosen yet; `contour` where a tip's is.
     pub missing: Vec<String>,
     /// Each signal of each recording, as far as it can be read.
     pub signals: Vec<Seen>,
@@ -61,10 +62,14 @@ pub fn trial(mapping: &Mapping, again: Option<&Again>, output: &Path) -> Result<
         Err(WorkError::Changed { .. }) => return parsed.map(|_| trial),
         Err(_) => partly(&whole, &parse),
     };
-    let needed = Mapping::needed(mapping.joint).iter();
-    let missing = needed.filter(|key| !whole.signals.contains_key(**key));
     if parsed.is_err() {
-        trial.missing = missing.map(|key| (*key).to_owned()).collect();
+        let needed = whole.needed().into_iter();
+        trial.missing = needed
+            .filter(|key| !whole.signals.contains_key(key))
+            .collect();
+        if whole.signals.contains_key("tip[0]") && whole.contour.is_none() {
+            trial.missing.push("contour".to_owned());
+        }
     }
     if let Some(experiment) = &shown {
         let (seen, errors) = preview(experiment);
@@ -73,15 +78,15 @@ pub fn trial(mapping: &Mapping, again: Option<&Again>, output: &Path) -> Result<
         trial.troubles = errors.iter().map(ToString::to_string).collect();
     }
     let opened = match parsed {
-        Ok((experiment, _)) => Opened::read(stated(experiment)),
+        Ok((experiment, _)) => WhatIsRead::of(&stated(experiment)),
         Err(error) => Err(error),
     };
     match opened {
-        Ok(opened) => {
-            trial.rate_hz = Some(opened.rate_hz());
-            trial.share_used = Some(opened.share_used());
-            trial.recordings = opened.tallies;
-            trial.warnings = opened.notes;
+        Ok(read) => {
+            trial.rate_hz = Some(read.rate_hz);
+            trial.share_used = Some(read.share_used);
+            trial.recordings = read.recordings;
+            trial.warnings = read.notes;
         }
         // What is still to be chosen is told as that.
         Err(_) if !trial.missing.is_empty() => {}
@@ -102,9 +107,12 @@ type Parsed = Result<(Experiment, Vec<Change>), WorkError>;
 /// no path; if that does not do, units are left out.
 fn partly(mapping: &Mapping, parse: &dyn Fn(&Mapping) -> Parsed) -> Option<Experiment> {
     let mut mapping = mapping.clone();
-    for key in Mapping::needed(mapping.joint) {
-        let place = mapping.signals.entry((*key).to_owned());
-        place.or_default();
+    for key in mapping.needed() {
+        mapping.signals.entry(key).or_default();
+    }
+    // Coordinates are looked at before they are laid on anything.
+    if mapping.signals.contains_key("tip[0]") && mapping.contour.is_none() {
+        mapping.contour = Some(vec![[0.0, 0.0], [1.0, 0.0]]);
     }
     let found = parse(&mapping).or_else(|_| {
         for place in mapping.signals.values_mut() {
@@ -120,6 +128,8 @@ fn stated(mut experiment: Experiment) -> Experiment {
     let keys = [
         "time",
         "position",
+        "tip[0]",
+        "tip[1]",
         "motor_torque",
         "joint_torque",
         "normal_force",
@@ -136,7 +146,8 @@ fn stated(mut experiment: Experiment) -> Experiment {
 }
 
 fn doubted(mapping: &Mapping, experiment: &Experiment, seen: &[Seen]) -> Vec<Doubt> {
-    let position = seen.iter().find(|own| own.signal == "position");
+    let of_position = |own: &&Seen| own.signal.starts_with("position");
+    let position = seen.iter().find(of_position);
     let taken = mapping.signals.iter().filter_map(|(key, place)| {
         let unit = place.unit.clone();
         let of_time = key == "time";

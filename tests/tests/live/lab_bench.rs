@@ -95,6 +95,16 @@ impl Bench {
         assert_eq!(there, json!(true), "{selector} has no {value}");
     }
 
+    /// Writes into a field, as a person does who has ended.
+    pub fn write(&self, selector: &str, text: &str) {
+        self.browser.find(selector);
+        self.browser.run(
+            "const field = document.querySelector(arguments[0]); field.value = arguments[1];
+             for (const name of ['input', 'change']) field.dispatchEvent(new Event(name))",
+            vec![json!(selector), json!(text)],
+        );
+    }
+
     pub fn value(&self, selector: &str) -> String {
         let script = "return document.querySelector(arguments[0])?.value ?? 'nothing'";
         let value = self.browser.run(script, vec![json!(selector)]);

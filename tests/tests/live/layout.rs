@@ -4,7 +4,11 @@ use std::{fs, path::Path, time::Duration};
 
 use ferntast_tests::{Browser, PATIENCE, Session, run};
 
-use super::{console::session_with_page, lab_bench, lab_page};
+use super::{
+    console::session_with_page,
+    lab_bench::{self, Bench},
+    lab_page, lab_subjects,
+};
 
 /// A page that is a file, with at least `words` on its canvases.
 fn fits(browser: &Browser, page: &Path, words: f64) {
@@ -148,6 +152,40 @@ fn the_form_for_signals_is_read_at_every_width() {
     drop(browser);
     process.interrupt();
     process.wait(PATIENCE).success();
+}
+
+#[test]
+fn the_forms_for_contacts_arms_and_extra_signals_are_read_at_every_width() {
+    let files = [
+        ("edge.csv", lab_subjects::edge(6000)),
+        ("run.csv", lab_subjects::arm_run(6000)),
+        ("three.urdf", lab_subjects::URDF.to_owned()),
+    ];
+    let bench = Bench::new(&files.each_ref().map(|(name, text)| (*name, text.as_str())));
+    let browser = &bench.browser;
+    let looked = "return ['asking', 'refused', 'read'].includes(document.querySelector('#reading')?.dataset.state)";
+    bench.open("edge.csv");
+    browser.until("it is looked at", lab_page::LONG, looked);
+    bench.choose("#joint-kind", "contact");
+    bench.comes_out("asking");
+    bench.choose("#by-tip", "tip");
+    bench.comes_out("asking");
+    bench.write("#contour", "0.2 0.1, 0.2866025404 0.15, 0.3732050808 0.2");
+    browser.click("#add-extra");
+    bench.write("#extra-0-name", "temperature_of_the_oil");
+    bench.choose("#extra-0-column", "tip_x_mm");
+    browser.click("#add-extra");
+    bench.comes_out("read");
+    assert_eq!(browser.misfits(), Vec::<String>::new());
+    bench.open("run.csv");
+    browser.until("it is looked at", lab_page::LONG, looked);
+    bench.choose("#joint-kind", "arm");
+    bench.comes_out("read");
+    // With a question of one joint.
+    bench.choose("[id='signal-position@elbow_joint']", "elbow_tau");
+    bench.comes_out("read");
+    assert_eq!(browser.misfits(), Vec::<String>::new());
+    bench.end();
 }
 
 /// A page that cannot be read is found: else the tests above say nothing.

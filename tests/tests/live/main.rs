@@ -19,6 +19,7 @@ mod haply;
 mod lab_bench;
 mod lab_mapping;
 mod lab_page;
+mod lab_subjects;
 mod layout;
 mod leader;
 mod link_tls;
