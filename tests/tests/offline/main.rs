@@ -8,6 +8,7 @@ mod fleet;
 mod installed;
 mod lab;
 mod lab_contact;
+mod lab_large;
 mod lab_new;
 mod lab_trend;
 mod laws;
