@@ -200,7 +200,7 @@ fn arrays_of_messages_are_matched_by_name() {
         read.signals.position,
         "/js.position[:]{name==\"shoulder\"}.@deg2rad"
     );
-    let other = &read.signals.extra["motor_torque elbow"];
+    let other = &read.signals.extra["motor_torque@elbow"];
     assert_eq!(other, "/js.effort[:]{name==\"elbow\"}");
 }
 

@@ -81,9 +81,9 @@ async function open(entry, joint = 0) {
 }
 
 /** An experiment file was written: the list knows it, and it is opened. */
-async function begun(path) {
+async function begun(path, joint = 0) {
   await files.load();
-  await open({ path, kind: "experiment" });
+  await open({ path, kind: "experiment" }, joint);
 }
 
 const target = () => ({ path: state.path, joint: state.joint });
@@ -116,11 +116,11 @@ async function discover() {
 
 async function add(effect, bounds = []) {
   sections.trouble.hidden = true;
-  const done = await long(`Adding ${effect} and fitting again …`, "/api/lab/add", { path: state.path, effect, bounds });
+  const done = await long(`Adding ${effect} and fitting again …`, "/api/lab/add", { ...target(), effect, bounds });
   if (!done) return false;
-  const { held_out_before: before, held_out_after: after } = done.added;
-  toast(`${done.added.effect}: error on data held out ${after < before ? "falls" : "rises"} by ${Math.abs((1 - after / before) * 100).toFixed(1)} %`);
-  await begun(done.path);
+  const { held_out_before: before, held_out_after: after, joint } = done.added;
+  toast(`${done.added.effect}${joint ? ` of ${joint}` : ""}: error on data held out ${after < before ? "falls" : "rises"} by ${Math.abs((1 - after / before) * 100).toFixed(1)} %`);
+  await begun(done.path, state.joint);
   return true;
 }
 
@@ -136,7 +136,7 @@ async function auto() {
 function undo() {
   const steps = state.view.history;
   const parent = steps[steps.length - 2];
-  if (parent) open({ path: parent.path, kind: "experiment" });
+  if (parent) actions.open(parent.path);
 }
 
 async function report() {
@@ -171,7 +171,7 @@ const own = () => map({ files: [state.path], known: state.view.joints[state.join
 const actions = {
   diagnose, discover, add, auto, undo, report, own, again,
   joint: (number) => open({ path: state.path, kind: "experiment" }, number),
-  open: (path) => open({ path, kind: "experiment" }),
+  open: (path) => open({ path, kind: "experiment" }, state.joint),
 };
 
 /** Starts the lab. */

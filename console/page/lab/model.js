@@ -93,7 +93,7 @@ export function show(parent, { view, joint, path }, actions) {
     make("div", { className: "tags", "aria-label": "The model" },
       make("span", { className: "tag", textContent: inertia(own) }),
       own.effects.map((effect) => make("span", {
-        className: `tag${nameOf(effect) === added ? " new" : ""}`, title: typeof effect === "string" ? "" : effect.expression, textContent: nameOf(effect).replaceAll("_", " "),
+        className: `tag${[nameOf(effect), `${nameOf(effect)}@${own.title}`].includes(added) ? " new" : ""}`, title: typeof effect === "string" ? "" : effect.expression, textContent: nameOf(effect).replaceAll("_", " "),
       }))),
     parts.figures, parts.warnings, parts.used,
     make("details", { id: "equation" }, make("summary", { textContent: "The model's equation" }),

@@ -250,9 +250,19 @@ pub struct At {
 #[derive(Clone, Debug, Deserialize)]
 pub struct Joint {
     path: String,
-    /// Which joint of a recording of ferntast's own, from 0.
+    /// Which joint of an arm, or of a recording of ferntast's own, from 0.
     #[serde(default)]
     joint: usize,
+}
+
+impl Joint {
+    /// There are fewer.
+    fn missing(&self) -> LabError {
+        LabError::Joint {
+            path: self.path.clone(),
+            number: self.joint,
+        }
+    }
 }
 
 /// The lab's addresses.

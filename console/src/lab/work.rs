@@ -10,7 +10,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use ferntast_identification::{
-    Comparison, Diagnosis,
+    Comparison, Diagnosis, Term,
     comparison::VariesTogether,
     fit::{Implausible, Pair},
 };
@@ -93,10 +93,7 @@ fn with_joint<T>(
     work: impl FnOnce(&Opened) -> Result<T, LabError>,
 ) -> Result<T, LabError> {
     let opened = lab.open(&joint.path)?;
-    let one = opened.get(joint.joint).ok_or_else(|| LabError::Joint {
-        path: joint.path.clone(),
-        number: joint.joint,
-    })?;
+    let one = opened.get(joint.joint).ok_or_else(|| joint.missing())?;
     work(one)
 }
 
@@ -184,7 +181,8 @@ pub async fn discover(State(lab): State<Arc<Lab>>, Json(joint): Json<Joint>) -> 
 /// What is to be added to which experiment.
 #[derive(Debug, Deserialize)]
 pub struct Addition {
-    path: String,
+    #[serde(flatten)]
+    joint: Joint,
     /// An id, or `NAME=EXPRESSION`.
     effect: String,
     /// `NAME=LOW,HIGH` of parameters that are searched.
@@ -195,22 +193,31 @@ pub struct Addition {
     output: Option<String>,
 }
 
-/// Adds an effect and writes the new experiment file.
+/// Adds an effect, in an arm's file to one joint, and writes the new experiment file.
 pub async fn add(State(lab): State<Arc<Lab>>, Json(addition): Json<Addition>) -> Response {
     in_lines(&lab, move |lab, progress| {
         let effect = work::own_effect(&addition.effect, &addition.bounds)?;
-        let parent = lab.there(&addition.path)?;
-        let output = match &addition.output {
-            Some(output) => lab.new_file(output)?,
-            None => work::beside(&parent, effect.name()),
+        let parent = lab.there(&addition.joint.path)?;
+        let output = |effect: &Term| match &addition.output {
+            Some(output) => lab.new_file(output),
+            None => Ok(work::beside(&parent, effect.name())),
         };
         progress(0.1);
-        let joint = Joint {
-            path: addition.path.clone(),
-            joint: 0,
-        };
-        let added = with_joint(lab, &joint, |opened| Ok(opened.add(&effect, &output)?))?;
-        Ok(json!({ "path": lab.name(&output), "added": added }))
+        match work::open_arm(&parent)? {
+            Some(arm) => {
+                let effect = arm.of_joint(effect, addition.joint.joint);
+                let effect = effect.ok_or_else(|| addition.joint.missing())?;
+                let output = output(&effect)?;
+                let added = arm.add(&effect, &output)?;
+                Ok(json!({ "path": lab.name(&output), "added": added }))
+            }
+            None => {
+                let output = output(&effect)?;
+                let add = |opened: &Opened| Ok(opened.add(&effect, &output)?);
+                let added = with_joint(lab, &addition.joint, add)?;
+                Ok(json!({ "path": lab.name(&output), "added": added }))
+            }
+        }
     })
 }
 

@@ -6,7 +6,7 @@ use std::{
 };
 
 use ferntast_identification::{
-    Dataset, Inertia, RecordedSession, Term,
+    CustomEffect, Dataset, Inertia, RecordedSession, Term,
     arm::{
         self, ArmComparison, ArmDataset, ArmDiagnosis, ArmDiscovery, ArmParts, ArmSession, ArmSpec,
         ArmTerm, PreparedArm,
@@ -177,6 +177,20 @@ impl OpenedArm {
             parameters: addition.parameters,
             not_excited: addition.not_excited,
             held_possible: addition.held_possible,
+        })
+    }
+
+    /// `effect` of joint `number`, from 0, as an experiment file names it: `stribeck@elbow`. `None`:
+    /// there is no such joint.
+    #[must_use]
+    pub fn of_joint(&self, effect: Term, number: usize) -> Option<Term> {
+        let joint = self.dataset.joints.get(number)?;
+        Some(match effect {
+            Term::Catalogue(id) => Term::Catalogue(format!("{id}@{joint}")),
+            Term::Custom(own) => Term::Custom(CustomEffect {
+                name: format!("{}@{joint}", own.name),
+                ..own
+            }),
         })
     }
 

@@ -260,6 +260,43 @@ fn a_whole_arm_is_mapped_joint_by_joint_and_again_with_a_joint_less() {
 }
 
 #[test]
+fn an_effect_is_added_to_the_joint_of_an_arm_that_is_shown() {
+    let bench = Bench::new(&[("run.csv", &arm_run(COUNT)), ("three.urdf", URDF)]);
+    bench.open("run.csv");
+    let asked = "return ['asking', 'refused', 'read'].includes(document.querySelector('#reading')?.dataset.state)";
+    bench.browser.until("it is looked at", LONG, asked);
+    bench.choose("#joint-kind", "arm");
+    bench.comes_out("read");
+    bench.begun();
+    let is_shown = |title: &str, steps: usize| {
+        let look = format!(
+            "return document.querySelector('#lab-head h1')?.textContent === {title:?}
+             && JSON.parse(document.querySelector('#chart-stairs')?.dataset.errors ?? '[]').length === {steps}"
+        );
+        bench.browser.until(title, LONG, &look);
+    };
+    is_shown("shoulder_joint", 1);
+    bench.browser.click("#joint-1");
+    is_shown("elbow_joint", 1);
+    bench.choose("#add-effect", "quadratic_viscous");
+    is_shown("elbow_joint", 2);
+    let child = "run+quadratic_viscous@elbow_joint.toml";
+    let text = bench.text(child);
+    assert!(text.contains("\"quadratic_viscous@elbow_joint\""), "{text}");
+    let compared = bench.compared(child);
+    for joint in JOINTS {
+        let own = &compared["joints"][format!("{joint}_joint")];
+        // There is none: what is found is next to nothing.
+        let found = parameter(own, "b2");
+        assert_eq!(found.is_nan(), joint != "elbow", "{joint}: {found}");
+        assert!(found.is_nan() || found.abs() < 0.01, "{found}");
+    }
+    bench.browser.click("#undo");
+    is_shown("elbow_joint", 1);
+    bench.end();
+}
+
+#[test]
 fn extra_signals_are_added_read_and_removed() {
     let run = table("t,q,tau,oil_K,u", COUNT, |n, t, q, tau| {
         let oil = 290.0 + 1e-3 * f64::from(n);
