@@ -3,6 +3,7 @@
 use std::{path::Path, thread, time::Duration};
 
 use ferntast_msgs::{
+    Time,
     sample::{Fault, OperatingState},
     topics,
 };
@@ -299,8 +300,42 @@ fn holds_have_a_reason(path: &Path) {
             .expect("a command before the hold");
         // Longer where the whole machine was held up; how soon the arm holds, the timing
         // tests say.
-        assert!((0.015..0.5).contains(&silent), "{silent} s before {now:?}");
+        assert!(
+            (0.015..0.5).contains(&silent),
+            "{silent} s before {now:?}; {}",
+            told_around(path, now.stamp)
+        );
     }
+}
+
+/// What the servo did in the 60 ms before `moment`, and said around it.
+fn told_around(path: &Path, moment: Time) -> String {
+    let before = |stamp: Time| moment.seconds_since(stamp);
+    let in_ms = |stamps: Vec<Time>| {
+        let near = stamps.into_iter().map(before);
+        let near = near.filter(|before| (-0.005..0.06).contains(before));
+        near.map(|before| format!("{:.1} ", -1e3 * before))
+            .collect::<String>()
+    };
+    let steps = messages(path, topics::FOLLOWER_SETPOINT_JS);
+    let measured = messages(path, topics::FOLLOWER_MEASURED_JS);
+    let commands = messages(path, topics::FOLLOWER_SERVO_CP);
+    let [made, taken] = [
+        commands.iter().map(|own| own.message.stamp).collect(),
+        commands.iter().map(|own| own.received).collect(),
+    ]
+    .map(in_ms);
+    let steps = in_ms(steps.iter().map(|own| own.message.stamp).collect());
+    let measured = in_ms(measured.iter().map(|own| own.message.stamp).collect());
+    let health = messages(path, topics::DIAGNOSTICS);
+    let said = health.iter().map(|own| own.message);
+    let said = said.filter(|own| before(own.stamp).abs() < 1.1 && own.node.as_str() == "servo");
+    let said: Vec<_> = said
+        .map(|own| (own.message, own.missed, own.refused))
+        .collect();
+    format!(
+        "servo at {steps}ms, arm at {measured}ms, commands at {made}ms, recorded at {taken}ms; {said:?}"
+    )
 }
 
 #[test]

@@ -175,6 +175,12 @@ fn it_hears_a_recording_that_is_played() {
         ("velocity", recorded.message.velocity),
         ("effort", recorded.message.effort),
     ] {
-        assert_eq!(heard["last"][key], serde_json::json!(numbers[..2]), "{key}");
+        let told = heard["last"][key].as_array().expect("a list");
+        assert_eq!(told.len(), 2, "{key}");
+        for (told, number) in told.iter().zip(numbers) {
+            // Of JSON the last bit may be read wrongly.
+            let off = (told.as_f64().expect("a number") - number).abs();
+            assert!(off <= f64::EPSILON * number.abs(), "{key}: {told} {number}");
+        }
     }
 }
