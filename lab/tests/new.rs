@@ -3,6 +3,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../../tests/shared/arm_of_three.rs"]
+mod arm_of_three;
+
 use std::{
     fmt::Write as _,
     fs,
@@ -14,7 +17,6 @@ use ferntast_lab::{
     guess::Role,
     work::{self, Made, NewError, OfArm, Request, Said, make},
 };
-use ferntast_model::{Joints, rigid_body::Vector3};
 
 /// The joint: τ_m = J q̈ + b₀ sign(q̇) + b₁ q̇.
 const INERTIA: f64 = 0.8;
@@ -395,45 +397,15 @@ fn a_contact_is_made_of_a_place_or_of_its_tip_on_a_contour() {
     }
 }
 
-const THREE: &str = r#"<robot name="three"><link name="base"/>
-<link name="upper"><inertial><origin xyz="0.2 0 0"/><mass value="2"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.03"/></inertial></link>
-<link name="lower"><inertial><origin xyz="0.15 0 0"/><mass value="1"/><inertia ixx="0.005" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
-<link name="hand"><inertial><origin xyz="0.05 0 0"/><mass value="0.5"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/></inertial></link>
-<joint name="shoulder_joint" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
-<joint name="elbow_joint" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0.4 0 0"/><axis xyz="0 1 0"/></joint>
-<joint name="wrist_joint" type="continuous"><parent link="lower"/><child link="hand"/><origin xyz="0.3 0 0"/><axis xyz="1 0 0"/></joint></robot>"#;
-
 /// A table of an arm of three joints, whose columns are called by `called` of a number; positions
 /// in degrees.
 fn arm_table(called: impl Fn(usize) -> [String; 2]) -> String {
-    let robot = ferntast_urdf::Robot::read(THREE.as_bytes()).unwrap();
-    let chain = robot.whole_arm().unwrap().chain;
-    let gravity = Vector3::new(0.0, 0.0, -9.81);
     let names: Vec<String> = (0..3).flat_map(called).collect();
     let mut text = format!("t,{}\n", names.join(","));
-    for n in 0..COUNT {
-        let t = f64::from(n) * 0.002;
-        let states = [0, 1, 2].map(|joint| {
-            let (mut q, mut qd, mut qdd) = (0.0, 0.0, 0.0);
-            for (size, rate) in [(0.6, 0.9), (0.25, 2.3), (0.1, 5.1)] {
-                let rate = rate * (1.0 + 0.3 * f64::from(joint));
-                let (sine, cosine) = (rate * t + f64::from(joint)).sin_cos();
-                q += size * sine;
-                qd += size * rate * cosine;
-                qdd -= size * rate * rate * sine;
-            }
-            [q, qd, qdd]
-        });
-        let [q, qd, qdd] = [0, 1, 2].map(|order| {
-            let each = states.map(|own| own[order]);
-            Joints::from_slice(&each).unwrap()
-        });
-        let links = chain.inverse_dynamics(&q, &qd, &qdd, &gravity);
+    for (t, q, torque) in arm_of_three::run(COUNT) {
         write!(text, "{t:.3}").unwrap();
-        for joint in 0..3 {
-            let friction = 0.8 * qd[joint].signum() + 0.5 * qd[joint];
-            let torque = links[joint] + [0.3, 0.1, 0.05][joint] * qdd[joint] + friction;
-            write!(text, ",{:.9},{torque:.9}", q[joint].to_degrees()).unwrap();
+        for (q, torque) in q.iter().zip(torque) {
+            write!(text, ",{:.9},{torque:.9}", q.to_degrees()).unwrap();
         }
         text.push('\n');
     }
@@ -443,8 +415,8 @@ fn arm_table(called: impl Fn(usize) -> [String; 2]) -> String {
 #[test]
 fn a_whole_arm_is_made_by_its_urdf_and_names_or_numbers_of_columns() {
     let bench = Bench::new();
-    let urdf = bench.write("three.urdf", THREE);
-    let joints = ["shoulder", "elbow", "wrist"];
+    let urdf = bench.write("three.urdf", arm_of_three::URDF);
+    let joints = arm_of_three::JOINTS;
     let named = arm_table(|at| ["q", "tau"].map(|own| format!("{own}_{}", joints[at])));
     bench.write("named.csv", named);
     bench.write(

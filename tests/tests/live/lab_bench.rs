@@ -77,6 +77,14 @@ impl Bench {
         self.browser.click(&format!("[data-path='{name}']"));
     }
 
+    /// Opens a recording that is about another kind than a joint: `contact` or `arm`.
+    pub fn open_as(&self, name: &str, kind: &str) {
+        self.open(name);
+        let looked = "return ['asking', 'refused', 'read'].includes(document.querySelector('#reading')?.dataset.state)";
+        self.browser.until("it is looked at", LONG, looked);
+        self.choose("#joint-kind", kind);
+    }
+
     /// What was said last has been tried, and came out so.
     pub fn comes_out(&self, state: &str) {
         let script =

@@ -3,11 +3,10 @@
 
 use std::fmt::Write as _;
 
-use ferntast_model::{Joints, rigid_body::Vector3};
-use ferntast_urdf::Robot;
 use serde_json::{Value, json};
 
 use super::{
+    arm_of_three::{self, ARMATURES, JOINTS, URDF},
     lab_bench::{Bench, COUNT, table},
     lab_page::LONG,
 };
@@ -28,51 +27,13 @@ pub fn edge(count: u32) -> String {
     })
 }
 
-/// An arm of three joints, and a camera's that is not of it.
-pub const URDF: &str = r#"<robot name="three"><link name="base"/>
-<link name="upper"><inertial><origin xyz="0.2 0 0"/><mass value="2"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.03"/></inertial></link>
-<link name="lower"><inertial><origin xyz="0.15 0 0"/><mass value="1"/><inertia ixx="0.005" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
-<link name="hand"><inertial><origin xyz="0.05 0 0"/><mass value="0.5"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.002"/></inertial></link>
-<joint name="wrist_joint" type="continuous"><parent link="lower"/><child link="hand"/><origin xyz="0.3 0 0"/><axis xyz="1 0 0"/></joint>
-<joint name="shoulder_joint" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
-<joint name="elbow_joint" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0.4 0 0"/><axis xyz="0 1 0"/></joint></robot>"#;
-
-const JOINTS: [&str; 3] = ["shoulder", "elbow", "wrist"];
-/// Inertias of motors and gears \[kg m²\].
-const ARMATURES: [f64; 3] = [0.3, 0.1, 0.05];
-
-/// A run of it: angles in degrees, with 0.8 Nm and 0.5 Nm s/rad of friction in each joint.
+/// A run of the arm of three joints: angles in degrees.
 pub fn arm_run(count: u32) -> String {
-    let robot = Robot::read(URDF.as_bytes()).expect("a URDF");
-    let chain = robot.whole_arm().expect("an arm").chain;
-    let gravity = Vector3::new(0.0, 0.0, -9.81);
     let names = ["q_deg", "tau"].map(|own| JOINTS.map(|joint| format!("{joint}_{own}")));
     let mut text = format!("t,{},{}\n", names[0].join(","), names[1].join(","));
-    for n in 0..count {
-        let t = f64::from(n) * 0.002;
-        let states = [0, 1, 2].map(|joint| {
-            let (mut q, mut qd, mut qdd) = (0.0, 0.0, 0.0);
-            for (size, rate) in [(0.6, 0.9), (0.25, 2.3), (0.1, 5.1)] {
-                let rate = rate * (1.0 + 0.3 * f64::from(joint));
-                let (sine, cosine) = (rate * t + f64::from(joint)).sin_cos();
-                q += size * sine;
-                qd += size * rate * cosine;
-                qdd -= size * rate * rate * sine;
-            }
-            [q, qd, qdd]
-        });
-        let [q, qd, qdd] = [0, 1, 2].map(|order| {
-            let each = states.map(|own| own[order]);
-            Joints::from_slice(&each).expect("three joints")
-        });
-        let links = chain.inverse_dynamics(&q, &qd, &qdd, &gravity);
-        let torque = [0, 1, 2].map(|joint| {
-            let friction = 0.8 * qd[joint].signum() + 0.5 * qd[joint];
-            links[joint] + ARMATURES[joint] * qdd[joint] + friction
-        });
-        let angles = [0, 1, 2].map(|joint| q[joint].to_degrees());
-        let words = angles.iter().chain(&torque).map(|own| format!("{own:.9}"));
-        let words: Vec<String> = words.collect();
+    for (t, q, torque) in arm_of_three::run(count) {
+        let words = q.map(f64::to_degrees).into_iter().chain(torque);
+        let words: Vec<String> = words.map(|own| format!("{own:.9}")).collect();
         writeln!(text, "{t:.3},{}", words.join(",")).expect("a string");
     }
     text
@@ -100,10 +61,7 @@ fn again(bench: &Bench) {
 #[test]
 fn a_contact_is_mapped_by_its_tip_on_a_contour_and_again() {
     let bench = Bench::new(&[("edge.csv", &edge(COUNT))]);
-    bench.open("edge.csv");
-    let asked = "return ['asking', 'refused', 'read'].includes(document.querySelector('#reading')?.dataset.state)";
-    bench.browser.until("it is looked at", LONG, asked);
-    bench.choose("#joint-kind", "contact");
+    bench.open_as("edge.csv", "contact");
     // Forces are guessed where `lab new` guesses; there is no place along the contour.
     bench.comes_out("asking");
     assert_eq!(bench.value("#signal-tangential_force"), "F_T");
@@ -170,10 +128,7 @@ fn a_contact_is_mapped_by_its_tip_on_a_contour_and_again() {
 #[test]
 fn a_whole_arm_is_mapped_joint_by_joint_and_again_with_a_joint_less() {
     let bench = Bench::new(&[("run.csv", &arm_run(COUNT)), ("three.urdf", URDF)]);
-    bench.open("run.csv");
-    let asked = "return ['asking', 'refused', 'read'].includes(document.querySelector('#reading')?.dataset.state)";
-    bench.browser.until("it is looked at", LONG, asked);
-    bench.choose("#joint-kind", "arm");
+    bench.open_as("run.csv", "arm");
     bench.comes_out("read");
     // The folder has one URDF; its joints go from the base on, whatever the file's order is.
     assert_eq!(bench.value("#urdf"), "three.urdf");
@@ -262,10 +217,7 @@ fn a_whole_arm_is_mapped_joint_by_joint_and_again_with_a_joint_less() {
 #[test]
 fn an_effect_is_added_to_the_joint_of_an_arm_that_is_shown() {
     let bench = Bench::new(&[("run.csv", &arm_run(COUNT)), ("three.urdf", URDF)]);
-    bench.open("run.csv");
-    let asked = "return ['asking', 'refused', 'read'].includes(document.querySelector('#reading')?.dataset.state)";
-    bench.browser.until("it is looked at", LONG, asked);
-    bench.choose("#joint-kind", "arm");
+    bench.open_as("run.csv", "arm");
     bench.comes_out("read");
     bench.begun();
     let is_shown = |title: &str, steps: usize| {

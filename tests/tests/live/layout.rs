@@ -5,6 +5,7 @@ use std::{fs, path::Path, time::Duration};
 use ferntast_tests::{Browser, PATIENCE, Session, run};
 
 use super::{
+    arm_of_three,
     console::session_with_page,
     lab_bench::{self, Bench},
     lab_page, lab_subjects,
@@ -159,14 +160,11 @@ fn the_forms_for_contacts_arms_and_extra_signals_are_read_at_every_width() {
     let files = [
         ("edge.csv", lab_subjects::edge(6000)),
         ("run.csv", lab_subjects::arm_run(6000)),
-        ("three.urdf", lab_subjects::URDF.to_owned()),
+        ("three.urdf", arm_of_three::URDF.to_owned()),
     ];
     let bench = Bench::new(&files.each_ref().map(|(name, text)| (*name, text.as_str())));
     let browser = &bench.browser;
-    let looked = "return ['asking', 'refused', 'read'].includes(document.querySelector('#reading')?.dataset.state)";
-    bench.open("edge.csv");
-    browser.until("it is looked at", lab_page::LONG, looked);
-    bench.choose("#joint-kind", "contact");
+    bench.open_as("edge.csv", "contact");
     bench.comes_out("asking");
     bench.choose("#by-tip", "tip");
     bench.comes_out("asking");
@@ -177,9 +175,7 @@ fn the_forms_for_contacts_arms_and_extra_signals_are_read_at_every_width() {
     browser.click("#add-extra");
     bench.comes_out("read");
     assert_eq!(browser.misfits(), Vec::<String>::new());
-    bench.open("run.csv");
-    browser.until("it is looked at", lab_page::LONG, looked);
-    bench.choose("#joint-kind", "arm");
+    bench.open_as("run.csv", "arm");
     bench.comes_out("read");
     // With a question of one joint.
     bench.choose("[id='signal-position@elbow_joint']", "elbow_tau");

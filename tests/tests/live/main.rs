@@ -5,6 +5,8 @@
 
 mod arm_export;
 mod arm_lab;
+#[path = "../../shared/arm_of_three.rs"]
+mod arm_of_three;
 mod bad_frames;
 mod console;
 mod console_gamepad;
