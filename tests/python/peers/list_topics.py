@@ -44,7 +44,8 @@ def seen(node: Node) -> dict[str, object]:
 def attributed(node: Node, topic: str) -> bool:
     """Whether a topic is there, with the names of its nodes: over DDS they come later."""
     ends = node.get_publishers_info_by_topic(topic) + node.get_subscriptions_info_by_topic(topic)
-    return bool(ends) and not any("UNKNOWN" in end.node_name for end in ends)
+    # "_NODE_NAME_UNKNOWN_", or "_CREATED_BY_BARE_DDS_APP_" of a participant not yet known as one of ROS 2.
+    return bool(ends) and not any(end.node_name.startswith("_") for end in ends)
 
 
 def main() -> None:
