@@ -247,7 +247,9 @@ impl StateMachine {
     /// Carries out `command`. `ready` says whether there is a valid
     /// measurement to start from; `enable` and `resume` need one.
     ///
-    /// Asking for the state that already is changes nothing and is no error.
+    /// Asking for the state that already is changes it not and is no error; but an arm that
+    /// stands since commands fell silent stands from a `pause` on because that was asked for,
+    /// and the end of the silence is no reason to go on.
     /// Returns whether the state changed.
     ///
     /// # Errors
@@ -275,6 +277,10 @@ impl StateMachine {
             (command, state) => return Err(StateRefusal::NotAllowed { command, state }),
         };
         if next == self.state {
+            let obeys = !self.planted.lacks(Rule::PauseObeyed);
+            if command == StateCommand::Pause && next == Paused && obeys {
+                self.reason = Reason::Commanded(command);
+            }
             return Ok(false);
         }
         if next == Enabled && !ready {
@@ -326,6 +332,22 @@ mod tests {
         ));
         assert_eq!(machine.command(StateCommand::Resume, true), Ok(true));
         assert_eq!(machine.state(), OperatingState::Enabled);
+    }
+
+    #[test]
+    fn who_pauses_an_arm_that_stands_for_silence_has_paused_it() {
+        let mut machine = StateMachine::default();
+        machine.command(StateCommand::Enable, true).unwrap();
+        machine.event(Event::CommandSilent);
+        assert_eq!(machine.command(StateCommand::Pause, true), Ok(false));
+        assert_eq!(
+            machine.reason(),
+            Reason::Commanded(StateCommand::Pause),
+            "{}",
+            machine.reason()
+        );
+        assert!(machine.command(StateCommand::ResumeAfterGap, true).is_err());
+        assert_eq!(machine.command(StateCommand::Resume, true), Ok(true));
     }
 
     #[test]

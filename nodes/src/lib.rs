@@ -79,13 +79,13 @@ pub fn session_graph(driven: DrivenRows) -> Graph {
             master::make,
         ),
         NodeRow::step::<link::LeaderLinkPorts>(
-            "link_leader",
+            link::LEADER,
             "The operator's end of the link",
             Priority::Link,
             link::make_leader,
         ),
         NodeRow::step::<link::FollowerLinkPorts>(
-            "link_follower",
+            link::FOLLOWER,
             "The arm's end of the link",
             Priority::Link,
             link::make_follower,

@@ -15,7 +15,7 @@ use ferntast_msgs::Time;
 
 pub use door::{Door, Reason};
 pub use tls::LinkTls;
-pub use zenoh_link::{Clock, LinkDirection, LinkEndpoint, ZenohLink, ZenohLinkConfig};
+pub use zenoh_link::{Clock, LinkDirection, LinkEndpoint, ONE_THREAD, ZenohLink, ZenohLinkConfig};
 
 pub use crate::endpoint::{check_link as check_endpoint, is_loopback};
 use crate::error::SendError;

@@ -33,6 +33,18 @@ use crate::{
 /// Gives the time of arrival; called where Zenoh receives.
 pub type Clock = Arc<dyn Fn() -> Time + Send + Sync>;
 
+/// Environment of a process whose only use of Zenoh is one end of a link: one thread of
+/// Zenoh's does all that there is to do.
+///
+/// Left to itself Zenoh has five, three of which a single frame wakes one after the other:
+/// the one that hears of the socket, the one that reads, and one more that might have.
+/// That costs more than the frame and comes before it is heard. Zenoh reads this when its
+/// first session is opened.
+pub const ONE_THREAD: (&str, &str) = (
+    "ZENOH_RUNTIME",
+    "(rx: (handover: net), tx: (handover: net), acc: (handover: net), app: (handover: net))",
+);
+
 /// Which way a frame goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkDirection {

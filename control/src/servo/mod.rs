@@ -449,10 +449,20 @@ impl Servo {
             return Ok(());
         }
         self.machine.heard();
-        if self.state() != OperatingState::Enabled || !listens {
+        if self.state() != OperatingState::Enabled {
             return Ok(());
         }
         let posture = self.setpoint().map(|own| own.position);
+        if !listens {
+            // It is not followed and nothing is remembered of it; but who says what could be
+            // followed is not silent.
+            let check = self.commands.clone().check(command, now_ns, &posture);
+            if check.is_ok() {
+                let made_ns = command.stamp_ns.min(now_ns);
+                self.last_command_ns = self.last_command_ns.map(|last| last.max(made_ns));
+            }
+            return Ok(());
+        }
         match self.commands.check(command, now_ns, &posture) {
             Ok(targets) => {
                 let targets = match &self.carried {

@@ -336,6 +336,36 @@ fn what_is_silent_only_while_the_servo_was_held_up_is_not_silent() {
     assert!(bench.now - again >= 23 * MS);
 }
 
+/// Who measures was held up for longer than the servo, and the commands go on meanwhile.
+/// They are not followed until it is measured again, and are no silence either.
+#[test]
+fn what_is_said_while_it_is_not_measured_is_no_silence() {
+    let mut bench = Bench::new([-0.6, 1.2]);
+    bench.approach(0.38, 0.05);
+    let stands = bench.measure();
+    for _ in 0..10 {
+        bench.step_with(Some(stands), None, None);
+    }
+    // The last that is said for now, in the step before it is measured again …
+    let command = bench.tip_command(0.38, 0.05);
+    let said = bench.now;
+    let output = bench.step_with(Some(stands), Some(command), None);
+    assert!(bench.now - stands.stamp_ns > 10 * MS);
+    assert_eq!(output.setpoint[1].velocity, 0.0);
+    // Nothing that could not be followed counts.
+    let bad = bench.tip_command(f64::NAN, 0.05);
+    bench.step_with(Some(stands), Some(bad), None);
+    // … counts as what was heard last.
+    loop {
+        let output = bench.step(Some(command), None);
+        if output.state != OperatingState::Enabled {
+            break;
+        }
+        assert!(bench.now - said <= 26 * MS);
+    }
+    assert!(bench.now - said >= 24 * MS, "{} ns", bench.now - said);
+}
+
 /// Held up while the arm was moved by 0.03 rad: it begins there, forgets what it was told
 /// meanwhile, and goes back as slowly as to a first command.
 #[test]

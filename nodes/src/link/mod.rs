@@ -22,6 +22,11 @@ pub use follower::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, Foll
 pub use leader::{LeaderLinkInput, LeaderLinkNode, LeaderLinkOutput, LeaderLinkPorts};
 pub use transport::{FrameInput, FrameOutput, LinkPorts, LinkTransport, LinkWire, Peer};
 
+/// Node at the operator's end.
+pub const LEADER: &str = "link_leader";
+/// Node at the arm's end.
+pub const FOLLOWER: &str = "link_follower";
+
 /// The operator's end, a node of the graph.
 ///
 /// # Errors

@@ -1,13 +1,16 @@
 //! Starts one process a node, watches them, restarts one that dies, stops all.
 
 use std::{
+    env,
     os::unix::process::CommandExt,
     path::PathBuf,
     process::{Child, Command, ExitStatus, Stdio},
     time::{Duration, Instant},
 };
 
-use crate::process::SUPERVISOR_DIED;
+use ferntast_bus::frames::ONE_THREAD;
+
+use crate::{link, process::SUPERVISOR_DIED};
 
 /// A node that dies this often within [`RESTART_WINDOW`] is given up.
 pub const RESTART_LIMIT: usize = 5;
@@ -127,6 +130,11 @@ impl Supervisor {
             // A group of its own: Ctrl-C reaches the supervisor alone, which
             // then stops the nodes in order.
             .process_group(0);
+        let (name, value) = ONE_THREAD;
+        let is_end = [link::LEADER, link::FOLLOWER].contains(&process.node);
+        if is_end && env::var_os(name).is_none() {
+            command.env(name, value);
+        }
         // SAFETY: prctl is async-signal-safe and touches nothing of ours.
         unsafe {
             command.pre_exec(|| {

@@ -30,6 +30,9 @@ def add_operator(parser: argparse.ArgumentParser) -> None:
         "--until-felt", type=int, default=0, help="go back and there again until so many forces came"
     )
     parser.add_argument(
+        "--until-peak", type=float, default=0.0, help="and until one of them was as large [N]"
+    )
+    parser.add_argument(
         "--arm-state", type=Path, help="file that tells the arm's state: the hand waits while it stands"
     )
     parser.add_argument("--spoil", choices=SPOILS, help="send bad commands")

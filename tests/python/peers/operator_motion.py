@@ -144,7 +144,7 @@ def operate(
     """Moves the hand as recorded; `send(x, y, zero_stamp)` publishes one command.
 
     It waits while the arm stands. With `until_felt`, it goes back and there again until so
-    many forces came.
+    many forces came, and one of `until_peak`.
 
     Returns the report for JSON. `stop` ends the motion early, which is told in
     `interrupted`.
@@ -159,7 +159,8 @@ def operate(
     passes = PASSES if arguments.until_felt else 1
     arm = Arm(arguments.arm_state)
     for now, moment in ticks(arguments.rate, PASSES * seconds, stop, arm):
-        done = moment >= seconds and felt.nonzero >= arguments.until_felt
+        enough = felt.nonzero >= arguments.until_felt and felt.peak >= arguments.until_peak
+        done = moment >= seconds and enough
         if done or moment >= passes * seconds:
             break
         x, y = hand.at(there_and_back(moment, seconds) * arguments.speed)

@@ -232,6 +232,9 @@ fn drives_the_arm(seconds: &str, hand: impl Fn(&Session) -> String) {
         &hand,
         "--until-felt",
         "50",
+        // Of 12 N at the contour.
+        "--until-peak",
+        "0.6",
         "--arm-state",
         &arm_state(&session),
     ];
