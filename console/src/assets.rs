@@ -64,6 +64,7 @@ const ASSETS: &[Asset] = assets![
     "/space/vectors.js" SCRIPT "space/vectors.js",
     "/space/views.js" SCRIPT "space/views.js",
     "/lab/lab.js" SCRIPT "lab/lab.js",
+    "/lab/arm.js" SCRIPT "lab/arm.js",
     "/lab/charts.js" SCRIPT "lab/charts.js",
     "/lab/files.js" SCRIPT "lab/files.js",
     "/lab/findings.js" SCRIPT "lab/findings.js",

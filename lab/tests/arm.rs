@@ -3,7 +3,7 @@
 
 use std::{f64::consts::TAU, fmt::Write as _, fs, path::Path};
 
-use ferntast_identification::{Term, Verdict};
+use ferntast_identification::{Verdict, arm::ArmTerm};
 use ferntast_lab::{
     experiment::Experiment,
     work::{self, OpenedArm, open_arm},
@@ -133,7 +133,7 @@ fn what_is_missing_in_an_arm_is_written_into_its_file() {
     let elsewhere = folder.path().join("steps");
     fs::create_dir(&elsewhere).unwrap();
     let output = elsewhere.join("e2.toml");
-    let payload = Term::Catalogue("payload".to_owned());
+    let payload = ArmTerm::parse("payload");
     let added = opened.add(&payload, &output).unwrap();
     assert!(added.held_out_after < 0.2 * added.held_out_before);
     assert!((added.parameters["payload.mass"].value - 0.4).abs() < 0.01);

@@ -402,7 +402,7 @@ fn a_contact_is_made_of_a_place_or_of_its_tip_on_a_contour() {
 fn arm_table(called: impl Fn(usize) -> [String; 2]) -> String {
     let names: Vec<String> = (0..3).flat_map(called).collect();
     let mut text = format!("t,{}\n", names.join(","));
-    for (t, q, torque) in arm_of_three::run(COUNT) {
+    for (t, q, torque) in arm_of_three::run(arm_of_three::URDF, COUNT) {
         write!(text, "{t:.3}").unwrap();
         for (q, torque) in q.iter().zip(torque) {
             write!(text, ",{:.9},{torque:.9}", q.to_degrees()).unwrap();

@@ -23,9 +23,10 @@ pub const ARMATURES: [f64; 3] = [0.3, 0.1, 0.05];
 pub const COULOMB: f64 = 0.8;
 pub const VISCOUS: f64 = 0.5;
 
-/// `count` rows at 500 Hz: time \[s\], positions \[rad\], motor torques \[Nm\].
-pub fn run(count: u32) -> impl Iterator<Item = (f64, [f64; 3], [f64; 3])> {
-    let robot = Robot::read(URDF.as_bytes()).expect("a URDF");
+/// `count` rows at 500 Hz: time \[s\], positions \[rad\], motor torques \[Nm\], of the arm of a URDF
+/// with these joints.
+pub fn run(urdf: &str, count: u32) -> impl Iterator<Item = (f64, [f64; 3], [f64; 3])> + use<> {
+    let robot = Robot::read(urdf.as_bytes()).expect("a URDF");
     let chain = robot.whole_arm().expect("an arm").chain;
     (0..count).map(move |n| {
         let t = f64::from(n) * 0.002;

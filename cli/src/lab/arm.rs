@@ -4,7 +4,7 @@ use std::{path::Path, process::ExitCode};
 
 use ferntast_identification::{
     Term,
-    arm::{ArmComparison, ArmDiagnosis},
+    arm::{ArmComparison, ArmDiagnosis, ArmTerm},
 };
 use ferntast_lab::work::{self, AddedToArm, ArmAutoEvent, AutoOptions, InUnit, OpenedArm, name_of};
 use indicatif::ProgressBar;
@@ -98,7 +98,9 @@ pub fn add(
     output: &Path,
     json: bool,
 ) -> Result<ExitCode, Failure> {
-    let added = opened.add(effect, output).map_err(Failure::refused)?;
+    let added = opened
+        .add(&ArmTerm::of(effect), output)
+        .map_err(Failure::refused)?;
     if json {
         print_json(&added)?;
         return Ok(ExitCode::SUCCESS);

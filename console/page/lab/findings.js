@@ -6,15 +6,18 @@ import { colours } from "../common/theme.js";
 import { axis, draw, tidy } from "./charts.js";
 import { offer } from "./formulas.js";
 
-const VERDICTS = {
+/** What each verdict says. */
+export const VERDICTS = {
   missing: "An effect is missing.",
   complete: "Nothing more is found.",
   unexplained: "Something is missing that has no name. Search for a formula, or write an expression of your own.",
 };
 
-const words = (effect) => effect.replaceAll("_", " ");
+/** A name of files and results in words. */
+export const words = (effect) => effect.replaceAll("_", " ");
 
-function evidence(candidate) {
+/** What a candidate rests on. */
+export function evidence(candidate) {
   const alike = candidate.indistinguishable_from;
   return make("div", { className: "evidence" },
     make("p", { textContent: `explains ${percent(candidate.share)} of the residual's mean square; chance alone: p = ${candidate.p_value.toExponential(1)}, for everything that was tried` }),
@@ -29,7 +32,7 @@ export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
   const rowsOf = (candidates) => candidates.map((candidate, rank) => make("tr", {},
     make("td", {}, make("b", { textContent: `${rank + 1}. ${words(candidate.effect)}` }), evidence(candidate)),
     make("td", { className: "right number", textContent: `${significant(candidate.held_out_before)} → ${significant(candidate.held_out_after)} ${unit}` }),
-    make("td", { className: "right number", textContent: percent(candidate.held_out_after / candidate.held_out_before - 1) .replace("-", "−") }),
+    make("td", { className: "right number", textContent: percent(candidate.held_out_after / candidate.held_out_before - 1) }),
     make("td", { className: "right" }, isFile ? make("button", {
       type: "button", className: rank ? "" : "primary", textContent: "Add", "data-effect": candidate.effect, "aria-label": `Add ${words(candidate.effect)}`, onclick: () => actions.add(candidate.effect),
     }) : null)));
@@ -62,7 +65,8 @@ export async function charts(parent, state, actions) {
     const chart = make("div", { className: "chart", id, style: `height:${height}px` });
     return { chart, section: make("section", { className: "panel" }, make("h2", { textContent: title }), note || null, chart) };
   };
-  const stairs = box("Error on data held out, step by step", "chart-stairs", 250);
+  const stairs = box("Error on data held out, step by step", "chart-stairs", 250,
+    state.view.arm ? make("p", { className: "quiet small", textContent: "Of earlier steps the error of what was added to: another joint perhaps, or all joints." }) : null);
   const time = box("Measured against model", "chart-time", 380, make("p", { className: "quiet small", textContent: "Grey: not used for the fit or the verdict. Green: held out, validates." }));
   const over = make("section", { className: "panel" }, make("h2", { textContent: "Residual over each signal" }));
   const map = box("Residual over two signals", "chart-map", 360);

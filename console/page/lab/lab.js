@@ -2,6 +2,7 @@
 
 import { byId, fill, make, toast } from "../common/dom.js";
 import { getJson, work } from "../common/server.js";
+import * as arm from "./arm.js";
 import { prepare } from "./charts.js";
 import * as files from "./files.js";
 import * as findings from "./findings.js";
@@ -9,8 +10,11 @@ import * as formulas from "./formulas.js";
 import * as mapping from "./mapping.js";
 import * as model from "./model.js";
 
-/** What is open: { path, joint, view (of the server), comparison, diagnosis, discovery }. */
-const state = { path: null, joint: 0, view: null, results: null, diagnosis: null, discovery: null, busy: false };
+/**
+ * What is open: { path, joint, whole (the arm in place of a joint), view (of the server), results (of the
+ * comparison), before (those of the model that was added to), diagnosis, discovery }.
+ */
+const state = { path: null, joint: 0, whole: false, view: null, results: null, before: null, diagnosis: null, discovery: null, busy: false };
 let place = null;
 let side = null;
 
@@ -48,10 +52,10 @@ function frame() {
   fill(place, Object.values(sections));
 }
 
-/** Opens a file of the list: an experiment, or a recording. */
-async function open(entry, joint = 0) {
+/** Opens a file of the list: an experiment, or a recording. Of an arm the whole, if no joint is said. */
+async function open(entry, joint = null, before = null) {
   if (state.busy) return;
-  Object.assign(state, { path: entry.path, joint, view: null, results: null, diagnosis: null, discovery: null });
+  Object.assign(state, { path: entry.path, joint: joint ?? 0, whole: false, view: null, results: null, before, diagnosis: null, discovery: null });
   files.mark(entry.path);
   frame();
   busy(`Reading ${entry.path} …`);
@@ -66,6 +70,7 @@ async function open(entry, joint = 0) {
       }
     }
     state.view = await getJson("/api/lab/open", { path: entry.path });
+    state.whole = state.view.arm !== null && joint === null;
   } catch (error) {
     fill(sections.trouble, make("p", { className: "error", role: "alert", textContent: error.message }),
       entry.kind === "experiment" ? make("button", { type: "button", id: "again", textContent: "Map its signals again", onclick: again }) : null);
@@ -76,33 +81,41 @@ async function open(entry, joint = 0) {
   busy(null);
   history.replaceState(null, "", `#lab/${encodeURIComponent(entry.path)}`);
   sections.head.hidden = false;
-  model.show(sections.head, state, actions);
+  (state.whole ? arm : model).show(sections.head, state, actions);
   await compare();
 }
 
 /** An experiment file was written: the list knows it, and it is opened. */
-async function begun(path, joint = 0) {
+async function begun(path, joint = null, before = null) {
   await files.load();
-  await open({ path, kind: "experiment" }, joint);
+  await open({ path, kind: "experiment" }, joint, before);
 }
 
 const target = () => ({ path: state.path, joint: state.joint });
 
+/** What is shown, as `open` takes it. */
+const shown = () => (state.whole ? null : state.joint);
+
 async function compare() {
-  const results = await long("Holding the model against the recording …", "/api/lab/compare", target());
+  const results = await long("Holding the model against the recording …", state.whole ? "/api/lab/compare_arm" : "/api/lab/compare", target());
   if (!results) return;
   state.results = results;
+  if (state.whole) {
+    arm.figures(state, actions);
+    return;
+  }
   model.figures(state);
   sections.charts.hidden = false;
   await findings.charts(sections.charts, state, actions);
 }
 
 async function diagnose() {
-  const diagnosis = await long("Trying every effect of the catalogue …", "/api/lab/diagnose", target());
+  const diagnosis = await long("Trying every effect of the catalogue …", state.whole ? "/api/lab/diagnose_arm" : "/api/lab/diagnose", target());
   if (!diagnosis) return null;
   state.diagnosis = diagnosis;
   sections.diagnosis.hidden = false;
-  findings.diagnosis(sections.diagnosis, state, actions);
+  (state.whole ? arm : findings).diagnosis(sections.diagnosis, state, actions);
+  if (state.whole) arm.figures(state, actions);
   return diagnosis;
 }
 
@@ -116,20 +129,20 @@ async function discover() {
 
 async function add(effect, bounds = []) {
   sections.trouble.hidden = true;
-  const done = await long(`Adding ${effect} and fitting again …`, "/api/lab/add", { ...target(), effect, bounds });
+  const done = await long(`Adding ${effect} and fitting again …`, "/api/lab/add", { ...target(), effect, bounds, of_arm: state.whole });
   if (!done) return false;
   const { held_out_before: before, held_out_after: after, joint } = done.added;
   toast(`${done.added.effect}${joint ? ` of ${joint}` : ""}: error on data held out ${after < before ? "falls" : "rises"} by ${Math.abs((1 - after / before) * 100).toFixed(1)} %`);
-  await begun(done.path, state.joint);
+  await begun(done.path, shown(), state.results);
   return true;
 }
 
 async function auto() {
-  for (let step = 0; step < 8; step++) {
+  for (let step = 0; step < (state.whole ? 12 : 8); step++) {
     const diagnosis = await diagnose();
     const best = diagnosis?.candidates[0];
     if (!best || diagnosis.verdict !== "missing") return;
-    if (!(await add(best.effect))) return;
+    if (!(await add(state.whole ? diagnosis.names[0] : best.effect))) return;
   }
 }
 
@@ -171,7 +184,8 @@ const own = () => map({ files: [state.path], known: state.view.joints[state.join
 const actions = {
   diagnose, discover, add, auto, undo, report, own, again,
   joint: (number) => open({ path: state.path, kind: "experiment" }, number),
-  open: (path) => open({ path, kind: "experiment" }, state.joint),
+  whole: () => open({ path: state.path, kind: "experiment" }),
+  open: (path) => open({ path, kind: "experiment" }, shown()),
 };
 
 /** Starts the lab. */

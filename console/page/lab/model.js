@@ -19,7 +19,8 @@ function inertia(joint) {
   return joint.inertia === "fit" ? "inertia fitted" : `inertia ${significant(joint.inertia.given)} ${unit}`;
 }
 
-function figure(value, text) {
+/** A number with what it is. */
+export function figure(value, text) {
   return make("div", { className: "figure" }, make("b", { textContent: value }), make("small", { textContent: text }));
 }
 
@@ -67,12 +68,23 @@ async function catalogue(select, effects, isContact) {
   }
 }
 
+/** A button. */
+export const act = (text, id, onclick, more = {}) => make("button", { type: "button", id, textContent: text, onclick, ...more });
+
+/** Buttons for each joint, and for the arm as a whole; nothing where there is one joint alone. */
+export function tabs({ view, joint, whole }, actions) {
+  if (view.joints.length < 2) return null;
+  return make("div", { className: "row", style: "margin-top:10px" },
+    view.arm ? act("whole arm", "whole-arm", actions.whole, { "aria-pressed": String(whole) }) : null,
+    view.joints.map((other, number) => act(other.title.replaceAll("_", " "), `joint-${number}`, () => actions.joint(number), { "aria-pressed": String(!whole && number === joint) })));
+}
+
 /** Shows the experiment in `parent`. */
-export function show(parent, { view, joint, path }, actions) {
+export function show(parent, state, actions) {
+  const { view, joint, path } = state;
   const own = view.joints[joint];
   const isFile = view.history.length > 0;
   const added = view.history[view.history.length - 1]?.added;
-  const act = (text, id, onclick, more = {}) => make("button", { type: "button", id, textContent: text, onclick, ...more });
   const select = make("select", { id: "add-effect", "aria-label": "Effect to add" }, make("option", { value: "", textContent: "add an effect of the catalogue …" }));
   select.onchange = () => { if (select.value) actions.add(select.value); };
   catalogue(select, own.effects, own.joint === "contact");
@@ -88,8 +100,7 @@ export function show(parent, { view, joint, path }, actions) {
         isFile ? act("Map its signals again", "again", actions.again) : null,
         view.history.length > 1 ? act("Undo", "undo", actions.undo, { title: `Back to ${view.history[view.history.length - 2].path}` }) : null,
         act("Report", "report", actions.report))),
-    view.joints.length > 1 ? make("div", { className: "row", style: "margin-top:10px" }, view.joints.map((other, number) =>
-      act(other.title.replace("_", " "), `joint-${number}`, () => actions.joint(number), { "aria-pressed": String(number === joint) }))) : null,
+    tabs(state, actions),
     make("div", { className: "tags", "aria-label": "The model" },
       make("span", { className: "tag", textContent: inertia(own) }),
       own.effects.map((effect) => make("span", {

@@ -6,6 +6,7 @@
 //! answers in lines of JSON: `{"progress": 0.3}` …, then `{"result": …}` or
 //! `{"error": "…"}`. Work goes on one piece at a time.
 
+mod arm;
 mod drawing;
 mod files;
 mod mapping;
@@ -84,6 +85,9 @@ pub enum LabError {
         /// The number asked for, from 0.
         number: usize,
     },
+    /// An experiment about something else.
+    #[error("{0} is not about a whole arm")]
+    NoArm(String),
     /// The report cannot be made.
     #[error(transparent)]
     Render(#[from] ferntast_lab::report::RenderError),
@@ -282,6 +286,8 @@ pub fn routes(lab: Arc<Lab>) -> Router {
         .route("/api/lab/start", post(mapping::start))
         .route("/api/lab/compare", post(work::compare))
         .route("/api/lab/diagnose", post(work::diagnose))
+        .route("/api/lab/compare_arm", post(arm::compare))
+        .route("/api/lab/diagnose_arm", post(arm::diagnose))
         .route("/api/lab/discover", post(work::discover))
         .route("/api/lab/add", post(work::add))
         .route("/api/lab/report", post(work::report))

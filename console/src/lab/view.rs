@@ -13,7 +13,11 @@ use ferntast_lab::{
 };
 use serde::Serialize;
 
-use super::{At, Lab, LabError, aside};
+use super::{
+    At, Lab, LabError,
+    arm::{OfferedEffect, offered},
+    aside,
+};
 
 /// What a file holds: one experiment, or one a joint.
 #[derive(Debug, Serialize)]
@@ -22,6 +26,8 @@ pub struct FileView {
     path: String,
     /// Its joints.
     joints: Vec<JointView>,
+    /// What an arm may have besides the effects of its joints; `None` where it is about none.
+    arm: Option<Vec<OfferedEffect>>,
     /// How it came about, the first experiment first; empty for a recording.
     history: Vec<StepView>,
 }
@@ -81,6 +87,10 @@ pub async fn open(
         Ok(FileView {
             path: at.path,
             joints: opened.iter().map(|opened| joint(&lab, opened)).collect(),
+            arm: opened
+                .first()
+                .and_then(|first| first.experiment.arm.as_ref())
+                .map(offered),
             history: history
                 .into_iter()
                 .map(|step| {

@@ -10,7 +10,8 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use ferntast_identification::{
-    Comparison, Diagnosis, Term,
+    Comparison, Diagnosis,
+    arm::ArmTerm,
     comparison::VariesTogether,
     fit::{Implausible, Pair},
 };
@@ -188,36 +189,45 @@ pub struct Addition {
     /// `NAME=LOW,HIGH` of parameters that are searched.
     #[serde(default)]
     bounds: Vec<String>,
+    /// It is called as in an arm's file: `payload`, `stribeck@elbow`.
+    #[serde(default)]
+    of_arm: bool,
     /// The new file; else beside the old one.
     #[serde(default)]
     output: Option<String>,
 }
 
-/// Adds an effect, in an arm's file to one joint, and writes the new experiment file.
+/// Adds an effect, in an arm's file to one joint unless it is said to be the arm's, and writes the
+/// new experiment file.
 pub async fn add(State(lab): State<Arc<Lab>>, Json(addition): Json<Addition>) -> Response {
     in_lines(&lab, move |lab, progress| {
         let effect = work::own_effect(&addition.effect, &addition.bounds)?;
         let parent = lab.there(&addition.joint.path)?;
-        let output = |effect: &Term| match &addition.output {
+        let output = |name: &str| match &addition.output {
             Some(output) => lab.new_file(output),
-            None => Ok(work::beside(&parent, effect.name())),
+            None => Ok(work::beside(&parent, name)),
         };
         progress(0.1);
-        match work::open_arm(&parent)? {
+        let (output, added) = match work::open_arm(&parent)? {
             Some(arm) => {
-                let effect = arm.of_joint(effect, addition.joint.joint);
-                let effect = effect.ok_or_else(|| addition.joint.missing())?;
-                let output = output(&effect)?;
-                let added = arm.add(&effect, &output)?;
-                Ok(json!({ "path": lab.name(&output), "added": added }))
+                let term = match addition.of_arm {
+                    true => ArmTerm::of(&effect),
+                    false => arm
+                        .of_joint(effect, addition.joint.joint)
+                        .ok_or_else(|| addition.joint.missing())?,
+                };
+                let output = output(&term.to_string())?;
+                let added = json!(arm.add(&term, &output)?);
+                (output, added)
             }
             None => {
-                let output = output(&effect)?;
+                let output = output(effect.name())?;
                 let add = |opened: &Opened| Ok(opened.add(&effect, &output)?);
-                let added = with_joint(lab, &addition.joint, add)?;
-                Ok(json!({ "path": lab.name(&output), "added": added }))
+                let added = json!(with_joint(lab, &addition.joint, add)?);
+                (output, added)
             }
-        }
+        };
+        Ok(json!({ "path": lab.name(&output), "added": added }))
     })
 }
 

@@ -2,12 +2,12 @@
 
 use std::{collections::BTreeMap, fmt};
 
-use ferntast_model::rigid_body::{Chain, JointKind, Vector3};
+use ferntast_model::rigid_body::{Chain, Vector3};
 
 use super::effects::ArmEffect;
 use crate::data::error::PrepareError;
 use crate::data::stated_filter::StatedFilter;
-use crate::data::{Inertia, JointType, ModelSpec, Term};
+use crate::data::{CustomEffect, Inertia, JointType, ModelSpec, Term};
 
 /// One session of all joints, sampled together at a uniform period.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -135,6 +135,18 @@ impl ArmTerm {
             }
         }
     }
+
+    /// As it is written in files: what [`of`](Self::of) reads.
+    #[must_use]
+    pub fn written(&self) -> Term {
+        match &self.effect {
+            Term::Catalogue(_) => Term::Catalogue(self.to_string()),
+            Term::Custom(own) => Term::Custom(CustomEffect {
+                name: self.to_string(),
+                ..own.clone()
+            }),
+        }
+    }
 }
 
 fn split(text: &str) -> (&str, Option<&str>) {
@@ -157,10 +169,8 @@ impl ArmSpec {
     /// Kind of joint number `at`.
     #[must_use]
     pub fn joint_type(&self, at: usize) -> JointType {
-        match self.chain.kinds().get(at) {
-            Some(JointKind::Prismatic) => JointType::Prismatic,
-            _ => JointType::Revolute,
-        }
+        let kind = self.chain.kinds().get(at).copied();
+        kind.map(JointType::from).unwrap_or_default()
     }
 
     /// The effects of the arm, as they are in the model.

@@ -18,7 +18,6 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use ferntast_identification::JointType;
-use ferntast_model::rigid_body::JointKind;
 use ferntast_urdf::{Arm, JointType as UrdfJointType, Robot};
 
 use super::{Experiment, ExperimentError, Signals, file};
@@ -64,7 +63,7 @@ impl ArmTable {
     /// Kind of the joint of that name.
     fn kind(&self, joint: &str) -> Option<JointType> {
         let at = self.arm.joints.iter().position(|own| own == joint)?;
-        Some(kind_of(*self.arm.chain.kinds().get(at)?))
+        Some((*self.arm.chain.kinds().get(at)?).into())
     }
 }
 
@@ -341,12 +340,9 @@ impl Experiment {
 /// Kind of the first joint, whose signals stand for it.
 pub(super) fn joint_type(arm: &ArmTable) -> JointType {
     let kinds = arm.arm.chain.kinds();
-    kinds.first().copied().map(kind_of).unwrap_or_default()
-}
-
-const fn kind_of(kind: JointKind) -> JointType {
-    match kind {
-        JointKind::Prismatic => JointType::Prismatic,
-        JointKind::Revolute => JointType::Revolute,
-    }
+    kinds
+        .first()
+        .copied()
+        .map(JointType::from)
+        .unwrap_or_default()
 }

@@ -7,6 +7,7 @@ use std::{
 
 use ferntast_identification::{
     Addition, CustomEffect, Term, add,
+    arm::ArmTerm,
     fit::{Parameter, Soundness},
 };
 use serde::Serialize;
@@ -129,15 +130,13 @@ impl Opened {
     /// [`WorkError::Prepare`], [`WorkError::Write`]; nothing is written then.
     pub fn add(&self, effect: &Term, output: &Path) -> Result<Added, WorkError> {
         // Of an arm the file has all joints, and the title is this one's name.
-        let written = match (&self.experiment.arm, effect) {
-            (Some(_), Term::Catalogue(id)) => {
-                Term::Catalogue(format!("{id}@{}", self.experiment.title))
+        let written = match &self.experiment.arm {
+            None => effect.clone(),
+            Some(_) => ArmTerm {
+                effect: effect.clone(),
+                joint: Some(self.experiment.title.clone()),
             }
-            (Some(_), Term::Custom(custom)) => Term::Custom(CustomEffect {
-                name: format!("{}@{}", custom.name, self.experiment.title),
-                ..custom.clone()
-            }),
-            (None, effect) => effect.clone(),
+            .written(),
         };
         let mut addition: Addition = add(&self.dataset, &self.experiment.model, effect)
             .map_err(|error| self.refuse(error))?;

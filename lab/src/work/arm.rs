@@ -6,7 +6,7 @@ use std::{
 };
 
 use ferntast_identification::{
-    CustomEffect, Dataset, Inertia, RecordedSession, Term,
+    Dataset, Inertia, RecordedSession, Term,
     arm::{
         self, ArmComparison, ArmDataset, ArmDiagnosis, ArmDiscovery, ArmParts, ArmSession, ArmSpec,
         ArmTerm, PreparedArm,
@@ -155,12 +155,11 @@ impl OpenedArm {
     /// # Errors
     ///
     /// [`WorkError::Arm`], [`WorkError::Write`]; nothing is written then.
-    pub fn add(&self, effect: &Term, output: &Path) -> Result<AddedToArm, WorkError> {
-        let term = ArmTerm::of(effect);
-        let addition = arm::add(&self.dataset, &self.spec, &term);
+    pub fn add(&self, term: &ArmTerm, output: &Path) -> Result<AddedToArm, WorkError> {
+        let addition = arm::add(&self.dataset, &self.spec, term);
         let addition = addition.map_err(|error| self.refuse(error))?;
         let step = NextStep {
-            effect: Some(effect.clone()),
+            effect: Some(term.written()),
             twin_recording: None,
             held_out_before: addition.held_out_before,
             held_out_after: addition.held_out_after,
@@ -180,17 +179,13 @@ impl OpenedArm {
         })
     }
 
-    /// `effect` of joint `number`, from 0, as an experiment file names it: `stribeck@elbow`. `None`:
-    /// there is no such joint.
+    /// `effect` of joint `number`, from 0; `None`: there is no such joint.
     #[must_use]
-    pub fn of_joint(&self, effect: Term, number: usize) -> Option<Term> {
-        let joint = self.dataset.joints.get(number)?;
-        Some(match effect {
-            Term::Catalogue(id) => Term::Catalogue(format!("{id}@{joint}")),
-            Term::Custom(own) => Term::Custom(CustomEffect {
-                name: format!("{}@{joint}", own.name),
-                ..own
-            }),
+    pub fn of_joint(&self, effect: Term, number: usize) -> Option<ArmTerm> {
+        let joint = self.dataset.joints.get(number)?.clone();
+        Some(ArmTerm {
+            effect,
+            joint: Some(joint),
         })
     }
 

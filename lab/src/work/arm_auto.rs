@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use ferntast_identification::{
-    Term, Verdict,
-    arm::{ArmCandidate, ArmDiagnosis},
+    Verdict,
+    arm::{ArmCandidate, ArmDiagnosis, ArmTerm},
 };
 use serde::Serialize;
 
@@ -83,7 +83,7 @@ pub fn auto_arm(
         if !options.force {
             refuse_existing(&output)?;
         }
-        let added = opened.add(&Term::Catalogue(name), &output)?;
+        let added = opened.add(&ArmTerm::parse(&name), &output)?;
         path.clone_from(&added.experiment);
         tell(ArmAutoEvent::Added(&opened, &added));
         steps.push(added);

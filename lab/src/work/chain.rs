@@ -3,7 +3,6 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use ferntast_identification::JointType;
-use ferntast_model::rigid_body::JointKind;
 use ferntast_urdf::{Joint, JointType as UrdfJointType, Robot};
 use serde::Serialize;
 
@@ -45,10 +44,7 @@ impl ArmChain {
             .into_iter()
             .zip(kinds.iter())
             .map(|(name, kind)| {
-                let joint = match kind {
-                    JointKind::Revolute => JointType::Revolute,
-                    JointKind::Prismatic => JointType::Prismatic,
-                };
+                let joint = JointType::from(*kind);
                 let units =
                     ["position", "motor_torque"].map(|key| (key, units_of_joint(key, joint)));
                 ArmJoint {

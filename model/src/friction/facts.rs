@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::rigid_body::JointKind;
+
 /// What was recorded: it decides the catalogue of effects, and the names and
 /// units in which results are reported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -16,6 +18,15 @@ pub enum JointType {
     /// N, no inertia; F_T stands in the place of τ_F, F_N in that of the load:
     /// F_T = Σ effects (equation 6).
     Contact,
+}
+
+impl From<JointKind> for JointType {
+    fn from(kind: JointKind) -> JointType {
+        match kind {
+            JointKind::Revolute => JointType::Revolute,
+            JointKind::Prismatic => JointType::Prismatic,
+        }
+    }
 }
 
 impl JointType {

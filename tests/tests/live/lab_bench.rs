@@ -73,6 +73,16 @@ impl Bench {
         fs::read_to_string(self.path(name)).expect("it is there")
     }
 
+    /// Names of the experiment files in the folder.
+    pub fn experiments(&self) -> Vec<String> {
+        let files = fs::read_dir(self.path("")).expect("a folder");
+        let names = files.map(|file| file.expect("a file").file_name().into_string());
+        let mut names: Vec<String> = names.map(|own| own.expect("a name")).collect();
+        names.retain(|own| own.ends_with(".toml"));
+        names.sort();
+        names
+    }
+
     pub fn open(&self, name: &str) {
         self.browser.click(&format!("[data-path='{name}']"));
     }

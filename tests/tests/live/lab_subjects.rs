@@ -27,16 +27,20 @@ pub fn edge(count: u32) -> String {
     })
 }
 
-/// A run of the arm of three joints: angles in degrees.
-pub fn arm_run(count: u32) -> String {
+/// A run of the arm of three joints: angles in degrees, torques in steps of so many decimals.
+fn run_of(urdf: &str, count: u32, decimals: usize) -> String {
     let names = ["q_deg", "tau"].map(|own| JOINTS.map(|joint| format!("{joint}_{own}")));
     let mut text = format!("t,{},{}\n", names[0].join(","), names[1].join(","));
-    for (t, q, torque) in arm_of_three::run(count) {
-        let words = q.map(f64::to_degrees).into_iter().chain(torque);
-        let words: Vec<String> = words.map(|own| format!("{own:.9}")).collect();
-        writeln!(text, "{t:.3},{}", words.join(",")).expect("a string");
+    for (t, q, torque) in arm_of_three::run(urdf, count) {
+        let angles = q.map(|own| format!("{:.9}", own.to_degrees()));
+        let torques = torque.map(|own| format!("{own:.decimals$}"));
+        writeln!(text, "{t:.3},{},{}", angles.join(","), torques.join(",")).expect("a string");
     }
     text
+}
+
+pub fn arm_run(count: u32) -> String {
+    run_of(URDF, count, 9)
 }
 
 /// A selector of an element by an id that has brackets or an @ in it.
@@ -227,6 +231,7 @@ fn an_effect_is_added_to_the_joint_of_an_arm_that_is_shown() {
         );
         bench.browser.until(title, LONG, &look);
     };
+    bench.browser.click("#joint-0");
     is_shown("shoulder_joint", 1);
     bench.browser.click("#joint-1");
     is_shown("elbow_joint", 1);
@@ -245,6 +250,62 @@ fn an_effect_is_added_to_the_joint_of_an_arm_that_is_shown() {
     }
     bench.browser.click("#undo");
     is_shown("elbow_joint", 1);
+    bench.end();
+}
+
+/// What the hand holds is in no URDF: a mass of 0.4 kg at the hand's own centre of mass.
+#[test]
+fn an_arm_is_diagnosed_as_a_whole_and_its_payload_added() {
+    let held = URDF.replace("<mass value=\"0.5\"/>", "<mass value=\"0.9\"/>");
+    assert_ne!(held, URDF);
+    let bench = Bench::new(&[("run.csv", &run_of(&held, COUNT, 2)), ("three.urdf", URDF)]);
+    bench.open_as("run.csv", "arm");
+    bench.comes_out("read");
+    bench.begun();
+    let errors = "return [...document.querySelectorAll('#arm-joints tr[data-joint]')].map((own) => [own.dataset.joint, Number(own.dataset.error)])";
+    let before = bench.browser.run(errors, Vec::new());
+    for (row, joint) in JOINTS.iter().enumerate() {
+        assert_eq!(before[row][0], format!("{joint}_joint"), "{before}");
+    }
+    bench.browser.click("#auto");
+    let is_complete = "return document.querySelector('#verdict')?.dataset.verdict === 'complete'";
+    bench.browser.until("it is complete", LONG, is_complete);
+    let text = bench.text("run+payload.toml");
+    assert!(text.contains("\"payload\""), "{text}");
+    assert_eq!(bench.experiments(), ["run+payload.toml", "run.toml"]);
+    // What is left is the torques' steps of 0.01 Nm.
+    let after = bench.browser.run(errors, Vec::new());
+    for row in 0..JOINTS.len() {
+        let [before, after] = [&before, &after].map(|own| own[row][1].as_f64().unwrap_or(f64::NAN));
+        assert!((1e-4..0.01).contains(&after), "{after} Nm");
+        assert!(after < before, "{before} to {after} Nm");
+    }
+    let cell = |name: &str, column: u32| {
+        let selector = format!("[data-parameter='payload.{name}'] td:nth-child({column})");
+        bench
+            .browser
+            .text(&selector)
+            .parse::<f64>()
+            .unwrap_or(f64::NAN)
+    };
+    for (name, truth) in [("mass", 0.4), ("x", 0.05)] {
+        let (value, error) = (cell(name, 3), cell(name, 4));
+        assert!((value / truth - 1.0).abs() < 0.05, "{name}: {value}");
+        assert!((1e-6..0.01).contains(&error), "{name}: ± {error}");
+    }
+    let verdicts = "return [...document.querySelectorAll('#arm-joints [data-verdict]')].map((own) => own.dataset.verdict)";
+    assert_eq!(
+        bench.browser.run(verdicts, Vec::new()),
+        json!(["complete", "complete", "complete"])
+    );
+    assert_eq!(bench.browser.misfits(), Vec::<String>::new());
+    // Its joints are a click away, and back.
+    bench.browser.click("#joint-1");
+    let curves = "return document.querySelector('#chart-stairs')?.dataset.errors !== undefined";
+    bench.browser.until("the elbow's curves", LONG, curves);
+    bench.browser.click("#whole-arm");
+    let whole = "return document.querySelectorAll('#arm-joints tr[data-joint]').length === 3";
+    bench.browser.until("the arm again", LONG, whole);
     bench.end();
 }
 

@@ -1,0 +1,130 @@
+//! A whole arm: all joints in one run, and effects that no joint alone has.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use axum::{Json, extract::State, response::Response};
+use ferntast_identification::{
+    arm::{ArmDiagnosis, ArmEffect},
+    comparison::VariesTogether,
+    fit::{Parameter, Rms},
+};
+use ferntast_lab::{
+    experiment::ArmTable,
+    work::{self, OpenedArm},
+};
+use serde::Serialize;
+
+use super::{At, Lab, LabError, work::in_lines};
+
+/// An effect that an arm may have, as its file names it.
+#[derive(Debug, Serialize)]
+pub struct OfferedEffect {
+    /// `payload`, `link_inertia@elbow`.
+    effect: String,
+    /// In words.
+    equation: &'static str,
+}
+
+/// What an arm may have besides the effects of its joints.
+pub fn offered(arm: &ArmTable) -> Vec<OfferedEffect> {
+    let joints = arm.joints();
+    let all = ArmEffect::all(joints.len()).into_iter();
+    all.map(|own| OfferedEffect {
+        effect: match own.joint().and_then(|joint| joints.get(joint)) {
+            Some(joint) => format!("{}@{joint}", own.id()),
+            None => own.id().to_owned(),
+        },
+        equation: own.equation(),
+    })
+    .collect()
+}
+
+fn opened(lab: &Lab, at: &At) -> Result<OpenedArm, LabError> {
+    let arm = work::open_arm(&lab.there(&at.path)?)?;
+    arm.ok_or_else(|| LabError::NoArm(at.path.clone()))
+}
+
+/// The arm's model against its recordings.
+#[derive(Serialize)]
+struct Compared {
+    title: String,
+    /// Of torques.
+    unit: &'static str,
+    samples: usize,
+    /// Rows of all joints.
+    used: usize,
+    /// Over all joints, each weighted by its noise.
+    rms: Rms,
+    /// From the base on.
+    joints: Vec<JointError>,
+    /// Parameters of the effects of the arm, by effect.
+    arm: BTreeMap<String, BTreeMap<String, Parameter>>,
+    /// What has to be known of signals and parameters, as sentences.
+    warnings: Vec<String>,
+    notes: Vec<String>,
+}
+
+/// How one joint fares.
+#[derive(Serialize)]
+struct JointError {
+    joint: String,
+    rms: Rms,
+    /// Error on data held out over what is measured \[-\].
+    relative_error_held_out: f64,
+}
+
+/// Holds the arm's model against its recordings.
+pub async fn compare(State(lab): State<Arc<Lab>>, Json(at): Json<At>) -> Response {
+    in_lines(&lab, move |lab, progress| {
+        progress(0.05);
+        let opened = opened(lab, &at)?;
+        progress(0.3);
+        let found = opened.compare()?;
+        let joints = opened.dataset.joints.iter().filter_map(|name| {
+            let own = found.joints.get(name)?;
+            Some(JointError {
+                joint: name.clone(),
+                rms: own.rms,
+                relative_error_held_out: own.relative_error_held_out,
+            })
+        });
+        let together = found.varies_together.iter().map(VariesTogether::text);
+        let held = found.held_possible.iter().map(|effect| {
+            format!(
+                "{effect}: least squares alone finds a body that cannot exist; these are the nearest \
+                 parameters of one that can"
+            )
+        });
+        Ok(Compared {
+            title: opened.experiment.title.clone(),
+            unit: opened.torque_unit(),
+            samples: found.samples,
+            used: found.used,
+            rms: found.rms,
+            joints: joints.collect(),
+            warnings: together.chain(held).collect(),
+            notes: opened.notes.clone(),
+            arm: found.arm,
+        })
+    })
+}
+
+/// A diagnosis, with what its candidates are called in a file.
+#[derive(Serialize)]
+struct Diagnosed {
+    #[serde(flatten)]
+    diagnosis: ArmDiagnosis,
+    /// One for each candidate.
+    names: Vec<String>,
+}
+
+/// Tells which effect is missing, in which joint or in the arm.
+pub async fn diagnose(State(lab): State<Arc<Lab>>, Json(at): Json<At>) -> Response {
+    in_lines(&lab, move |lab, progress| {
+        let diagnosis = opened(lab, &at)?.diagnose(progress)?;
+        Ok(Diagnosed {
+            names: diagnosis.candidates.iter().map(work::name_of).collect(),
+            diagnosis,
+        })
+    })
+}
