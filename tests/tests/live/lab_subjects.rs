@@ -278,7 +278,9 @@ fn an_arm_is_diagnosed_as_a_whole_and_its_payload_added() {
     for row in 0..JOINTS.len() {
         let [before, after] = [&before, &after].map(|own| own[row][1].as_f64().unwrap_or(f64::NAN));
         assert!((1e-4..0.01).contains(&after), "{after} Nm");
-        assert!(after < before, "{before} to {after} Nm");
+        // The mass lies on the axis of the wrist, which does not feel it.
+        let left = if row == 2 { 0.99..1.01 } else { 0.0..0.2 };
+        assert!(left.contains(&(after / before)), "{before} to {after} Nm");
     }
     let cell = |name: &str, column: u32| {
         let selector = format!("[data-parameter='payload.{name}'] td:nth-child({column})");
