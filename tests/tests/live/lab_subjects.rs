@@ -284,11 +284,8 @@ fn an_arm_is_diagnosed_as_a_whole_and_its_payload_added() {
     }
     let cell = |name: &str, column: u32| {
         let selector = format!("[data-parameter='payload.{name}'] td:nth-child({column})");
-        bench
-            .browser
-            .text(&selector)
-            .parse::<f64>()
-            .unwrap_or(f64::NAN)
+        let text = bench.browser.text(&selector).replace('−', "-");
+        text.parse::<f64>().unwrap_or(f64::NAN)
     };
     for (name, truth) in [("mass", 0.4), ("x", 0.05)] {
         let (value, error) = (cell(name, 3), cell(name, 4));
