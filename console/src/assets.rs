@@ -36,6 +36,7 @@ const ASSETS: &[Asset] = assets![
     "/main.js" SCRIPT "main.js",
     "/common/dom.js" SCRIPT "common/dom.js",
     "/common/mapping.js" SCRIPT "common/mapping.js",
+    "/common/names.js" SCRIPT "common/names.js",
     "/common/numbers.js" SCRIPT "common/numbers.js",
     "/common/server.js" SCRIPT "common/server.js",
     "/common/strokes.js" SCRIPT "common/strokes.js",

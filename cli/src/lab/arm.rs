@@ -6,7 +6,7 @@ use ferntast_identification::{
     Term,
     arm::{ArmComparison, ArmDiagnosis, ArmTerm},
 };
-use ferntast_lab::work::{self, AddedToArm, ArmAutoEvent, AutoOptions, InUnit, OpenedArm, name_of};
+use ferntast_lab::work::{self, AddedToArm, ArmAutoEvent, AutoOptions, InUnit, OpenedArm};
 use indicatif::ProgressBar;
 
 use super::{
@@ -67,7 +67,7 @@ pub fn discover(opened: &OpenedArm, seed: u64, json: bool) -> Result<ExitCode, F
     println!("{}", opened.experiment.title);
     println!("{}", result.verdict.name());
     for own in &result.candidates {
-        println!("add {} first", name_of(own));
+        println!("add {} first", own.term());
     }
     if result.formulas.is_empty() {
         println!("no formula is proposed ({} terms tried)", result.tried);
@@ -193,10 +193,7 @@ fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
 /// Effects whose free fit is no body.
 fn tell_held(names: &[String]) {
     for name in names {
-        println!(
-            "warning: {name}: least squares alone finds a body that cannot exist (negative mass, or an inertia that no \
-             shape has); these are the nearest parameters of one that can, with the standard errors of the free fit"
-        );
+        println!("warning: {}", work::held_possible(name));
     }
 }
 
@@ -221,7 +218,7 @@ fn print_diagnosis(diagnosis: &ArmDiagnosis, unit: &str) {
         );
     }
     for candidate in &diagnosis.candidates {
-        let mut name = name_of(candidate);
+        let mut name = candidate.term().to_string();
         if let Some(partner) = &candidate.partner {
             name.push_str(&format!(" from {partner}"));
         }

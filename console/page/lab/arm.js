@@ -1,13 +1,12 @@
 // A whole arm: the errors of all joints, and what is missing in any of them or in the arm.
 
 import { fill, make } from "../common/dom.js";
+import { words } from "../common/names.js";
 import { percent, significant } from "../common/numbers.js";
-import { VERDICTS, evidence, words } from "./findings.js";
-import { act, figure, tabs } from "./model.js";
+import { VERDICTS, ranking } from "./findings.js";
+import { dataOf, figure, headline, tabs } from "./model.js";
 
 let parts = {};
-
-const changeOf = (before, after) => percent(after / before - 1);
 
 /** The effects that may be added to the arm. */
 function adding({ view }, actions) {
@@ -23,20 +22,12 @@ function adding({ view }, actions) {
 export function show(parent, state, actions) {
   const { view, path } = state;
   const { effects, added } = view.history.at(-1);
-  const [first] = view.joints;
   parts = {
     title: make("h1", { textContent: path }), figures: make("div", { className: "figures" }), warnings: make("div", { id: "warnings" }),
     joints: make("div", { className: "scroll" }), parameters: make("div", { className: "scroll" }),
   };
   fill(parent,
-    make("div", { className: "headline" },
-      make("div", {}, parts.title,
-        make("p", { className: "quiet small", textContent: `${view.joints.length} joints, ${first.sessions.length} session${first.sessions.length === 1 ? "" : "s"} of ${first.recordings.join(", ")}` })),
-      make("div", { className: "row" },
-        act("Diagnose", "diagnose", actions.diagnose, { className: "primary" }),
-        act("Add until complete", "auto", actions.auto),
-        act("Map its signals again", "again", actions.again),
-        view.history.length > 1 ? act("Undo", "undo", actions.undo, { title: `Back to ${view.history.at(-2).path}` }) : null)),
+    headline(parts.title, state, `${view.joints.length} joints, ${dataOf(view.joints[0])}`, actions),
     tabs(state, actions),
     make("div", { className: "tags", "aria-label": "The model" }, effects.map((effect) => make("span", { className: `tag${effect === added ? " new" : ""}`, textContent: words(effect) }))),
     parts.figures, parts.warnings, parts.joints, parts.parameters,
@@ -63,7 +54,7 @@ export function figures({ results: found, before, diagnosis, view }, actions) {
       return make("tr", { "data-joint": joint, "data-error": rms.held_out },
         make("td", {}, make("button", { type: "button", textContent: words(joint), title: "Its curves and residuals", onclick: () => actions.joint(number) })),
         right(error(rms.held_out)),
-        before ? [right(error(was.get(joint))), right(changeOf(was.get(joint), rms.held_out))] : null,
+        before ? [right(error(was.get(joint))), right(percent(rms.held_out / was.get(joint) - 1))] : null,
         right(percent(relative)), right(error(rms.train)),
         verdict ? make("td", { textContent: verdict, "data-verdict": verdict }) : null);
     }))));
@@ -77,21 +68,16 @@ export function figures({ results: found, before, diagnosis, view }, actions) {
 
 /** What is missing in the arm: the verdict with its ranking and evidence. */
 export function diagnosis(parent, { diagnosis: found, results, view }, actions) {
-  const unitOf = (joint) => view.joints.find((own) => own.title === joint)?.unit ?? results.unit;
   fill(parent,
     make("h2", { textContent: "Diagnosis of the arm" }),
     make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict }, make("b", { textContent: VERDICTS[found.verdict] })),
     make("p", { className: "quiet small", textContent: `${found.tried} variants tried in ${view.joints.length} joints and in the arm.` }),
-    found.candidates.length ? make("div", { className: "scroll" }, make("table", {},
-      make("thead", {}, make("tr", {}, make("th", { textContent: "effect" }), make("th", { textContent: "where" }), make("th", { className: "right", textContent: "error on data held out" }), make("th", { className: "right", textContent: "change" }), make("th", {}))),
-      make("tbody", {}, found.candidates.map((candidate, rank) => make("tr", {},
-        make("td", {}, make("b", { textContent: `${rank + 1}. ${words(candidate.effect)}` }), evidence(candidate)),
-        make("td", { textContent: `${words(candidate.joint ?? "the arm")}${candidate.partner ? ` from ${words(candidate.partner)}` : ""}` }),
-        make("td", { className: "right number", textContent: `${significant(candidate.held_out_before)} → ${significant(candidate.held_out_after)} ${unitOf(candidate.joint)}` }),
-        make("td", { className: "right number", textContent: changeOf(candidate.held_out_before, candidate.held_out_after) }),
-        make("td", { className: "right" }, make("button", {
-          type: "button", className: rank ? "" : "primary", textContent: "Add", "data-effect": found.names[rank], "aria-label": `Add ${words(found.names[rank])}`, onclick: () => actions.add(found.names[rank]),
-        }))))))) : null,
+    found.candidates.length ? ranking(found.candidates, {
+      unitOf: ({ joint }) => view.joints.find((own) => own.title === joint)?.unit ?? results.unit,
+      nameOf: (_, rank) => found.names[rank],
+      whereOf: ({ joint, partner }) => `${words(joint ?? "the arm")}${partner ? ` from ${words(partner)}` : ""}`,
+      add: (name) => actions.add(name),
+    }) : null,
     found.suspected.map((own) => make("p", { className: "note", textContent: `suspected, not proven: ${words(own.effect)} of ${words(own.joint)} (p ${own.p_value.toFixed(2)}); next experiment: ${words(own.next_experiment)}` })),
     found.residual_depends_on.length ? [
       make("h2", { textContent: "Residuals depend on", style: "margin-top:14px" }),

@@ -1,6 +1,7 @@
 // What the comparison and the diagnosis found, as charts and tables.
 
 import { fill, make } from "../common/dom.js";
+import { words } from "../common/names.js";
 import { percent, significant } from "../common/numbers.js";
 import { colours } from "../common/theme.js";
 import { axis, draw, tidy } from "./charts.js";
@@ -13,11 +14,7 @@ export const VERDICTS = {
   unexplained: "Something is missing that has no name. Search for a formula, or write an expression of your own.",
 };
 
-/** A name of files and results in words. */
-export const words = (effect) => effect.replaceAll("_", " ");
-
-/** What a candidate rests on. */
-export function evidence(candidate) {
+function evidence(candidate) {
   const alike = candidate.indistinguishable_from;
   return make("div", { className: "evidence" },
     make("p", { textContent: `explains ${percent(candidate.share)} of the residual's mean square; chance alone: p = ${candidate.p_value.toExponential(1)}, for everything that was tried` }),
@@ -25,20 +22,33 @@ export function evidence(candidate) {
     candidate.separate_by ? make("p", { textContent: `next experiment: ${candidate.separate_by}` }) : null);
 }
 
+/**
+ * A table of candidates with their evidence, best first. `unitOf` gives the unit of one's errors, `nameOf` what it is called
+ * where it is added, `whereOf`, if there is a column for that, where it is; `add` adds it, null where nothing can be added.
+ */
+export function ranking(candidates, { unitOf, nameOf, whereOf = null, add }) {
+  const right = { className: "right number" };
+  return make("div", { className: "scroll" }, make("table", {},
+    make("thead", {}, make("tr", {}, make("th", { textContent: "effect" }), whereOf ? make("th", { textContent: "where" }) : null, make("th", { className: "right", textContent: "error on data held out" }), make("th", { className: "right", textContent: "change" }), make("th", {}))),
+    make("tbody", {}, candidates.map((candidate, rank) => {
+      const { held_out_before: before, held_out_after: after } = candidate;
+      const name = nameOf(candidate, rank);
+      return make("tr", {},
+        make("td", {}, make("b", { textContent: `${rank + 1}. ${words(candidate.effect)}` }), evidence(candidate)),
+        whereOf ? make("td", { textContent: whereOf(candidate) }) : null,
+        make("td", { ...right, textContent: `${significant(before)} → ${significant(after)} ${unitOf(candidate)}` }),
+        make("td", { ...right, textContent: percent(after / before - 1) }),
+        make("td", { className: "right" }, add ? make("button", {
+          type: "button", className: rank ? "" : "primary", textContent: "Add", "data-effect": name, "aria-label": `Add ${words(name)}`, onclick: () => add(name),
+        }) : null));
+    }))));
+}
+
 /** The verdict with its ranking and evidence. */
 export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
   const { unit } = view.joints[joint];
-  const isFile = view.history.length > 0;
-  const rowsOf = (candidates) => candidates.map((candidate, rank) => make("tr", {},
-    make("td", {}, make("b", { textContent: `${rank + 1}. ${words(candidate.effect)}` }), evidence(candidate)),
-    make("td", { className: "right number", textContent: `${significant(candidate.held_out_before)} → ${significant(candidate.held_out_after)} ${unit}` }),
-    make("td", { className: "right number", textContent: percent(candidate.held_out_after / candidate.held_out_before - 1) }),
-    make("td", { className: "right" }, isFile ? make("button", {
-      type: "button", className: rank ? "" : "primary", textContent: "Add", "data-effect": candidate.effect, "aria-label": `Add ${words(candidate.effect)}`, onclick: () => actions.add(candidate.effect),
-    }) : null)));
-  const ranking = (rows) => make("div", { className: "scroll" }, make("table", {},
-    make("thead", {}, make("tr", {}, make("th", { textContent: "effect" }), make("th", { className: "right", textContent: "error on data held out" }), make("th", { className: "right", textContent: "change" }), make("th", {}))),
-    make("tbody", {}, rows)));
+  const add = view.history.length > 0 ? (effect) => actions.add(effect) : null;
+  const ranked = (candidates) => ranking(candidates, { unitOf: () => unit, nameOf: (candidate) => candidate.effect, add });
   fill(parent,
     make("h2", { textContent: "Diagnosis" }),
     make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict },
@@ -47,10 +57,10 @@ export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
     found.together.map((text) => make("p", { className: "note warning", "data-together": "", textContent: text })),
     make("p", { className: "quiet small", textContent: `${found.tried} variants tried, ${found.used.rows.toLocaleString("en")} rows, error ${significant(found.rms.held_out)} ${unit} on data held out.` }),
     found.verdict === "unexplained" ? offer(actions) : null,
-    found.candidates.length ? ranking(rowsOf(found.candidates)) : null,
+    found.candidates.length ? ranked(found.candidates) : null,
     found.helps_in_part.length ? [
       make("h2", { textContent: "These help in part, and are not the explanation", style: "margin-top:14px" }),
-      ranking(rowsOf(found.helps_in_part))] : null,
+      ranked(found.helps_in_part)] : null,
     found.suspected.map((own) => make("p", { className: "note", textContent: `suspected, not proven: ${words(own.effect)} (p ${own.p_value.toFixed(2)}); next experiment: ${words(own.next_experiment)}` })),
     found.residual_depends_on.length ? [
       make("h2", { textContent: "The residual depends on", style: "margin-top:14px" }),

@@ -1,11 +1,10 @@
 // Formulas for what no effect of the catalogue explains: a list, each beside what was measured.
 
 import { fill, make } from "../common/dom.js";
+import { words } from "../common/names.js";
 import { percent, significant } from "../common/numbers.js";
 import { colours } from "../common/theme.js";
 import { axis, draw, tidy } from "./charts.js";
-
-const words = (name) => name.replaceAll("_", " ");
 
 /** Blue to vermilion: told apart by everybody, and by lightness alone from the middle. */
 const scale = () => [[0, "#0a5fa8"], [0.25, "#6fb1dd"], [0.5, colours.raised], [0.75, "#f0a169"], [1, "#b84300"]];
@@ -68,7 +67,7 @@ export async function show(parent, { discovery: found, view, joint }, actions) {
       make("div", { className: "headline" },
         make("div", {},
           make("h2", {}, `${rank + 1}. `, make("code", { textContent: formula.expression })),
-          make("p", { className: "small", textContent: `${significant(formula.held_out_before)} → ${significant(formula.held_out_after)} ${unit} on data held out (${percent(formula.held_out_after / formula.held_out_before - 1).replace("-", "−")}); chance alone: p = ${formula.p_value.toExponential(1)}, for everything that was searched` })),
+          make("p", { className: "small", textContent: `${significant(formula.held_out_before)} → ${significant(formula.held_out_after)} ${unit} on data held out (${percent(formula.held_out_after / formula.held_out_before - 1)}); chance alone: p = ${formula.p_value.toExponential(1)}, for everything that was searched` })),
         isFile ? make("button", {
           type: "button", className: rank ? "" : "primary", textContent: "Add", "aria-label": `Add formula ${rank + 1}`, onclick: () => actions.add(`${formula.name}=${formula.expression}`),
         }) : null),

@@ -2,6 +2,7 @@
 // them, or changes one. What they mean is guessed, read and checked by the server, as for `lab new`.
 
 import { fill, make } from "../common/dom.js";
+import { words } from "../common/names.js";
 import { getJson, work } from "../common/server.js";
 import { urdfs } from "./files.js";
 import * as reading from "./reading.js";
@@ -205,7 +206,7 @@ export async function show(parent, start, begun) {
     const equations = new Map(catalogue.map((effect) => [effect.id, effect.equation]));
     fill(effects, make("legend", { className: "small quiet", textContent: isArm() ? "effects that every joint has" : "effects that the model has" }),
       offered().map((id) => make("label", { className: "check", title: equations.get(id) ?? "" },
-        make("input", { type: "checkbox", value: id, checked: own.effects.has(id), onchange: (event) => { own.effects[event.target.checked ? "add" : "delete"](id); trial(); } }), id.replaceAll("_", " "))));
+        make("input", { type: "checkbox", value: id, checked: own.effects.has(id), onchange: (event) => { own.effects[event.target.checked ? "add" : "delete"](id); trial(); } }), words(id))));
     table.doubt();
   }
 

@@ -1,6 +1,7 @@
 // The head of an experiment: its model, its errors, what can be done.
 
 import { fill, make } from "../common/dom.js";
+import { words } from "../common/names.js";
 import { percent, significant } from "../common/numbers.js";
 import { getJson } from "../common/server.js";
 
@@ -64,19 +65,34 @@ function ownEffect(actions, isContact) {
 async function catalogue(select, effects, isContact) {
   const has = new Set(effects.map(nameOf));
   for (const effect of await getJson("/api/lab/effects")) {
-    if (!has.has(effect.id) && (effect.of === "contact") === isContact) select.append(make("option", { value: effect.id, textContent: effect.id.replaceAll("_", " "), title: effect.equation }));
+    if (!has.has(effect.id) && (effect.of === "contact") === isContact) select.append(make("option", { value: effect.id, textContent: words(effect.id), title: effect.equation }));
   }
 }
 
-/** A button. */
-export const act = (text, id, onclick, more = {}) => make("button", { type: "button", id, textContent: text, onclick, ...more });
+const act = (text, id, onclick, more = {}) => make("button", { type: "button", id, textContent: text, onclick, ...more });
+
+/** The line with what is open, where its data are from, and buttons for what can be done with it. */
+export function headline(title, { view, whole }, data, actions) {
+  const isFile = view.history.length > 0;
+  return make("div", { className: "headline" },
+    make("div", {}, title, make("p", { className: "quiet small", textContent: data })),
+    make("div", { className: "row" },
+      act("Diagnose", "diagnose", actions.diagnose, { className: "primary" }),
+      isFile ? act("Add until complete", "auto", actions.auto) : act("Write an experiment file", "own", actions.own),
+      isFile ? act("Map its signals again", "again", actions.again) : null,
+      view.history.length > 1 ? act("Undo", "undo", actions.undo, { title: `Back to ${view.history.at(-2).path}` }) : null,
+      whole ? null : act("Report", "report", actions.report)));
+}
+
+/** Where a joint's data are from. */
+export const dataOf = (own) => `${own.sessions.length} session${own.sessions.length === 1 ? "" : "s"} of ${own.recordings.join(", ")}`;
 
 /** Buttons for each joint, and for the arm as a whole; nothing where there is one joint alone. */
 export function tabs({ view, joint, whole }, actions) {
   if (view.joints.length < 2) return null;
   return make("div", { className: "row", style: "margin-top:10px" },
     view.arm ? act("whole arm", "whole-arm", actions.whole, { "aria-pressed": String(whole) }) : null,
-    view.joints.map((other, number) => act(other.title.replaceAll("_", " "), `joint-${number}`, () => actions.joint(number), { "aria-pressed": String(!whole && number === joint) })));
+    view.joints.map((other, number) => act(words(other.title), `joint-${number}`, () => actions.joint(number), { "aria-pressed": String(!whole && number === joint) })));
 }
 
 /** Shows the experiment in `parent`. */
@@ -90,25 +106,16 @@ export function show(parent, state, actions) {
   catalogue(select, own.effects, own.joint === "contact");
   parts = { figures: make("div", { className: "figures" }), used: make("details", { id: "used" }), warnings: make("div", { id: "warnings" }) };
   fill(parent,
-    make("div", { className: "headline" },
-      make("div", {},
-        make("h1", { textContent: isFile ? own.title : `${path}, ${own.title}` }),
-        make("p", { className: "quiet small", textContent: `${own.sessions.length} session${own.sessions.length === 1 ? "" : "s"} of ${own.recordings.join(", ")}` })),
-      make("div", { className: "row" },
-        act("Diagnose", "diagnose", actions.diagnose, { className: "primary" }),
-        isFile ? act("Add until complete", "auto", actions.auto) : act("Write an experiment file", "own", actions.own),
-        isFile ? act("Map its signals again", "again", actions.again) : null,
-        view.history.length > 1 ? act("Undo", "undo", actions.undo, { title: `Back to ${view.history[view.history.length - 2].path}` }) : null,
-        act("Report", "report", actions.report))),
+    headline(make("h1", { textContent: isFile ? own.title : `${path}, ${own.title}` }), state, dataOf(own), actions),
     tabs(state, actions),
     make("div", { className: "tags", "aria-label": "The model" },
       make("span", { className: "tag", textContent: inertia(own) }),
       own.effects.map((effect) => make("span", {
-        className: `tag${[nameOf(effect), `${nameOf(effect)}@${own.title}`].includes(added) ? " new" : ""}`, title: typeof effect === "string" ? "" : effect.expression, textContent: nameOf(effect).replaceAll("_", " "),
+        className: `tag${[nameOf(effect), `${nameOf(effect)}@${own.title}`].includes(added) ? " new" : ""}`, title: typeof effect === "string" ? "" : effect.expression, textContent: words(nameOf(effect)),
       }))),
     parts.figures, parts.warnings, parts.used,
     make("details", { id: "equation" }, make("summary", { textContent: "The model's equation" }),
-      own.equation.map((part) => make("p", { className: "note" }, make("b", { textContent: `${part.effect.replaceAll("_", " ")}: ` }), part.formula))),
+      own.equation.map((part) => make("p", { className: "note" }, make("b", { textContent: `${words(part.effect)}: ` }), part.formula))),
     own.notes.map((note) => make("p", { className: "note", textContent: note })),
     isFile ? make("div", { style: "margin-top:14px;display:grid;gap:10px;max-width:760px" }, select, ownEffect(actions, own.joint === "contact")) : null);
 }

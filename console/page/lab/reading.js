@@ -1,6 +1,7 @@
 // What would be read with the mapping as it stands: numbers, what is odd, curves.
 
 import { fill, make } from "../common/dom.js";
+import { words } from "../common/names.js";
 import { percent, significant } from "../common/numbers.js";
 import { work } from "../common/server.js";
 import { colours } from "../common/theme.js";
@@ -14,16 +15,16 @@ const NAMED = 4;
 const AXES = { "tip[0]": "tip x", "tip[1]": "tip y" };
 
 /** A signal in words: of an arm the joint and what of it. */
-function words(key) {
+function signalInWords(key) {
   const [role, joint] = key.replace("extra.", "").split("@");
-  const text = AXES[role] ?? role.replaceAll("_", " ");
+  const text = AXES[role] ?? words(role);
   return joint ? `${joint}: ${text}` : text;
 }
 
 /** The same for an axis, which has little room. */
 function shortened(key) {
   const [role, joint] = key.split("@");
-  const last = words(role).split(" ").pop();
+  const last = signalInWords(role).split(" ").pop();
   return joint ? `${joint.length > 12 ? `${joint.slice(0, 11)}…` : joint}<br>${last}` : AXES[role] ?? last;
 }
 const short = (path) => path.split("/").pop();
@@ -104,7 +105,7 @@ function lines(signals) {
 function table(signals, columns) {
   const cell = (text, more = {}) => make("td", { className: "right number", textContent: text, ...more });
   const rows = lines(signals).map((own) => make("tr", { "data-signal": own.signal },
-    make("td", {}, words(own.signal), make("small", { className: "quiet", textContent: ` ${columns[own.signal] ?? ""}` })),
+    make("td", {}, signalInWords(own.signal), make("small", { className: "quiet", textContent: ` ${columns[own.signal] ?? ""}` })),
     cell(`${significant(own.least)} … ${significant(own.greatest)} ${own.unit}`, { "data-what": "range" }),
     cell(own.interval ? `${significant(1 / own.interval)} Hz` : "–", { "data-what": "rate" }),
     cell(String(own.missing), { "data-what": "missing", title: own.first ? `the first in ${own.first}` : "" }),
@@ -129,7 +130,7 @@ async function show(parent, found, held, columns) {
   const figure = (value, text, id) => make("div", { className: "figure", id }, make("b", { textContent: value }), make("small", { textContent: text }));
   fill(parent,
     make("h2", { textContent: "What is read" }),
-    found.missing.length ? make("p", { className: "note", id: "to-choose", textContent: `Still to choose: ${found.missing.map(words).join(", ")}` }) : null,
+    found.missing.length ? make("p", { className: "note", id: "to-choose", textContent: `Still to choose: ${found.missing.map(signalInWords).join(", ")}` }) : null,
     found.troubles.map((text) => make("p", { className: "error", role: "alert", textContent: text })),
     found.share_used === null ? null : make("div", { className: "figures" },
       figure(`${significant(found.rate_hz)} Hz`, "rate", "read-rate"), figure(percent(found.share_used), "of all samples used", "read-share")),

@@ -1,6 +1,7 @@
 // The rows of the form, one a signal: its column, its unit, what is odd about it; and signals of the user's own.
 
 import { fill, make } from "../common/dom.js";
+import { words } from "../common/names.js";
 import { significant } from "../common/numbers.js";
 
 /** Words for a column in the list: what is in it. */
@@ -48,7 +49,7 @@ export function rows(at) {
     const { column, unit } = at.says(key);
     // The guess leaves it open where it is not sure; an experiment file need not say it.
     const open = unit === "" ? "choose …" : unit === null ? (at.stated && column ? `${known[0]}, not stated` : "unit") : null;
-    const select = make("select", { id: `unit-${key}`, "aria-label": `unit of ${key.replaceAll("_", " ")}`, required: unit === "" && column !== "" },
+    const select = make("select", { id: `unit-${key}`, "aria-label": `unit of ${words(key)}`, required: unit === "" && column !== "" },
       open ? make("option", { value: "", textContent: open, selected: true }) : null,
       known.map((text) => make("option", { value: text, textContent: text, selected: text === unit })));
     select.onchange = () => { at.say(key, { unit: select.value || null }); at.tried(); };

@@ -30,18 +30,21 @@ pub fn offered(arm: &ArmTable) -> Vec<OfferedEffect> {
     let joints = arm.joints();
     let all = ArmEffect::all(joints.len()).into_iter();
     all.map(|own| OfferedEffect {
-        effect: match own.joint().and_then(|joint| joints.get(joint)) {
-            Some(joint) => format!("{}@{joint}", own.id()),
-            None => own.id().to_owned(),
-        },
+        effect: own.term(|at| joints.get(at)).to_string(),
         equation: own.equation(),
     })
     .collect()
 }
 
-fn opened(lab: &Lab, at: &At) -> Result<OpenedArm, LabError> {
-    let arm = work::open_arm(&lab.there(&at.path)?)?;
-    arm.ok_or_else(|| LabError::NoArm(at.path.clone()))
+/// The arm of an experiment file, and what to do with it.
+fn with_arm<T>(
+    lab: &Lab,
+    at: &At,
+    work: impl FnOnce(&OpenedArm) -> Result<T, LabError>,
+) -> Result<T, LabError> {
+    let opened = lab.open(&at.path)?;
+    let arm = opened.arm.as_ref();
+    work(arm.ok_or_else(|| LabError::NoArm(at.path.clone()))?)
 }
 
 /// The arm's model against its recordings.
@@ -77,34 +80,31 @@ struct JointError {
 pub async fn compare(State(lab): State<Arc<Lab>>, Json(at): Json<At>) -> Response {
     in_lines(&lab, move |lab, progress| {
         progress(0.05);
-        let opened = opened(lab, &at)?;
-        progress(0.3);
-        let found = opened.compare()?;
-        let joints = opened.dataset.joints.iter().filter_map(|name| {
-            let own = found.joints.get(name)?;
-            Some(JointError {
-                joint: name.clone(),
-                rms: own.rms,
-                relative_error_held_out: own.relative_error_held_out,
+        with_arm(lab, &at, |opened| {
+            progress(0.3);
+            let found = opened.compare()?;
+            let joints = opened.dataset.joints.iter().filter_map(|name| {
+                let own = found.joints.get(name)?;
+                Some(JointError {
+                    joint: name.clone(),
+                    rms: own.rms,
+                    relative_error_held_out: own.relative_error_held_out,
+                })
+            });
+            let together = found.varies_together.iter().map(VariesTogether::text);
+            let held = found.held_possible.iter();
+            let held = held.map(|effect| work::held_possible(effect));
+            Ok(Compared {
+                title: opened.experiment.title.clone(),
+                unit: opened.torque_unit(),
+                samples: found.samples,
+                used: found.used,
+                rms: found.rms,
+                joints: joints.collect(),
+                warnings: together.chain(held).collect(),
+                notes: opened.notes.clone(),
+                arm: found.arm,
             })
-        });
-        let together = found.varies_together.iter().map(VariesTogether::text);
-        let held = found.held_possible.iter().map(|effect| {
-            format!(
-                "{effect}: least squares alone finds a body that cannot exist; these are the nearest \
-                 parameters of one that can"
-            )
-        });
-        Ok(Compared {
-            title: opened.experiment.title.clone(),
-            unit: opened.torque_unit(),
-            samples: found.samples,
-            used: found.used,
-            rms: found.rms,
-            joints: joints.collect(),
-            warnings: together.chain(held).collect(),
-            notes: opened.notes.clone(),
-            arm: found.arm,
         })
     })
 }
@@ -121,10 +121,13 @@ struct Diagnosed {
 /// Tells which effect is missing, in which joint or in the arm.
 pub async fn diagnose(State(lab): State<Arc<Lab>>, Json(at): Json<At>) -> Response {
     in_lines(&lab, move |lab, progress| {
-        let diagnosis = opened(lab, &at)?.diagnose(progress)?;
-        Ok(Diagnosed {
-            names: diagnosis.candidates.iter().map(work::name_of).collect(),
-            diagnosis,
+        with_arm(lab, &at, |opened| {
+            let diagnosis = opened.diagnose(progress)?;
+            let candidates = diagnosis.candidates.iter();
+            Ok(Diagnosed {
+                names: candidates.map(|own| own.term().to_string()).collect(),
+                diagnosis,
+            })
         })
     })
 }

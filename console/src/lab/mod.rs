@@ -29,7 +29,7 @@ use axum::{
 };
 use ferntast_lab::{
     table::ENDINGS,
-    work::{Opened, WorkError},
+    work::{Opened, OpenedArm, WorkError},
 };
 use serde::Deserialize;
 use tokio::sync::Semaphore;
@@ -124,7 +124,15 @@ impl IntoResponse for LabError {
 struct Kept {
     path: PathBuf,
     changed: Option<SystemTime>,
-    opened: Arc<Vec<Opened>>,
+    contents: Arc<Contents>,
+}
+
+/// What a file holds.
+struct Contents {
+    /// One experiment, or one a joint.
+    joints: Vec<Opened>,
+    /// The arm that they are of, where it is about a whole one.
+    arm: Option<OpenedArm>,
 }
 
 /// The lab of one folder.
@@ -204,7 +212,7 @@ impl Lab {
     }
 
     /// Experiments of a file, read once as long as the file stays as it is.
-    fn open(&self, path: &str) -> Result<Arc<Vec<Opened>>, LabError> {
+    fn open(&self, path: &str) -> Result<Arc<Contents>, LabError> {
         let path = self.there(path)?;
         let changed = path.metadata().and_then(|data| data.modified()).ok();
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -212,15 +220,20 @@ impl Lab {
             && kept.path == path
             && kept.changed == changed
         {
-            return Ok(kept.opened.clone());
+            return Ok(kept.contents.clone());
         }
-        let opened = Arc::new(ferntast_lab::work::open(&path)?);
+        let arm = ferntast_lab::work::open_arm(&path)?;
+        let joints = match &arm {
+            Some(arm) => arm.joints()?,
+            None => ferntast_lab::work::open(&path)?,
+        };
+        let contents = Arc::new(Contents { joints, arm });
         *kept = Some(Kept {
             path,
             changed,
-            opened: opened.clone(),
+            contents: contents.clone(),
         });
-        Ok(opened)
+        Ok(contents)
     }
 }
 

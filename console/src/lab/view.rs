@@ -76,7 +76,8 @@ pub async fn open(
     Query(at): Query<At>,
 ) -> Result<Json<FileView>, LabError> {
     aside(move || {
-        let opened = lab.open(&at.path)?;
+        let contents = lab.open(&at.path)?;
+        let opened = &contents.joints;
         let history = match opened
             .first()
             .and_then(|first| first.experiment.path.as_deref())
@@ -87,9 +88,10 @@ pub async fn open(
         Ok(FileView {
             path: at.path,
             joints: opened.iter().map(|opened| joint(&lab, opened)).collect(),
-            arm: opened
-                .first()
-                .and_then(|first| first.experiment.arm.as_ref())
+            arm: contents
+                .arm
+                .as_ref()
+                .and_then(|arm| arm.experiment.arm.as_ref())
                 .map(offered),
             history: history
                 .into_iter()

@@ -94,7 +94,8 @@ fn with_joint<T>(
     work: impl FnOnce(&Opened) -> Result<T, LabError>,
 ) -> Result<T, LabError> {
     let opened = lab.open(&joint.path)?;
-    let one = opened.get(joint.joint).ok_or_else(|| joint.missing())?;
+    let one = opened.joints.get(joint.joint);
+    let one = one.ok_or_else(|| joint.missing())?;
     work(one)
 }
 
@@ -208,7 +209,8 @@ pub async fn add(State(lab): State<Arc<Lab>>, Json(addition): Json<Addition>) ->
             None => Ok(work::beside(&parent, name)),
         };
         progress(0.1);
-        let (output, added) = match work::open_arm(&parent)? {
+        let opened = lab.open(&addition.joint.path)?;
+        let (output, added) = match &opened.arm {
             Some(arm) => {
                 let term = match addition.of_arm {
                     true => ArmTerm::of(&effect),

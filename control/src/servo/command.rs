@@ -144,7 +144,7 @@ impl std::fmt::Display for Range {
 const CLOCK_TOLERANCE: f64 = 0.005;
 
 #[derive(Clone, Copy, Debug)]
-struct Accepted {
+pub(super) struct Accepted {
     stamp_ns: i64,
     /// Where there is a Cartesian model.
     tip: Option<Vector3<f64>>,
@@ -282,6 +282,23 @@ impl CommandCheck {
         now_ns: i64,
         posture: &Joints<f64>,
     ) -> Result<Joints<f64>, CommandRefusal> {
+        let accepted = self.judge(command, now_ns, posture)?;
+        self.newest_ns = accepted.stamp_ns;
+        self.last = Some(accepted);
+        Ok(accepted.led.joints)
+    }
+
+    /// What would be remembered of the command, were it acted on.
+    ///
+    /// # Errors
+    ///
+    /// As [`check`](Self::check).
+    pub(super) fn judge(
+        &self,
+        command: &Command,
+        now_ns: i64,
+        posture: &Joints<f64>,
+    ) -> Result<Accepted, CommandRefusal> {
         let stamp_ns = command.stamp_ns;
         if stamp_ns <= 0 {
             return Err(CommandRefusal::StampZero);
@@ -316,14 +333,12 @@ impl CommandCheck {
                 return Err(CommandRefusal::Jump { distance, speed });
             }
         }
-        self.newest_ns = stamp_ns;
-        self.last = Some(Accepted {
+        Ok(Accepted {
             stamp_ns,
             tip,
             led,
             turning,
-        });
-        Ok(led.joints)
+        })
     }
 
     /// Joint positions \[rad\] and, where that is known, the tip \[m\], and what becomes of the

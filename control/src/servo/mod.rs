@@ -456,8 +456,7 @@ impl Servo {
         if !listens {
             // It is not followed and nothing is remembered of it; but who says what could be
             // followed is not silent.
-            let check = self.commands.clone().check(command, now_ns, &posture);
-            if check.is_ok() {
+            if self.commands.judge(command, now_ns, &posture).is_ok() {
                 let made_ns = command.stamp_ns.min(now_ns);
                 self.last_command_ns = self.last_command_ns.map(|last| last.max(made_ns));
             }

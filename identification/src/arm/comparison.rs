@@ -98,7 +98,7 @@ fn rms(fit: &SharedFit) -> Rms {
 /// Parameters of the effects of the arm that are in the model.
 pub(super) fn of_arm(arm: &PreparedArm<'_>) -> BTreeMap<String, BTreeMap<String, Parameter>> {
     let each = arm.corrections.iter().map(|own| {
-        let name = arm.name_of(own.effect);
+        let name = arm.term(own.effect).to_string();
         let covariance = (&own.covariance, shared::freedom(&arm.joints));
         let parameters = trial::parameters(own.effect, &own.value, covariance);
         (name, parameters)

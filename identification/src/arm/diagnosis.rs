@@ -46,6 +46,17 @@ pub struct ArmCandidate {
     pub named: NamedCandidate,
 }
 
+impl ArmCandidate {
+    /// As it is named in files.
+    #[must_use]
+    pub fn term(&self) -> ArmTerm {
+        ArmTerm {
+            effect: Term::Catalogue(self.named.effect.clone()),
+            joint: self.joint.clone(),
+        }
+    }
+}
+
 /// An effect that is suspected in a joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmSuspect {
@@ -143,7 +154,7 @@ pub fn diagnose(
                 *helped = decrease.is_certain();
             }
             // With it in the model: what is left is a second effect, or nothing.
-            let more = with(spec, told.term(winner.effect));
+            let more = with(spec, arm.term(winner.effect));
             let then = PreparedArm::new(dataset, &more)?;
             let open: Vec<usize> = (all.iter().copied())
                 .filter(|at| each[*at].verdict != Verdict::Complete)
@@ -334,14 +345,6 @@ impl Told<'_> {
         self.arm.joints.get(at)
     }
 
-    fn term(&self, effect: ArmEffect) -> ArmTerm {
-        let joint = effect.joint().and_then(|at| self.joint(at));
-        ArmTerm {
-            effect: Term::Catalogue(effect.id().to_owned()),
-            joint: joint.map(|joint| joint.name.clone()),
-        }
-    }
-
     /// The candidates of joint number `at`.
     fn of_joint(&self, at: usize, diagnosis: &Diagnosis) -> Vec<ArmCandidate> {
         let Some(joint) = self.joint(at) else {
@@ -363,7 +366,7 @@ impl Told<'_> {
     fn of_arm(&self, tried: &Tried, alike: Vec<&Tried>) -> ArmCandidate {
         let decrease = weighted_decrease(&tried.decreases, self.weights);
         let square = decrease.before.powi(2).max(1e-300);
-        let term = self.term(tried.effect);
+        let term = self.arm.term(tried.effect);
         ArmCandidate {
             joint: term.joint,
             partner: None,
@@ -376,7 +379,7 @@ impl Told<'_> {
                 share_std_error: decrease.std_error / square,
                 parameters: tried.parameters(),
                 indistinguishable_from: (alike.iter())
-                    .map(|own| self.term(own.effect).to_string())
+                    .map(|own| self.arm.term(own.effect).to_string())
                     .collect(),
                 separate_by: tried.effect.excited_by().to_owned(),
                 next_experiment: Proposal::WidePosition,

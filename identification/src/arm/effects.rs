@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::data::{ArmError, ArmTerm};
 use super::motion::States;
 use super::rigid_body::RigidBody;
+use crate::data::Term;
 
 /// An effect of the arm. Its coefficients enter τ nonlinearly only to second order: it is
 /// linearised around the coefficients reached.
@@ -71,6 +72,15 @@ impl ArmEffect {
         }
     }
 
+    /// As it is named in files: `payload`, `link_inertia@elbow`. `joint` names one by its number.
+    #[must_use]
+    pub fn term<'a>(self, joint: impl FnOnce(usize) -> Option<&'a String>) -> ArmTerm {
+        ArmTerm {
+            effect: Term::Catalogue(self.id().to_owned()),
+            joint: self.joint().and_then(joint).cloned(),
+        }
+    }
+
     /// In words.
     #[must_use]
     pub const fn equation(self) -> &'static str {
@@ -93,7 +103,7 @@ impl ArmEffect {
 
     /// The effect of the arm that a term names; `None` where it is one of joints.
     pub(super) fn of(term: &ArmTerm, joints: &[String]) -> Result<Option<Self>, ArmError> {
-        let crate::data::Term::Catalogue(id) = &term.effect else {
+        let Term::Catalogue(id) = &term.effect else {
             return Ok(None);
         };
         let place = |reason| {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use ferntast_model::rigid_body::LinkInertia;
 use nalgebra::{DMatrix, DVector};
 
-use super::data::{ArmDataset, ArmError, ArmSpec};
+use super::data::{ArmDataset, ArmError, ArmSpec, ArmTerm};
 use super::effects::ArmEffect;
 use super::motion::Motion;
 use super::possible::{nearest_link, nearest_payload};
@@ -197,18 +197,15 @@ impl<'a> PreparedArm<'a> {
         free.map(|own| (own.effect, own.value.clone())).collect()
     }
 
-    /// The effect as it is written: `payload`, `link_inertia@elbow`.
-    pub(super) fn name_of(&self, effect: ArmEffect) -> String {
-        match effect.joint().and_then(|at| self.joints.get(at)) {
-            Some(joint) => format!("{}@{}", effect.id(), joint.name),
-            None => effect.id().to_owned(),
-        }
+    /// The effect as it is named in files.
+    pub(super) fn term(&self, effect: ArmEffect) -> ArmTerm {
+        effect.term(|at| self.joints.get(at).map(|joint| &joint.name))
     }
 
     /// Effects whose free fit is no body that can exist.
     pub(super) fn held_possible(&self) -> Vec<String> {
         let held = self.corrections.iter().filter(|own| own.is_held);
-        held.map(|own| self.name_of(own.effect)).collect()
+        held.map(|own| self.term(own.effect).to_string()).collect()
     }
 
     /// One Gauss-Newton step of the corrections; the largest change, as a share of the

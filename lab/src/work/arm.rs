@@ -73,6 +73,15 @@ pub fn open_arm(path: &Path) -> Result<Option<OpenedArm>, WorkError> {
     arm.map(|arm| OpenedArm::read(experiment, &arm)).transpose()
 }
 
+/// What is said of an effect whose free fit is no body.
+#[must_use]
+pub fn held_possible(effect: &str) -> String {
+    format!(
+        "{effect}: least squares alone finds a body that cannot exist (negative mass, or an inertia that no shape \
+         has); these are the nearest parameters of one that can, with the standard errors of the free fit"
+    )
+}
+
 impl OpenedArm {
     pub(super) fn read(experiment: Experiment, arm: &ArmTable) -> Result<OpenedArm, WorkError> {
         let loaded = recording::load(&experiment)?;

@@ -2,10 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ferntast_identification::{
-    Verdict,
-    arm::{ArmCandidate, ArmDiagnosis, ArmTerm},
-};
+use ferntast_identification::{Verdict, arm::ArmDiagnosis};
 use serde::Serialize;
 
 use super::{AddedToArm, AutoOptions, OpenedArm, WorkError, open_arm, output_of, refuse_existing};
@@ -39,15 +36,6 @@ pub enum ArmAutoEvent<'a> {
     Added(&'a OpenedArm, &'a AddedToArm),
 }
 
-/// A candidate as it is written in a file.
-#[must_use]
-pub fn name_of(candidate: &ArmCandidate) -> String {
-    match &candidate.joint {
-        Some(joint) => format!("{}@{joint}", candidate.named.effect),
-        None => candidate.named.effect.clone(),
-    }
-}
-
 /// Diagnoses the arm's experiment file at `path`, adds the first of what is missing, and so
 /// on; `None` where the path leads to an experiment of another kind.
 ///
@@ -78,12 +66,12 @@ pub fn auto_arm(
                 last,
             }));
         };
-        let name = name_of(best);
-        let output = output_of(&path, &name, options.folder.as_deref());
+        let term = best.term();
+        let output = output_of(&path, &term.to_string(), options.folder.as_deref());
         if !options.force {
             refuse_existing(&output)?;
         }
-        let added = opened.add(&ArmTerm::parse(&name), &output)?;
+        let added = opened.add(&term, &output)?;
         path.clone_from(&added.experiment);
         tell(ArmAutoEvent::Added(&opened, &added));
         steps.push(added);

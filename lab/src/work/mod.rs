@@ -43,8 +43,8 @@ use crate::{
 };
 
 pub use add::{Added, beside, output_of, own_effect, refuse_existing};
-pub use arm::{AddedToArm, OpenedArm, open_arm};
-pub use arm_auto::{ArmAutoEvent, AutomaticArm, auto_arm, name_of};
+pub use arm::{AddedToArm, OpenedArm, held_possible, open_arm};
+pub use arm_auto::{ArmAutoEvent, AutomaticArm, auto_arm};
 pub use auto::{AutoEvent, AutoOptions, Automatic, Step, auto};
 pub use chain::{ArmChain, ArmJoint};
 pub use doubt::Doubt;

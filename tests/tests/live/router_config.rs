@@ -108,11 +108,12 @@ fn who_has_which_certificate_may_stop_the_arm_or_only_listen() {
     command.args(["--middleware", "zenoh", "--router-config", "router.json5"]);
     let mut process = Process::spawn(command);
     await_enabled(&session, &mut process);
-    let peer = |name: &str, arguments: &[&str]| {
+    let begin = |name: &str, arguments: &[&str]| {
         let config = format!("{name}.json5");
         let arguments = [&["--config", config.as_str()], arguments].concat();
-        Process::spawn(session.peer("zenoh_peer.py", &arguments)).wait(PATIENCE)
+        Process::spawn(session.peer("zenoh_peer.py", &arguments))
     };
+    let peer = |name: &str, arguments: &[&str]| begin(name, arguments).wait(PATIENCE);
     let count = [
         "count",
         "/follower/measured_js",
@@ -132,21 +133,18 @@ fn who_has_which_certificate_may_stop_the_arm_or_only_listen() {
         "{intruder:#?}"
     );
 
-    let pause = |name: &str| {
-        let config = format!("{name}.json5");
-        let words = ["--config", &config, "command"];
-        let said = ["/follower/state_command", "pause"];
-        Process::spawn(session.peer("zenoh_peer.py", &[&words[..], &said].concat()))
-    };
+    let pause = ["command", "/follower/state_command", "pause"];
     // Of an arm that a busy machine holds already nobody would see that it is asked to pause.
-    let told = operated(&session, pause("watcher")).success().json();
+    let told = operated(&session, begin("watcher", &pause))
+        .success()
+        .json();
     assert_eq!(told["heard"], false);
     thread::sleep(Duration::from_secs(1));
     let paused = "pause was asked for";
     assert!(!process.stderr().contains(paused), "{}", process.stderr());
     let obeyed = (0..4).any(|_| {
         rearmed(&session);
-        let told = pause("operator").wait(PATIENCE).success().json();
+        let told = peer("operator", &pause).success().json();
         assert_eq!(told["heard"], true);
         wait_until(Duration::from_secs(5), || process.stderr().contains(paused))
     });
