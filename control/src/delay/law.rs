@@ -130,6 +130,12 @@ macro_rules! laws {
                 }
             }
 
+            fn nearness(&self) -> f64 {
+                match self {
+                    $($leaders::$law(law) => law.nearness(),)*
+                }
+            }
+
             fn dissipated(&self) -> f64 {
                 match self {
                     $($leaders::$law(law) => law.dissipated(),)*

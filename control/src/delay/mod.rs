@@ -162,6 +162,11 @@ pub struct FollowerOutput {
 pub trait Leader {
     /// One step of `dt` \[s\]; `energy` is what went through this end's port.
     fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput;
+    /// How much there is for the hand to touch, from 0, where nothing is near, to 1, at something
+    /// stiff \[-\]. A law that does not know says 1.
+    fn nearness(&self) -> f64 {
+        1.0
+    }
     /// Energy that the law itself dissipated at this end since the start \[J\].
     fn dissipated(&self) -> f64 {
         0.0

@@ -10,6 +10,9 @@
 //!
 //! F = K p n − μ K p v_t/max(|v_t|, v_0) − b v, p = max(s − s₀, 0), s = −n·x_h.
 //!
+//! b is what a hand at a stiff surface needs (`damping`), less at a soft one, and `free_damping`
+//! where nothing is near (`hand_damping.rs`).
+//!
 //! An update is blended in: the model rendered follows the one received by a first
 //! order lag, `blend_time`. Its place comes towards the hand no faster than 50 mm/s; a surface
 //! that appears around the hand begins at the hand, so that it winds nothing up at once.
@@ -46,6 +49,7 @@ mod chord;
 mod compliance;
 mod estimate;
 mod even;
+mod hand_damping;
 mod noise;
 mod place;
 
@@ -60,14 +64,17 @@ use super::{
 use account::UpdateAccount;
 use compliance::SOFTEST;
 use estimate::{SAME, Scale, SurfaceEstimator};
+use hand_damping::HandDamping;
 use nalgebra::Vector3;
 use place::Place;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
     pub struct ModelMediated {
-        /// b: damping at the hand \[N·s/m\].
+        /// b: damping at the hand, at something stiff \[N·s/m\].
         pub damping: f64 [0.0..=1000.0, "N·s/m"] = 14.0,
+        /// The same far from all that is known to touch \[N·s/m\].
+        pub free_damping: f64 [0.0..=1000.0, "N·s/m"] = 14.0,
         /// Time constant with which an update is blended in \[s\].
         pub blend_time: f64 [0.001..=10.0, "s"] = 0.1,
         /// Whether updates have to be paid for.
@@ -154,6 +161,7 @@ pub struct ModelMediatedLeader {
     /// Time since the other end was heard, once it was [s].
     unheard: Option<f64>,
     account: UpdateAccount,
+    damping: HandDamping,
 }
 
 impl ModelMediatedLeader {
@@ -166,6 +174,7 @@ impl ModelMediatedLeader {
             received: None,
             unheard: None,
             account: UpdateAccount::new(law.update_reserve),
+            damping: HandDamping::new(law.free_damping, law.damping),
         }
     }
 
@@ -212,7 +221,7 @@ fn rendered(
     position: &Vector3<f64>,
     velocity: &Vector3<f64>,
 ) -> Vector3<f64> {
-    let depth = -surface.normal.dot(position) - surface.place;
+    let depth = surface.depth(position);
     if depth <= 0.0 {
         return Vector3::zeros();
     }
@@ -230,9 +239,12 @@ impl Leader for ModelMediatedLeader {
             let entered = f64::from(received.packet.energy[0]);
             self.account.came_in(self.mapping.power_scale() * entered);
         }
+        let mut damping = 0.0;
         if let Some(hand) = input.hand {
+            let surface = self.surface.as_ref();
+            damping = self.damping.step(dt, surface, &hand.position.into());
             let square = Vector3::from(hand.velocity).norm_squared();
-            self.account.add(self.parameters.damping * square * dt);
+            self.account.add(damping * square * dt);
             self.blend(dt, &hand.position.into());
         }
         self.unheard = match live {
@@ -254,11 +266,15 @@ impl Leader for ModelMediatedLeader {
             let force = rendered(&surface, &hand.position.into(), &velocity);
             shortened(force, self.parameters.largest_force)
         });
-        let felt = share * force - self.parameters.damping * velocity;
+        let felt = share * force - damping * velocity;
         LeaderOutput {
             force: felt.into(),
             packet: Packet::new(hand.position, (-share * force).into(), energy),
         }
+    }
+
+    fn nearness(&self) -> f64 {
+        self.damping.nearness()
     }
 }
 

@@ -131,7 +131,8 @@ impl Trial {
         let mut draw = Draw::of(seed);
         let law = law(&mut draw);
         let link = draw.link(true);
-        let pick = draw.between(0.0, 15.0) as usize;
+        let all = Environment::ALL.len() * Task::ALL.len();
+        let pick = draw.between(0.0, all as f64) as usize;
         let environment = Environment::ALL[pick % Environment::ALL.len()];
         let task = Task::ALL[(pick / Environment::ALL.len()).min(Task::ALL.len() - 1)];
         let buffered = draw.chance(0.3);

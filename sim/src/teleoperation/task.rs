@@ -21,6 +21,11 @@ const TAPPED: f64 = 0.004;
 const TAP_PERIOD: f64 = 1.0;
 const STROKE: f64 = 0.15;
 const TAPS: u32 = 3;
+/// How far to and fro along the surface a hand roams [m], how long a stroke takes, and how many
+/// there are, to and fro.
+const ROAM: f64 = 0.06;
+const ROAM_STROKE: f64 = 1.0;
+const ROAM_STROKES: u32 = 10;
 /// What is in nobody's hand: a light handle on its bearings.
 const LEFT_ALONE: ImpedanceParameters = ImpedanceParameters {
     mass: 0.2,
@@ -38,11 +43,13 @@ pub enum Task {
     Tap,
     /// Lets go of the handle while it presses.
     LetGo,
+    /// Moves to and fro where nothing is, ten strokes of 60 mm, then reaches, presses and comes back.
+    Roam,
 }
 
 impl Task {
     /// All of them.
-    pub const ALL: [Task; 3] = [Task::PressAndSlide, Task::Tap, Task::LetGo];
+    pub const ALL: [Task; 4] = [Task::PressAndSlide, Task::Tap, Task::LetGo, Task::Roam];
 
     /// As in configurations.
     pub const fn name(self) -> &'static str {
@@ -50,6 +57,7 @@ impl Task {
             Task::PressAndSlide => "press_and_slide",
             Task::Tap => "tap",
             Task::LetGo => "let_go",
+            Task::Roam => "roam",
         }
     }
 }
@@ -59,6 +67,8 @@ impl Task {
 pub(super) struct Schedule {
     pub task: Task,
     /// The hand begins to move: by then both ends have heard of each other.
+    pub begin: f64,
+    /// It begins to reach for the surface.
     pub reach: f64,
     /// The surface begins to move.
     pub wall: f64,
@@ -78,11 +88,16 @@ impl Schedule {
     /// For a link of `round_trip` \[s\]. An instability needs some round trips
     /// to show, a slow law some to arrive.
     pub(super) fn new(task: Task, round_trip: f64) -> Self {
-        let reach = WAIT + round_trip;
+        let begin = WAIT + round_trip;
+        let roaming = match task {
+            Task::Roam => f64::from(ROAM_STROKES) * ROAM_STROKE,
+            Task::PressAndSlide | Task::Tap | Task::LetGo => 0.0,
+        };
+        let reach = begin + roaming;
         let wall = reach + MOTION + 1.0 + round_trip;
         let slide = wall + 4.0;
         let work = match task {
-            Task::PressAndSlide | Task::LetGo => 2.0 * MOTION,
+            Task::PressAndSlide | Task::LetGo | Task::Roam => 2.0 * MOTION,
             Task::Tap => f64::from(TAPS) * TAP_PERIOD,
         };
         let watch_pressed = slide + work + 2.0 + 5.0 * round_trip;
@@ -90,6 +105,7 @@ impl Schedule {
         let watch_free = retreat + MOTION + 3.0 + 3.0 * round_trip;
         Schedule {
             task,
+            begin,
             reach,
             wall,
             slide,
@@ -108,19 +124,20 @@ impl Schedule {
         let (home, home_rate) = minimum_jerk((time - self.slide - MOTION) / MOTION);
         let reached = match self.task {
             Task::Tap => LIFTED,
-            Task::PressAndSlide | Task::LetGo => PRESSED,
+            Task::PressAndSlide | Task::LetGo | Task::Roam => PRESSED,
         };
         let (along, along_rate) = match self.task {
             Task::PressAndSlide => (out - home, (out_rate - home_rate) / MOTION),
-            Task::Tap | Task::LetGo => (0.0, 0.0),
+            Task::Tap | Task::LetGo | Task::Roam => (0.0, 0.0),
         };
         let (tap, tap_rate) = self.tap(time);
+        let (roam, roam_rate) = self.roam(time);
         let travel = reached - START;
         (
-            [START + travel * (reach - back) + tap, SLIDE * along],
+            [START + travel * (reach - back) + tap, SLIDE * along + roam],
             [
                 travel * (reach_rate - back_rate) / MOTION + tap_rate,
-                SLIDE * along_rate,
+                SLIDE * along_rate + roam_rate,
             ],
         )
     }
@@ -136,6 +153,29 @@ impl Schedule {
         let (up, up_rate) = minimum_jerk((since - STROKE) / STROKE);
         let depth = TAPPED - LIFTED;
         (depth * (down - up), depth * (down_rate - up_rate) / STROKE)
+    }
+
+    /// How far the hand is along the surface where it roams \[m\], and how fast \[m/s\].
+    fn roam(&self, time: f64) -> (f64, f64) {
+        if !(self.begin..self.reach).contains(&time) {
+            return (0.0, 0.0);
+        }
+        let since = (time - self.begin) % (2.0 * ROAM_STROKE);
+        let (out, out_rate) = minimum_jerk(since / ROAM_STROKE);
+        let (home, home_rate) = minimum_jerk(since / ROAM_STROKE - 1.0);
+        (
+            ROAM * (out - home),
+            ROAM * (out_rate - home_rate) / ROAM_STROKE,
+        )
+    }
+
+    /// From when to when the hand is in the free, and what it feels there is its drag \[s\]: a hand
+    /// that roams has got going by half of that.
+    pub(super) fn free(&self) -> std::ops::Range<f64> {
+        match self.task {
+            Task::Roam => 0.5 * (self.begin + self.reach)..self.reach,
+            Task::PressAndSlide | Task::Tap | Task::LetGo => 0.0..self.wall,
+        }
     }
 
     /// What holds the handle, where `hand` does until it lets go.
@@ -190,6 +230,19 @@ mod tests {
             assert!((at(begin + STROKE) - TAPPED).abs() < 1e-12);
         }
         assert!((at(schedule.watch_pressed) - LIFTED).abs() < 1e-12);
+    }
+
+    #[test]
+    fn who_roams_is_back_in_time_to_reach() {
+        let schedule = Schedule::new(Task::Roam, 0.1);
+        let at = |time| schedule.target(time).0;
+        assert_eq!(at(schedule.begin), schedule.start());
+        assert!((at(schedule.begin + ROAM_STROKE)[1] - ROAM).abs() < 1e-12);
+        assert_eq!(at(schedule.reach), schedule.start());
+        assert!((at(schedule.wall)[0] - PRESSED).abs() < 1e-12);
+        assert_eq!(schedule.free(), 5.6..10.6);
+        let other = Schedule::new(Task::PressAndSlide, 0.1);
+        assert_eq!(other.begin, other.reach);
     }
 
     #[test]

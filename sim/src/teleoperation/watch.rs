@@ -192,7 +192,6 @@ impl Watch {
         self.peak = self.peak.max(tick.touched[0].hypot(tick.touched[1]));
         self.peak_felt = self.peak_felt.max(tick.felt[0].hypot(tick.felt[1]));
         let Schedule {
-            wall,
             watch_pressed,
             retreat,
             watch_free,
@@ -217,7 +216,8 @@ impl Watch {
                 range.add(value);
             }
         }
-        if tick.time < wall && !touching && met == [0.0; 2] {
+        let free = self.schedule.free();
+        if free.contains(&tick.time) && !touching && met == [0.0; 2] {
             let power = -(0..2)
                 .map(|axis| tick.felt[axis] * tick.hand_speed[axis])
                 .sum::<f64>();
@@ -253,7 +253,7 @@ impl Watch {
         let done = match self.schedule.task {
             // The handle is where it was left: there is no way back to be in time for.
             Task::LetGo => Some(self.schedule.retreat),
-            Task::PressAndSlide | Task::Tap => self
+            Task::PressAndSlide | Task::Tap | Task::Roam => self
                 .away_until
                 .filter(|time| *time > self.schedule.retreat && *time < self.schedule.watch_free),
         };

@@ -51,6 +51,13 @@ pub struct SurfaceModel {
     pub friction: f64,
 }
 
+impl SurfaceModel {
+    /// How far `position` \[m\] is behind the surface \[m\]; negative before it.
+    pub(super) fn depth(&self, position: &Vector3<f64>) -> f64 {
+        -self.normal.dot(position) - self.place
+    }
+}
+
 /// Estimates a [`SurfaceModel`] from tip and contact force.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurfaceEstimator {

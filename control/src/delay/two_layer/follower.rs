@@ -2,6 +2,7 @@
 
 use super::inside::InnerFollower;
 use super::parameters::TwoLayer;
+use super::taking_over::TakingOver;
 use crate::delay::contact::{LastCommand, Late, TouchingTip};
 use crate::delay::energy_tank::EnergyTank;
 use crate::delay::mapping::Mapping;
@@ -11,8 +12,10 @@ use nalgebra::Vector3;
 /// Time constant with which a command comes to the lead that the tank pays for, longer than the
 /// servo's lag [s].
 const YIELD_TIME: f64 = 0.05;
-/// Speed of a command that the arm does not keep up with [m/s].
-const TAKING_OVER: f64 = 0.03;
+/// Speed of a command that the arm does not keep up with [m/s],
+const KEEPS_UP: f64 = 0.03;
+/// and of one that a servo has yet to come to, slower than that does [m/s].
+const WAITS: f64 = 0.005;
 /// With this a command that was kept back speeds up and brakes again [m/s²].
 const CATCH_UP: f64 = 0.5;
 
@@ -52,6 +55,7 @@ pub struct TwoLayerFollower {
     /// What is near, since the tip touched it.
     near: Option<Touched>,
     command: LastCommand,
+    taking_over: TakingOver,
     /// The command is kept back, or catches up.
     kept: bool,
     /// Of the command [m/s].
@@ -72,6 +76,7 @@ impl TwoLayerFollower {
             contact: Vector3::zeros(),
             near: None,
             command: LastCommand::default(),
+            taking_over: TakingOver::default(),
             kept: false,
             speed: 0.0,
         }
@@ -172,9 +177,14 @@ impl TwoLayerFollower {
             ahead = ahead.dot(&along).min(0.0) * along;
         }
         let mut way = ahead.cap_magnitude(self.stride(dt, &ahead, &velocity));
-        if (before - tip).norm() > 0.5 * leash {
-            // The servo is taking over, and brakes softly in that.
-            way = way.cap_magnitude(TAKING_OVER * dt);
+        let late = (before - tip).norm();
+        if near.is_some() {
+            self.taking_over.touches();
+        }
+        if near.is_none() && self.taking_over.step(dt, late, &tip, leash) {
+            way = way.cap_magnitude(WAITS * dt);
+        } else if late > 0.5 * leash {
+            way = way.cap_magnitude(KEEPS_UP * dt);
         }
         if let Some(Touched { along, .. }) = near {
             let lead = (before - tip).dot(&along);

@@ -24,6 +24,7 @@ impl Default for InnerLaw {
         InnerLaw::ModelMediated(ModelMediated {
             // The layer adds its own.
             damping: 11.0,
+            free_damping: 1.0,
             // It keeps books itself.
             paid_updates: false,
             ..ModelMediated::default()

@@ -59,7 +59,9 @@ impl Leader for TwoLayerLeader {
         };
         let velocity = self.velocity.step(dt, &hand);
         let lacking = 1.0 - (self.tank.level() / own.level.max(1e-9)).clamp(0.0, 1.0);
-        let damping = own.largest_damping * lacking * Vector3::from(hand.velocity);
+        let near = self.inner.nearness();
+        let filling = near * own.largest_damping + (1.0 - near) * own.largest_free_damping;
+        let damping = filling * lacking * Vector3::from(hand.velocity);
         let wanted = wanted.force.into();
         let force = self.force.step(dt, wanted, damping, &velocity, &self.tank);
         LeaderOutput {

@@ -13,7 +13,7 @@ law_parameters! {
         /// hand's end gives to the tip's at once \[-\]. The tip's end gives all of what comes in.
         pub promised_share: f64 [0.0..=1.0, "-"] = 0.6,
         /// Time constant with which the tip's end gives what it does not need to the hand's \[s\].
-        pub transfer_time: f64 [0.01..=100.0, "s"] = 0.03,
+        pub transfer_time: f64 [0.01..=100.0, "s"] = 0.05,
         /// Time constant with which the hand's end gives what it does not need to the tip's, of
         /// which comes back what that does not need either \[s\].
         pub refill_time: f64 [0.01..=1000.0, "s"] = 5.0,
@@ -29,8 +29,10 @@ law_parameters! {
         pub reserve: f64 [0.0..=1000.0, "J"] = 0.3,
         /// Below this energy the hand is damped \[J\].
         pub level: f64 [0.0..=100.0, "J"] = 0.25,
-        /// Largest damping at the hand that fills the tank \[N·s/m\].
+        /// Largest damping at a hand in contact that fills the tank \[N·s/m\].
         pub largest_damping: f64 [0.0..=1000.0, "N·s/m"] = 4.0,
+        /// The same where there is nothing to touch \[N·s/m\].
+        pub largest_free_damping: f64 [0.0..=1000.0, "N·s/m"] = 14.0,
         /// Largest change of the force on the hand \[N/s\].
         pub force_rate: f64 [1.0..=1e6, "N/s"] = 490.0,
         /// m_h: lightest mass of hand and handle \[kg\].
