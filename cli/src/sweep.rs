@@ -27,8 +27,8 @@ const ARMS_LAW: &str = "two_layer";
 /// Hold the delay laws against each other over delay, jitter, loss and environment.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Every trial is an operator at a task (presses and slides, taps, lets go) on the simulated arm with the servo, the\n\
-    estimator and the limits of the hand's force that a session has, in virtual time, on every processor.\n\
+    after_help = "Every trial is an operator at a task (presses and slides, taps, lets go, roams and presses) on the simulated\n\
+    arm with the servo, the estimator and the limits of the hand's force that a session has, in virtual time, on every processor.\n\
     With -o DIR: DIR/sweep.json (every trial) and DIR/sweep.html (stability maps and curves).\n\n\
     With --random N: N cases of each law in which scales, both channels (delay to 1 s, jitter, loss, reordering, copies,\n\
     bandwidth, outages), hand, surface and task are drawn from the case's seed; a line a law with the energy that was made\n\

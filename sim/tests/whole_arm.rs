@@ -59,6 +59,19 @@ fn trial(name: &str, round_trip: f64, environment: Environment, task: Task) -> T
     }
 }
 
+/// Standard deviation of the delay of frames in order, each way \[s\]: they come in bursts, with
+/// gaps of 0.1 s. A buffer of three of it evens that out.
+const JITTER: f64 = 0.05;
+
+/// `trial` on a link with such a [`JITTER`], and a buffer for it.
+fn jittery(mut trial: Trial) -> Trial {
+    for way in [&mut trial.link.up, &mut trial.link.down] {
+        way.jitter = Some(Jitter::Normal { deviation: JITTER });
+    }
+    trial.buffer = 3.0 * JITTER;
+    trial
+}
+
 fn run(name: &str, round_trip: f64, environment: Environment, task: Task) -> Outcome {
     let trial = trial(name, round_trip, environment, task);
     trial.run().expect("a valid trial")
@@ -148,23 +161,21 @@ fn four_channels_hold_at_the_scale_of_a_session() {
     assert!((5.0..15.0).contains(&heavy), "{heavy} N·s/m");
 }
 
-/// Frames in order whose delay has a standard deviation of 50 ms come in bursts, with gaps of
-/// 0.1 s; a buffer of three of it evens that out.
 #[test]
 fn behind_a_jitter_buffer_hardly_anybody_holds() {
     for name in ["model_mediated", "tdpa", "four_channel", "two_layer"] {
         let mut own = trial(name, 0.1, Environment::SoftSpring, Task::PressAndSlide);
         own.law = scaled(name, 0.05, &arm());
-        let deviation = 0.05;
-        for way in [&mut own.link.up, &mut own.link.down] {
-            way.jitter = Some(Jitter::Normal { deviation });
-        }
-        let bare = own.run().expect("a valid trial");
+        let own = jittery(own);
+        let unbuffered = Trial {
+            buffer: 0.0,
+            ..own.clone()
+        };
+        let bare = unbuffered.run().expect("a valid trial");
         assert!(
             bare.held > 5.0 && bare.task_time.is_none(),
             "{name}: {bare:?}"
         );
-        own.buffer = 3.0 * deviation;
         let buffered = own.run().expect("a valid trial");
         let told = format!("{name}: {buffered:?}");
         assert!(buffered.stable && buffered.task_time.is_some(), "{told}");
@@ -299,14 +310,10 @@ fn a_hand_that_roams_with_two_layers_is_free_once_it_has_paid() {
 /// command on a ramp then; a command that ran ahead of it met the wall with 26 to 35 N.
 #[test]
 fn two_layers_meet_a_wall_after_a_hold_as_softly_as_before() {
-    let deviation = 0.05;
     for round_trip in [0.0, 0.1, 0.6] {
-        let mut own = trial("two_layer", round_trip, Environment::HardWall, Task::Roam);
+        let environment = Environment::HardWall;
+        let mut own = jittery(trial("two_layer", round_trip, environment, Task::Roam));
         own.seed = 21;
-        own.buffer = 3.0 * deviation;
-        for way in [&mut own.link.up, &mut own.link.down] {
-            way.jitter = Some(Jitter::Normal { deviation });
-        }
         let outcome = own.run().expect("a valid trial");
         let told = format!("{round_trip} s: {outcome:?}");
         // The operator's word takes 0.5 s.
@@ -320,13 +327,11 @@ fn two_layers_meet_a_wall_after_a_hold_as_softly_as_before() {
 /// that was let sink into it could not be paid out again.
 #[test]
 fn two_layers_feel_a_hard_wall_behind_jitter_and_loss() {
-    let deviation = 0.05;
     for seed in 1..=6 {
-        let mut own = trial("two_layer", 0.6, Environment::HardWall, Task::PressAndSlide);
+        let environment = Environment::HardWall;
+        let mut own = jittery(trial("two_layer", 0.6, environment, Task::PressAndSlide));
         own.seed = seed;
-        own.buffer = 3.0 * deviation;
         for way in [&mut own.link.up, &mut own.link.down] {
-            way.jitter = Some(Jitter::Normal { deviation });
             way.loss = Some(Loss::Independent { probability: 0.1 });
         }
         let outcome = own.run().expect("a valid trial");

@@ -239,13 +239,12 @@ impl Leader for ModelMediatedLeader {
             let entered = f64::from(received.packet.energy[0]);
             self.account.came_in(self.mapping.power_scale() * entered);
         }
-        let mut damping = 0.0;
         if let Some(hand) = input.hand {
-            let surface = self.surface.as_ref();
-            damping = self.damping.step(dt, surface, &hand.position.into());
+            let position = hand.position.into();
+            self.damping.step(dt, self.surface.as_ref(), &position);
             let square = Vector3::from(hand.velocity).norm_squared();
-            self.account.add(damping * square * dt);
-            self.blend(dt, &hand.position.into());
+            self.account.add(self.damping.value() * square * dt);
+            self.blend(dt, &position);
         }
         self.unheard = match live {
             Some(_) => Some(0.0),
@@ -266,7 +265,7 @@ impl Leader for ModelMediatedLeader {
             let force = rendered(&surface, &hand.position.into(), &velocity);
             shortened(force, self.parameters.largest_force)
         });
-        let felt = share * force - damping * velocity;
+        let felt = share * force - self.damping.value() * velocity;
         LeaderOutput {
             force: felt.into(),
             packet: Packet::new(hand.position, (-share * force).into(), energy),

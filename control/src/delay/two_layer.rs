@@ -17,8 +17,8 @@
 //!   makes good.
 //! * **The hand.** The force gives out no more than the tank has, one step ahead, and changes
 //!   evenly. While the tank has less than `level`, the hand is damped, which fills it (the tank
-//!   level controller), most where nothing is near: there it pays for the arm that it brings along, and feels next to
-//!   nothing once it has.
+//!   level controller), most where nothing is near: there it pays for the arm that it brings
+//!   along, and feels next to nothing once it has.
 //! * **The tip.** Behind it are a servo and a mass that store energy on their own account, and a
 //!   contact gets all of that before anybody knows. So the tank has to hold it: the command moves
 //!   no faster than ½ m v² ≤ E, and in contact it leads the tip, along the force with which it
@@ -26,8 +26,8 @@
 //!   where the tank is overdrawn by 12 mJ it only leaves. Franken et al. take from the force there; an arm
 //!   that is told positions has none to take from. A command that was kept back catches up with a
 //!   bounded acceleration, as an arm that is jerked feigns forces; and it never leads by
-//!   more than `largest_lead`, as a servo that is slow to take over would wind up. It waits for a servo that
-//!   comes to its first command after a hold (`taking_over.rs`).
+//!   more than `largest_lead`, as a servo that is slow to take over would wind up. It waits for a
+//!   servo that comes to its first command after a hold (`taking_over.rs`).
 //!
 //! The inner law goes on from the command that was given, not from the one that it wished for.
 //!

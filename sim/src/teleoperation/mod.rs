@@ -206,7 +206,8 @@ pub struct Outcome {
     /// Stiffness that the hand feels while it presses by that which the tip
     /// touches \[-\]; `None` where nothing is pressed.
     pub transparency: Option<f64>,
-    /// Damping that the hand feels on the free way to the surface \[N·s/m\].
+    /// Damping that the hand feels on the free way to the surface; of one that roams, in the
+    /// second half of that \[N·s/m\].
     pub felt_damping: f64,
     /// When the tip is back where it began, or the hand let go \[s\]; `None` when it is not in
     /// time, or nothing was touched that there is.

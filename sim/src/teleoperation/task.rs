@@ -120,14 +120,12 @@ impl Schedule {
     pub(super) fn target(&self, time: f64) -> ([f64; 2], [f64; 2]) {
         let (reach, reach_rate) = minimum_jerk((time - self.reach) / MOTION);
         let (back, back_rate) = minimum_jerk((time - self.retreat) / MOTION);
-        let (out, out_rate) = minimum_jerk((time - self.slide) / MOTION);
-        let (home, home_rate) = minimum_jerk((time - self.slide - MOTION) / MOTION);
         let reached = match self.task {
             Task::Tap => LIFTED,
             Task::PressAndSlide | Task::LetGo | Task::Roam => PRESSED,
         };
         let (along, along_rate) = match self.task {
-            Task::PressAndSlide => (out - home, (out_rate - home_rate) / MOTION),
+            Task::PressAndSlide => out_and_back(time - self.slide, MOTION),
             Task::Tap | Task::LetGo | Task::Roam => (0.0, 0.0),
         };
         let (tap, tap_rate) = self.tap(time);
@@ -137,7 +135,7 @@ impl Schedule {
             [START + travel * (reach - back) + tap, SLIDE * along + roam],
             [
                 travel * (reach_rate - back_rate) / MOTION + tap_rate,
-                SLIDE * along_rate + roam_rate,
+                SLIDE * along_rate / MOTION + roam_rate,
             ],
         )
     }
@@ -148,11 +146,9 @@ impl Schedule {
         if self.task != Task::Tap || !(0.0..f64::from(TAPS) * TAP_PERIOD).contains(&since) {
             return (0.0, 0.0);
         }
-        let since = since % TAP_PERIOD;
-        let (down, down_rate) = minimum_jerk(since / STROKE);
-        let (up, up_rate) = minimum_jerk((since - STROKE) / STROKE);
+        let (way, rate) = out_and_back(since % TAP_PERIOD, STROKE);
         let depth = TAPPED - LIFTED;
-        (depth * (down - up), depth * (down_rate - up_rate) / STROKE)
+        (depth * way, depth * rate / STROKE)
     }
 
     /// How far the hand is along the surface where it roams \[m\], and how fast \[m/s\].
@@ -161,12 +157,8 @@ impl Schedule {
             return (0.0, 0.0);
         }
         let since = (time - self.begin) % (2.0 * ROAM_STROKE);
-        let (out, out_rate) = minimum_jerk(since / ROAM_STROKE);
-        let (home, home_rate) = minimum_jerk(since / ROAM_STROKE - 1.0);
-        (
-            ROAM * (out - home),
-            ROAM * (out_rate - home_rate) / ROAM_STROKE,
-        )
+        let (way, rate) = out_and_back(since, ROAM_STROKE);
+        (ROAM * way, ROAM * rate / ROAM_STROKE)
     }
 
     /// From when to when the hand is in the free, and what it feels there is its drag \[s\]: a hand
@@ -201,6 +193,14 @@ fn minimum_jerk(time: f64) -> (f64, f64) {
     let s = time.clamp(0.0, 1.0);
     let way = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
     (way, 30.0 * s * s * (1.0 - s) * (1.0 - s))
+}
+
+/// Way and speed of a motion from 0 to 1 and back, `since` \[s\] after it began; each way takes a
+/// `stroke` \[s\], in which the speed is counted.
+fn out_and_back(since: f64, stroke: f64) -> (f64, f64) {
+    let (out, out_rate) = minimum_jerk(since / stroke);
+    let (back, back_rate) = minimum_jerk((since - stroke) / stroke);
+    (out - back, out_rate - back_rate)
 }
 
 #[cfg(test)]

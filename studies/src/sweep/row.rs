@@ -65,7 +65,7 @@ pub struct Row {
     pub true_energy: f64,
     /// Stiffness felt by stiffness touched \[-\]; `null` where nothing is pressed.
     pub transparency: Option<f64>,
-    /// Damping felt on the free way to the surface \[N·s/m\].
+    /// Damping felt on the free way to the surface, or in the second half of roaming \[N·s/m\].
     #[serde(rename = "drag_N_s_per_m")]
     pub drag: f64,
     /// When the tip is back where it began, or the hand let go \[s\]; `null` when it is not in

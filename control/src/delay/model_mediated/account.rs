@@ -68,7 +68,7 @@ impl UpdateAccount {
 
 /// Energy in the spring of `surface` with the hand at `hand` \[m\] \[J\].
 fn stored(surface: &SurfaceModel, hand: &Vector3<f64>) -> f64 {
-    let depth = (-surface.normal.dot(hand) - surface.place).max(0.0);
+    let depth = surface.depth(hand).max(0.0);
     0.5 * surface.stiffness * depth * depth
 }
 

@@ -8,7 +8,6 @@ const BEFORE: f64 = 0.02;
 /// Time constant with which it changes, so that a surface that appears under the hand makes no
 /// step of force [s].
 const CHANGE: f64 = 0.05;
-
 /// What is as stiff as this is damped in full [N/m].
 const STIFF: f64 = 1000.0;
 
@@ -36,16 +35,20 @@ impl HandDamping {
         self.nearness
     }
 
+    /// b \[N·s/m\].
+    pub fn value(&self) -> f64 {
+        self.free + self.nearness * (self.contact - self.free)
+    }
+
     /// After `dt` \[s\] with the hand at `hand` \[m\], where `surface` is known. What damps a hand
     /// on a spring by the same share goes with the root of its stiffness.
-    pub fn step(&mut self, dt: f64, surface: Option<&SurfaceModel>, hand: &Vector3<f64>) -> f64 {
+    pub fn step(&mut self, dt: f64, surface: Option<&SurfaceModel>, hand: &Vector3<f64>) {
         let needed = surface.map_or(0.0, |own| {
             let near = (1.0 + own.depth(hand) / BEFORE).clamp(0.0, 1.0);
             let stiffness = (own.stiffness / STIFF).clamp(0.0, 1.0);
             near * stiffness.sqrt()
         });
         self.nearness += dt / (dt + CHANGE) * (needed - self.nearness);
-        self.free + self.nearness * (self.contact - self.free)
     }
 }
 
@@ -65,7 +68,8 @@ mod tests {
     fn damping(x: f64, surface: Option<&SurfaceModel>) -> f64 {
         let mut own = HandDamping::new(1.0, 11.0);
         let hand = Vector3::new(x, 0.0, 0.0);
-        (0..1000).fold(0.0, |_, _| own.step(1e-3, surface, &hand))
+        (0..1000).for_each(|_| own.step(1e-3, surface, &hand));
+        own.value()
     }
 
     #[test]
@@ -85,7 +89,8 @@ mod tests {
         let mut own = HandDamping::new(1.0, 11.0);
         let (hand, stiff) = (Vector3::zeros(), surface(2000.0));
         own.step(1e-3, None, &hand);
-        let first = own.step(1e-3, Some(&stiff), &hand);
+        own.step(1e-3, Some(&stiff), &hand);
+        let first = own.value();
         // 10 N·s/m over 50 ms.
         assert!((first - 1.2).abs() < 0.01, "{first}");
     }

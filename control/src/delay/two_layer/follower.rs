@@ -178,10 +178,8 @@ impl TwoLayerFollower {
         }
         let mut way = ahead.cap_magnitude(self.stride(dt, &ahead, &velocity));
         let late = (before - tip).norm();
-        if near.is_some() {
-            self.taking_over.touches();
-        }
-        if near.is_none() && self.taking_over.step(dt, late, &tip, leash) {
+        let free_tip = near.is_none().then_some(&tip);
+        if self.taking_over.step(dt, late, free_tip, leash) {
             way = way.cap_magnitude(WAITS * dt);
         } else if late > 0.5 * leash {
             way = way.cap_magnitude(KEEPS_UP * dt);

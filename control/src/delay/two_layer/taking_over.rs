@@ -30,9 +30,20 @@ pub(super) struct TakingOver {
 }
 
 impl TakingOver {
-    /// After `dt` \[s\] with the command `lead` \[m\] ahead of the tip, which is at `tip` \[m\] in
-    /// the free; it may lead by `leash` \[m\].
-    pub fn step(&mut self, dt: f64, lead: f64, tip: &Vector3<f64>, leash: f64) -> bool {
+    /// After `dt` \[s\] with the command `lead` \[m\] ahead of the tip, which is at `free_tip`
+    /// \[m\], or `None` where it touches something, which keeps it back; it may lead by `leash`
+    /// \[m\].
+    pub fn step(
+        &mut self,
+        dt: f64,
+        lead: f64,
+        free_tip: Option<&Vector3<f64>>,
+        leash: f64,
+    ) -> bool {
+        let Some(tip) = free_tip else {
+            *self = TakingOver::default();
+            return false;
+        };
         let place = self.place.filter(|own| (tip - own).norm() < STANDS);
         self.stands = place.map_or(0.0, |_| self.stands + dt);
         self.place = place.or(Some(*tip));
@@ -45,11 +56,6 @@ impl TakingOver {
             _ => None,
         };
         self.comes.is_some()
-    }
-
-    /// It touches something, which keeps it back.
-    pub fn touches(&mut self) {
-        *self = TakingOver::default();
     }
 }
 
@@ -70,7 +76,7 @@ mod tests {
             let comes = f64::from(step) * DT >= stands;
             let speed = if comes { speed } else { 0.0 };
             let tip = Vector3::new(-lead, 0.0, 0.0);
-            if own.step(DT, lead, &tip, LEASH) {
+            if own.step(DT, lead, Some(&tip), LEASH) {
                 waited[usize::from(comes)] += DT;
             }
             lead = (lead - speed * DT).max(0.0);
@@ -97,10 +103,10 @@ mod tests {
     #[test]
     fn what_touches_something_is_kept_back_by_that() {
         let mut own = TakingOver::default();
-        let step = |own: &mut TakingOver| own.step(DT, LEASH, &Vector3::zeros(), LEASH);
+        let step = |own: &mut TakingOver| own.step(DT, LEASH, Some(&Vector3::zeros()), LEASH);
         let waits = |own: &mut TakingOver| (0..200).any(|_| step(own));
         assert!(waits(&mut own));
-        own.touches();
+        assert!(!own.step(DT, LEASH, None, LEASH));
         assert!(!step(&mut own));
         assert!(waits(&mut own));
     }
