@@ -30,7 +30,7 @@ pub struct ScenarioOptions {
     #[arg(long, value_name = "NAME|FILE")]
     pub link: Option<String>,
 
-    /// Delay law to start with: position_force, position_position, four_channel, wave, tdpa, model_mediated, two_layer.
+    /// Delay law to start with: position_force, position_position, four_channel, wave, tdpa, model_mediated, two_layer, auto.
     #[arg(long, value_name = "NAME")]
     pub law: Option<String>,
 

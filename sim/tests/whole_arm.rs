@@ -267,17 +267,15 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
         assert!((13.0..15.0).contains(&outcome.felt_damping), "{told}");
         assert!((0.0..=0.491).contains(&outcome.force_step), "{told}");
         assert!(outcome.drift < 1.2e-3, "{told}");
-        let stiffness = environment.surface().0.min(3300.0);
-        (
-            outcome.felt_stiffness.expect("it presses") / stiffness,
-            told,
-        )
+        let felt = outcome.felt_stiffness.expect("it presses");
+        (felt / environment.surface().0, told)
     };
     for round_trip in ROUND_TRIPS {
         let (share, told) = felt(Environment::SoftSpring, round_trip);
         assert!((0.98..1.02).contains(&share), "{told}");
+        // 20 kN/m, of which 9 are rendered once they are known.
         let (share, told) = felt(Environment::HardWall, round_trip);
-        assert!((0.91..1.1).contains(&share), "{told}");
+        assert!((0.25..0.5).contains(&share), "{told}");
         // What recedes takes energy at once, and the hand's comes a round trip later.
         let (share, told) = felt(Environment::MovingWall, round_trip);
         assert!((0.92..1.07).contains(&share), "{told}");
@@ -301,7 +299,7 @@ fn a_hand_that_roams_with_two_layers_is_free_once_it_has_paid() {
         assert!((2e-3..12e-3).contains(&outcome.position_rmse), "{told}");
         let (outcome, told) = roams(Environment::HardWall);
         let felt = outcome.felt_stiffness.expect("it presses");
-        assert!((3000.0..3600.0).contains(&felt), "{told}");
+        assert!((5000.0..10_000.0).contains(&felt), "{told}");
         assert!((6.0..20.0).contains(&outcome.peak_force), "{told}");
     }
 }
@@ -339,13 +337,13 @@ fn two_layers_feel_a_hard_wall_behind_jitter_and_loss() {
         assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
         assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
         let felt = outcome.felt_stiffness.expect("it presses");
-        assert!((3000.0..3600.0).contains(&felt), "{told}");
+        assert!((4000.0..10_000.0).contains(&felt), "{told}");
         // The operator's word takes 0.5 s.
         assert!(outcome.held < 1.1, "{told}");
     }
 }
 
-/// At the scale of a session nothing is missing.
+/// At the scale of a session next to nothing is missing.
 #[test]
 fn two_layers_at_the_scale_of_a_session_feel_a_hard_wall_as_it_is() {
     for round_trip in ROUND_TRIPS {
@@ -360,7 +358,7 @@ fn two_layers_at_the_scale_of_a_session_feel_a_hard_wall_as_it_is() {
         let felt = outcome.felt_stiffness.expect("it presses");
         // 0.05 · 20 kN/m.
         assert!(
-            (980.0..1020.0).contains(&felt),
+            (970.0..1020.0).contains(&felt),
             "{round_trip} s: {outcome:?}"
         );
         assert!(outcome.energy_margin > -1e-3, "{round_trip} s: {outcome:?}");

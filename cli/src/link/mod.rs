@@ -40,7 +40,7 @@ pub struct Arguments {
 enum What {
     /// Tell the delay law, or change it.
     Law {
-        /// The law: position_force, position_position, four_channel, wave, tdpa, model_mediated, two_layer.
+        /// The law: position_force, position_position, four_channel, wave, tdpa, model_mediated, two_layer, auto.
         name: Option<String>,
     },
     /// Make, show and exchange the keys without which two hosts do not meet.

@@ -188,6 +188,8 @@ laws! {
     ModelMediated,
     /// Another law within limits of energy.
     TwoLayer,
+    /// Model of the surface or contact force, by delay and contact, within limits of energy.
+    Auto,
 }
 
 impl Default for Law {

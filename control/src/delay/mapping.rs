@@ -66,6 +66,11 @@ impl Mapping {
 pub(super) struct ForceRamp(f64);
 
 impl ForceRamp {
+    /// Faded in so far.
+    pub fn at(share: f64) -> ForceRamp {
+        ForceRamp(share)
+    }
+
     pub fn step(&mut self, dt: f64, ramp: f64, live: bool) -> f64 {
         let change = if live { dt / ramp } else { -dt / ramp };
         self.0 = (self.0 + change).clamp(0.0, 1.0);

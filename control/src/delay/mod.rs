@@ -16,6 +16,7 @@
 //! counted in [`LeaderEnd`] and [`FollowerEnd`], whatever the law
 //! ([`EnergyMeter`]).
 
+mod auto;
 mod contact;
 mod end;
 mod energy;
@@ -33,6 +34,7 @@ mod tdpa;
 mod two_layer;
 mod wave;
 
+pub use auto::Auto;
 pub use end::{FollowerEnd, LeaderEnd};
 pub use energy::{Energy, EnergyMeter};
 pub use four_channel::{FourChannel, FourChannelFollower, FourChannelLeader};

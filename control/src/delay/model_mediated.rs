@@ -21,7 +21,13 @@
 //! spring under the hand goes on only as far as an energy account pays (`account.rs`, ours). The
 //! two layers keep books of their own around the law and leave that out.
 //!
-//! The follower tells with the stiffness how sure it is of it, as a relative standard error.
+//! The follower tells with the stiffness how sure it is of it, as a relative standard error. A
+//! soft surface counts as a stiff one at first; it would keep a hand and, with that, the tip from
+//! going deep enough to learn better if it were rendered as stiff as one that is known.
+//!
+//! Where `contact_force` is set (as in `auto.rs`), the follower tells the contact's own force in
+//! place of that error where surface and delay allow to feel it, and the leader's end leads F_N over
+//! to it.
 //!
 //! Forward go the hand's position and the force f that it gives into the rendered
 //! surface. The tip goes to that position, but no deeper behind the surface as the follower
@@ -52,6 +58,7 @@ mod even;
 mod hand_damping;
 mod noise;
 mod place;
+mod told;
 
 pub use estimate::SurfaceModel;
 
@@ -62,11 +69,11 @@ use super::{
     Samples, vector,
 };
 use account::UpdateAccount;
-use compliance::SOFTEST;
 use estimate::{SAME, Scale, SurfaceEstimator};
 use hand_damping::HandDamping;
 use nalgebra::Vector3;
 use place::Place;
+use told::Told;
 
 law_parameters! {
     /// Parameters of the law. Every key may be left out.
@@ -85,6 +92,10 @@ law_parameters! {
         pub outlives: f64 [0.0..=60.0, "s"] = 2.0,
         /// Largest stiffness that is rendered \[N/m\].
         pub largest_stiffness: f64 [10.0..=10000.0, "N/m"] = 3300.0,
+        /// The same while that of the surface is not known well \[N/m\].
+        pub largest_doubtful_stiffness: f64 [10.0..=10000.0, "N/m"] = 3300.0,
+        /// Whether the contact's own force is felt where surface and delay allow that.
+        pub contact_force: bool = false,
         /// Largest force of the rendered surface on the hand \[N\].
         pub largest_force: f64 [0.1..=1000.0, "N"] = 30.0,
         /// Smallest contact force at the tip that counts as contact \[N\].
@@ -113,6 +124,15 @@ impl ModelMediated {
     fn samples(&self) -> [Samples; 2] {
         [Samples::position_and_force(1.0), Samples::SURFACE]
     }
+
+    /// Stiffness with which `model` is rendered \[N/m\].
+    fn rendered_stiffness(&self, model: &SurfaceModel) -> f64 {
+        let known = self.largest_stiffness;
+        let doubtful = self.largest_doubtful_stiffness.min(known);
+        model
+            .stiffness
+            .min(known + model.doubt() * (doubtful - known))
+    }
 }
 
 /// A surface comes towards the hand no faster [m/s].
@@ -120,33 +140,14 @@ const PLACE_SPEED: f64 = 0.05;
 /// v_0: below this speed friction is viscous [m/s].
 const FRICTION_SPEED: f64 = 0.01;
 
-/// Stiffer than what is rendered, and within what a packet holds [N/m].
-const STIFFEST_SENT: f64 = 9000.0;
-
-/// The model as in a packet: place, friction and the error of the stiffness in the position, the
-/// normal times the stiffness in the vector.
-fn packed(model: Option<SurfaceModel>, energy: Energy) -> Packet {
-    let model = model.unwrap_or_default();
-    let sideways = [model.place, model.friction, model.stiffness_error];
-    Packet::new(
-        sideways,
-        (model.stiffness.min(STIFFEST_SENT) * model.normal).into(),
-        energy,
-    )
-}
-
-/// Back from a packet.
-fn unpacked(packet: &Packet) -> Option<SurfaceModel> {
-    let direction = vector(packet.vector);
-    let stiffness = direction.norm();
-    (stiffness >= 0.5 * SOFTEST).then(|| SurfaceModel {
-        normal: direction / stiffness,
-        place: f64::from(packet.position[0]),
-        stiffness,
-        stiffness_error: f64::from(packet.position[2]).clamp(0.0, 1.0),
-        friction: f64::from(packet.position[1]).clamp(0.0, 2.0),
-    })
-}
+/// Within this the contact's own force takes the place of the rendered one, and back [s].
+const CHANGE_OVER: f64 = 0.3;
+/// Damping that a hand in a soft contact has, with what the law adds, at least [N·s/m].
+const HAND_DAMPING: f64 = 10.0;
+/// Stiffness of a contact of which nothing is known [N/m].
+const MAYBE: f64 = 100.0;
+/// How late the contact's force is by servo, estimate and frames, without the link's delay [s].
+const LOOP_LAG: f64 = 0.03;
 
 /// The leader's end: sends position of the hand and the force that it gives into
 /// the surface \[N\].
@@ -157,7 +158,10 @@ pub struct ModelMediatedLeader {
     fade: ForceRamp,
     /// What is rendered.
     surface: Option<SurfaceModel>,
-    received: Option<SurfaceModel>,
+    received: Option<Told>,
+    /// The contact's own force as it was told last \[N\], and its share in what is felt.
+    contact: f64,
+    felt: ForceRamp,
     /// Time since the other end was heard, once it was [s].
     unheard: Option<f64>,
     account: UpdateAccount,
@@ -172,6 +176,8 @@ impl ModelMediatedLeader {
             fade: ForceRamp::default(),
             surface: None,
             received: None,
+            contact: 0.0,
+            felt: ForceRamp::default(),
             unheard: None,
             account: UpdateAccount::new(law.update_reserve),
             damping: HandDamping::new(law.free_damping, law.damping),
@@ -187,11 +193,14 @@ impl ModelMediatedLeader {
     /// the hand winds its spring up, so it comes slowly, and begins at the hand where it appears
     /// behind it; one that gives way does so at once.
     fn blend(&mut self, dt: f64, hand: &Vector3<f64>) {
-        let Some(target) = self.received else {
+        let Some(Told {
+            surface: target, ..
+        }) = self.received
+        else {
             return;
         };
         let share = dt / (dt + self.parameters.blend_time);
-        let stiffness = target.stiffness.min(self.parameters.largest_stiffness);
+        let stiffness = self.parameters.rendered_stiffness(&target);
         let anew = SurfaceModel {
             place: target.place.max(-target.normal.dot(hand)),
             stiffness,
@@ -215,17 +224,16 @@ impl ModelMediatedLeader {
     }
 }
 
-/// Force of `surface` on a hand at `position` \[m\] with `velocity` \[m/s\].
-fn rendered(
-    surface: &SurfaceModel,
-    position: &Vector3<f64>,
-    velocity: &Vector3<f64>,
-) -> Vector3<f64> {
-    let depth = surface.depth(position);
-    if depth <= 0.0 {
+/// Force with which `surface` is pressed by a hand at `position` \[m\] \[N\].
+fn pressed(surface: &SurfaceModel, position: &Vector3<f64>) -> f64 {
+    surface.stiffness * surface.depth(position).max(0.0)
+}
+
+/// Force of `surface`, which is `pressed` \[N\], on a hand with `velocity` \[m/s\].
+fn rendered(surface: &SurfaceModel, pressed: f64, velocity: &Vector3<f64>) -> Vector3<f64> {
+    if pressed <= 0.0 {
         return Vector3::zeros();
     }
-    let pressed = surface.stiffness * depth;
     let slide = velocity - surface.normal * surface.normal.dot(velocity);
     let grip = surface.friction * pressed / slide.norm().max(FRICTION_SPEED);
     surface.normal * pressed - slide * grip
@@ -235,10 +243,11 @@ impl Leader for ModelMediatedLeader {
     fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
         let live = self.mapping.live(input.connected, input.received);
         if let Some(received) = live {
-            self.received = unpacked(&received.packet);
+            self.received = Told::unpacked(&received.packet);
             let entered = f64::from(received.packet.energy[0]);
             self.account.came_in(self.mapping.power_scale() * entered);
         }
+        let appears = self.surface.is_none();
         if let Some(hand) = input.hand {
             let position = hand.position.into();
             self.damping.step(dt, self.surface.as_ref(), &position);
@@ -261,14 +270,24 @@ impl Leader for ModelMediatedLeader {
             };
         };
         let velocity = Vector3::from(hand.velocity);
-        let force = self.surface.map_or(Vector3::zeros(), |surface| {
-            let force = rendered(&surface, &hand.position.into(), &velocity);
-            shortened(force, self.parameters.largest_force)
+        let told = self.received.and_then(|own| own.force);
+        self.contact = told.unwrap_or(self.contact);
+        if appears {
+            // Nothing was felt before: nothing is led over.
+            self.felt = ForceRamp::at(if told.is_some() { 1.0 } else { 0.0 });
+        }
+        let own = self.felt.step(dt, CHANGE_OVER, told.is_some());
+        let limit = self.parameters.largest_force;
+        let [model, felt] = self.surface.map_or(Default::default(), |surface| {
+            let model = pressed(&surface, &hand.position.into());
+            [model, model + own * (self.contact - model)]
+                .map(|force| shortened(rendered(&surface, force, &velocity), limit))
         });
-        let felt = share * force - self.damping.value() * velocity;
+        let felt = share * felt - self.damping.value() * velocity;
         LeaderOutput {
             force: felt.into(),
-            packet: Packet::new(hand.position, (-share * force).into(), energy),
+            // Whatever is felt, the tip goes as deep as the hand.
+            packet: Packet::new(hand.position, (-share * model).into(), energy),
         }
     }
 
@@ -304,6 +323,8 @@ pub struct ModelMediatedFollower {
     command: LastCommand,
     /// Of the command into the surface, since one is known [m/s].
     speed: f64,
+    /// The contact's own force is to be felt.
+    told: bool,
 }
 
 impl ModelMediatedFollower {
@@ -320,7 +341,19 @@ impl ModelMediatedFollower {
             place: None,
             command: LastCommand::default(),
             speed: 0.0,
+            told: false,
         }
+    }
+
+    /// Whether the contact's own force is to be felt of `model`, a round trip of `round_trip` \[s\]
+    /// away: with a spring K in it, a loop that is late by τ wants a damping of some K τ. What may
+    /// be soft counts as soft: a model that is too stiff pushes the hand away.
+    fn tells_force(&self, model: &SurfaceModel, round_trip: f64) -> bool {
+        let soft = model.stiffness.min(MAYBE);
+        let stiffness = model.stiffness + model.doubt() * (soft - model.stiffness);
+        let needed = stiffness * (round_trip + LOOP_LAG);
+        let damping = HAND_DAMPING * if self.told { 1.5 } else { 1.0 };
+        self.parameters.contact_force && needed <= damping
     }
 }
 
@@ -389,16 +422,25 @@ impl Follower for ModelMediatedFollower {
         });
         let given = command.map(|(position, _)| position);
         self.command.step(dt, given, input.connected, own.deadline);
+        self.told = self
+            .model
+            .zip(live)
+            .is_some_and(|(model, received)| self.tells_force(&model, received.round_trip));
         FollowerOutput {
             command: command.map(|(position, velocity)| mapping.command(position, velocity)),
             packet: match (input.tip, input.contact_force) {
                 (Some(_), Some(_)) => {
-                    let seen = self.model.zip(self.place);
-                    let seen = seen.map(|(model, own)| SurfaceModel {
-                        place: own.even.value,
-                        ..model
+                    let told = self.model.zip(self.place).map(|(model, own)| Told {
+                        surface: SurfaceModel {
+                            place: own.even.value,
+                            ..model
+                        },
+                        force: self.told.then(|| {
+                            let along = contact.map_or(0.0, |force| force.dot(&model.normal));
+                            along.max(0.0)
+                        }),
                     });
-                    packed(seen, energy)
+                    told.unwrap_or_default().packed(energy)
                 }
                 _ => Packet::empty(energy),
             },
@@ -415,24 +457,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_model_goes_into_a_packet_and_back() {
-        let model = SurfaceModel {
-            normal: Vector3::new(-0.6, 0.8, 0.0),
-            place: 0.0123,
-            stiffness: 1234.0,
-            stiffness_error: 0.07,
-            friction: 0.25,
-        };
-        let back = unpacked(&packed(Some(model), Energy::default())).unwrap();
-        assert!((back.normal - model.normal).norm() < 1e-6);
-        assert!((back.place - model.place).abs() < 1e-8);
-        assert!((back.stiffness - model.stiffness).abs() < 1e-3);
-        assert!((back.friction - model.friction).abs() < 1e-7);
-        assert!((back.stiffness_error - model.stiffness_error).abs() < 1e-7);
-        assert_eq!(unpacked(&packed(None, Energy::default())), None);
-    }
-
-    #[test]
     fn the_rendered_surface_pushes_out_and_brakes() {
         let surface = SurfaceModel {
             normal: Vector3::new(-1.0, 0.0, 0.0),
@@ -441,16 +465,13 @@ mod tests {
             stiffness_error: 0.0,
             friction: 0.3,
         };
-        let force = rendered(
-            &surface,
-            &Vector3::new(0.012, 0.0, 0.0),
-            &Vector3::new(0.0, 0.05, 0.0),
-        );
+        let at = |x| pressed(&surface, &Vector3::new(x, 0.0, 0.0));
+        let force = rendered(&surface, at(0.012), &Vector3::new(0.0, 0.05, 0.0));
         assert!(
             (force - Vector3::new(-1.0, -0.3, 0.0)).norm() < 1e-12,
             "{force}"
         );
-        let free = rendered(&surface, &Vector3::new(0.009, 0.0, 0.0), &Vector3::zeros());
+        let free = rendered(&surface, at(0.009), &Vector3::zeros());
         assert_eq!(free, Vector3::zeros());
     }
 
@@ -489,7 +510,11 @@ mod tests {
         };
         let mut leader = ModelMediatedLeader::new(&law);
         std::iter::repeat_with(move || {
-            let packet = packed(Some(surface), Energy::default());
+            let packet = Told {
+                surface,
+                force: None,
+            }
+            .packed(Energy::default());
             let input = LeaderInput {
                 hand: Some(crate::delay::Motion {
                     position: [x, 0.0, 0.0],
@@ -523,7 +548,11 @@ mod tests {
                     velocity: [0.0; 3],
                 }),
                 received: heard.then_some(crate::delay::Received {
-                    packet: packed(Some(WALL), Energy::default()),
+                    packet: Told {
+                        surface: WALL,
+                        force: None,
+                    }
+                    .packed(Energy::default()),
                     fresh: true,
                     silence: 0.0,
                     age: 0.1,
@@ -566,5 +595,32 @@ mod tests {
         assert!(first.place.abs() < 1e-6, "{first:?}");
         let largest = ModelMediated::default().largest_stiffness;
         assert!((first.stiffness - largest).abs() < 1e-6, "{first:?}");
+    }
+
+    /// A soft surface counts as a stiff one before more is known of it.
+    #[test]
+    fn what_may_be_soft_is_not_rendered_as_stiff_as_what_is_known() {
+        let law = ModelMediated {
+            largest_stiffness: 9000.0,
+            ..ModelMediated::default()
+        };
+        let stiffness = |law: &ModelMediated, stiffness, stiffness_error| {
+            law.rendered_stiffness(&SurfaceModel {
+                stiffness,
+                stiffness_error,
+                ..WALL
+            })
+        };
+        assert_eq!(stiffness(&law, 20_000.0, 0.05), 9000.0);
+        assert_eq!(stiffness(&law, 20_000.0, 1.0), 3300.0);
+        let between = stiffness(&law, 20_000.0, 0.2);
+        assert!((between - 6150.0).abs() < 1e-6, "{between} N/m");
+        assert_eq!(stiffness(&law, 100.0, 1.0), 100.0);
+        // Doubt makes nothing stiffer.
+        let soft = ModelMediated {
+            largest_stiffness: 1000.0,
+            ..law
+        };
+        assert_eq!(stiffness(&soft, 20_000.0, 1.0), 1000.0);
     }
 }

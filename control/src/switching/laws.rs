@@ -5,7 +5,7 @@ use crate::frame::LAST_LAW_CODE;
 
 /// The laws by their codes in frames: the place in this list. Names keep their
 /// places; new ones are appended, at most to the sixteenth.
-pub const NAMES: [&str; 7] = [
+pub const NAMES: [&str; 8] = [
     "position_force",
     "position_position",
     "four_channel",
@@ -13,6 +13,7 @@ pub const NAMES: [&str; 7] = [
     "tdpa",
     "model_mediated",
     "two_layer",
+    "auto",
 ];
 
 const _: () = assert!(NAMES.len() <= LAST_LAW_CODE as usize + 1);

@@ -36,6 +36,10 @@ const SLIDING: f64 = 5e-3;
 /// A tip that is free this far behind the surface shows that it has gone [m].
 const GONE: f64 = 1e-3;
 
+/// A stiffness is known well with the first relative standard error, and not with the second [-].
+const SURE: f64 = 0.1;
+const UNSURE: f64 = 0.3;
+
 /// A plane with stiffness and friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceModel {
@@ -55,6 +59,11 @@ impl SurfaceModel {
     /// How far `position` \[m\] is behind the surface \[m\]; negative before it.
     pub(super) fn depth(&self, position: &Vector3<f64>) -> f64 {
         -self.normal.dot(position) - self.place
+    }
+
+    /// How little is known of the stiffness, from 0 to 1 \[-\].
+    pub(super) fn doubt(&self) -> f64 {
+        ((self.stiffness_error - SURE) / (UNSURE - SURE)).clamp(0.0, 1.0)
     }
 }
 

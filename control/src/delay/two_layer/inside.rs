@@ -23,8 +23,9 @@ impl Default for InnerLaw {
     fn default() -> Self {
         InnerLaw::ModelMediated(ModelMediated {
             // The layer adds its own.
-            damping: 11.0,
             free_damping: 1.0,
+            // It lets nothing out that a spring so stiff made.
+            largest_stiffness: 9000.0,
             // It keeps books itself.
             paid_updates: false,
             ..ModelMediated::default()

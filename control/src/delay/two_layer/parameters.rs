@@ -26,9 +26,9 @@ law_parameters! {
         pub credit: f64 [0.0..=1.0, "J"] = 0.006,
         /// Energy that an end may hold, at the hand's scale; what is beyond counts as
         /// dissipated \[J\].
-        pub reserve: f64 [0.0..=1000.0, "J"] = 0.3,
+        pub reserve: f64 [0.0..=1000.0, "J"] = 0.4,
         /// Below this energy the hand is damped \[J\].
-        pub level: f64 [0.0..=100.0, "J"] = 0.25,
+        pub level: f64 [0.0..=100.0, "J"] = 0.3,
         /// Largest damping at a hand in contact that fills the tank \[N·s/m\].
         pub largest_damping: f64 [0.0..=1000.0, "N·s/m"] = 4.0,
         /// The same where there is nothing to touch \[N·s/m\].

@@ -1,0 +1,96 @@
+//! What the follower says of what it touches, and how that goes into a packet.
+
+use super::compliance::SOFTEST;
+use super::estimate::SurfaceModel;
+use crate::delay::{Energy, Packet, vector};
+
+/// Stiffer than what is rendered, and within what a packet holds [N/m].
+const STIFFEST_SENT: f64 = 9000.0;
+
+/// The force goes in units of this, as a position in a packet is within 10 [N].
+const FORCE_UNIT: f64 = 100.0;
+
+/// What the follower says of what it touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Told {
+    pub surface: SurfaceModel,
+    /// Force of the contact along the normal, where that is to be felt \[N\].
+    pub force: Option<f64>,
+}
+
+impl Told {
+    /// As in a packet: place, friction and the error of the stiffness or, below zero, the force in
+    /// the position, the normal times the stiffness in the vector.
+    pub fn packed(&self, energy: Energy) -> Packet {
+        let surface = &self.surface;
+        let known = match self.force {
+            Some(force) => -(force / FORCE_UNIT).max(f64::from(f32::MIN_POSITIVE)),
+            None => surface.stiffness_error,
+        };
+        Packet::new(
+            [surface.place, surface.friction, known],
+            (surface.stiffness.min(STIFFEST_SENT) * surface.normal).into(),
+            energy,
+        )
+    }
+
+    /// Back from a packet, if that says anything of a surface. How well its stiffness is known is
+    /// not told with the force, and counts as not at all.
+    pub fn unpacked(packet: &Packet) -> Option<Told> {
+        let direction = vector(packet.vector);
+        let stiffness = direction.norm();
+        let [place, friction, known] = packet.position.map(f64::from);
+        (stiffness >= 0.5 * SOFTEST).then(|| Told {
+            surface: SurfaceModel {
+                normal: direction / stiffness,
+                place,
+                stiffness,
+                stiffness_error: if known < 0.0 { 1.0 } else { known.min(1.0) },
+                friction: friction.clamp(0.0, 2.0),
+            },
+            force: (known < 0.0).then_some(-FORCE_UNIT * known),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn a_model_goes_into_a_packet_and_back() {
+        let model = SurfaceModel {
+            normal: Vector3::new(-0.6, 0.8, 0.0),
+            place: 0.0123,
+            stiffness: 1234.0,
+            stiffness_error: 0.07,
+            friction: 0.25,
+        };
+        let told = Told {
+            surface: model,
+            force: None,
+        };
+        let back = Told::unpacked(&told.packed(Energy::default())).unwrap();
+        assert_eq!(back.force, None);
+        let back = back.surface;
+        assert!((back.normal - model.normal).norm() < 1e-6);
+        assert!((back.place - model.place).abs() < 1e-8);
+        assert!((back.stiffness - model.stiffness).abs() < 1e-3);
+        assert!((back.friction - model.friction).abs() < 1e-7);
+        assert!((back.stiffness_error - model.stiffness_error).abs() < 1e-7);
+        let nothing = Told::default().packed(Energy::default());
+        assert_eq!(Told::unpacked(&nothing), None);
+        // With the force, also where that is zero.
+        for force in [0.0, 0.5, 12.0, 900.0] {
+            let told = Told {
+                force: Some(force),
+                ..told
+            };
+            let back = Told::unpacked(&told.packed(Energy::default())).unwrap();
+            let told = back.force.expect("a force");
+            assert!((told - force).abs() <= 1e-6 * force.max(1.0), "{told} N");
+            assert_eq!(back.surface.stiffness_error, 1.0);
+        }
+    }
+}
