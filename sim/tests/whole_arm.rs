@@ -304,6 +304,33 @@ fn a_hand_that_roams_with_two_layers_is_free_once_it_has_paid() {
     }
 }
 
+/// Over a slow link, and at something stiff, it is `two_layer`; over a quick one it feels what is
+/// soft by its own force.
+#[test]
+fn auto_feels_a_soft_contact_itself_where_the_link_is_quick() {
+    let both = |round_trip, environment| {
+        ["auto", "two_layer"].map(|law| run(law, round_trip, environment, Task::PressAndSlide))
+    };
+    for round_trip in [0.0, 0.02] {
+        let [auto, layers] = both(round_trip, Environment::SoftSpring);
+        let told = format!("{round_trip} s: {auto:?}, {layers:?}");
+        assert!(auto.stable && auto.task_time.is_some(), "{told}");
+        assert!((-BOUND..=0.0).contains(&auto.energy_margin), "{told}");
+        let off = auto.force_rmse / layers.force_rmse;
+        assert!((0.7..0.95).contains(&off), "{off}, {told}");
+        assert!((0.0..=0.491).contains(&auto.force_step), "{told}");
+        let felt = auto.felt_stiffness.expect("it presses");
+        assert!((98.0..102.0).contains(&felt), "{told}");
+        let [auto, _] = both(round_trip, Environment::HardWall);
+        let felt = auto.felt_stiffness.expect("it presses");
+        assert!((5000.0..10_000.0).contains(&felt), "{auto:?}");
+    }
+    for environment in [Environment::SoftSpring, Environment::HardWall] {
+        let [auto, layers] = both(0.3, environment);
+        assert_eq!(auto, layers);
+    }
+}
+
 /// A frame that was too late holds the arm while the hand goes on. The servo comes to its first
 /// command on a ramp then; a command that ran ahead of it met the wall with 26 to 35 N.
 #[test]

@@ -24,6 +24,10 @@ const PAD: &str = "const button = () => ({ pressed: false, touched: false, value
     navigator.getGamepads = () => [null, window.pad];";
 /// Where the page wants the hand \[m\]; `null` where it does not hold it.
 const WANTED: &str = "return import('/console/hand.js').then((hand) => hand.wanted())";
+/// Begins a look at that place, `own`, where it holds it.
+const WANTED_AT: &str = "return import('/console/hand.js').then((hand) => {
+    const own = hand.wanted();
+    return own !== null && ";
 const HOLDS: &str = "return document.querySelector('#scene').dataset.pad === '1'";
 const LETS_GO: &str = "return document.querySelector('#scene').dataset.pad === ''
         && document.querySelector('#holder').textContent !== 'this page'";
@@ -131,6 +135,15 @@ fn a_gamepad_drives_rumbles_and_lets_go() {
     let nanos = since_epoch.expect("a time after 1970").as_nanos();
     let taken = Time::from_nanos(i64::try_from(nanos).expect("a time of this century"));
 
+    // The session's own hand may have been anywhere, also at the end of its reach.
+    pad.stick(0, -1.0);
+    pad.until(
+        "it goes to the left",
+        &format!("{WANTED_AT} own[0] < 0; }})"),
+    );
+    pad.stick(0, 0.0);
+    thread::sleep(Duration::from_millis(300));
+
     // A stick that does not quite come back is one in the middle.
     pad.stick(0, 0.12);
     pad.stick(3, -0.1);
@@ -145,11 +158,8 @@ fn a_gamepad_drives_rumbles_and_lets_go() {
     pad.until(
         "the contact is felt, to the right",
         &format!(
-            "return import('/console/hand.js').then((hand) => {{
-                const own = hand.wanted();
-                return own !== null && own[0] > {right_of} && own[2] === 0
-                    && Number(document.querySelector('#strip-force canvas').dataset.newest) > 5;
-            }})"
+            "{WANTED_AT} own[0] > {right_of} && own[2] === 0
+                && Number(document.querySelector('#strip-force canvas').dataset.newest) > 5; }})"
         ),
     );
     pad.until(
