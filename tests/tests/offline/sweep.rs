@@ -147,12 +147,11 @@ fn arms_are_judged_on_walls_by_what_is_true_of_them() {
         if row["law"] == "two_layer" {
             assert!(!misses(row, "drift"), "{row:#}");
             assert!(-number(row, "true_energy_J") < 0.001, "{row:#}");
-            let wall = number(row, "true_stiffness_N_per_m").min(3300.0);
+            // What is not known well is rendered with 3.3 kN/m at most, what is with 9.
+            let wall = number(row, "true_stiffness_N_per_m");
+            let told = 0.8 * wall.min(3300.0)..1.6 * wall.min(9000.0);
             let felt = row["without_delay"]["felt_stiffness_N_per_m"].as_f64();
-            assert!(
-                felt.is_none_or(|felt| (0.8..1.6).contains(&(felt / wall))),
-                "{row:#}"
-            );
+            assert!(felt.is_none_or(|felt| told.contains(&felt)), "{row:#}");
         }
     }
     let springs = rows.iter().filter(|row| row["law"] == "position_force");
