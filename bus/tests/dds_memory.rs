@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::{fs, process, thread, time::Duration};
+use std::{
+    fs, process, thread,
+    time::{Duration, Instant},
+};
 
 use ferntast_bus::{Bus, DdsBus, DdsConfig};
 use ferntast_msgs::{
@@ -45,7 +48,9 @@ fn states_that_nobody_reads_take_no_memory() {
                 reason: Text::EMPTY,
             };
             // A burst that the loop of DDS has not taken yet is refused, and tried again.
-            while publisher.publish(stamp, &state).is_err() {
+            let begin = Instant::now();
+            while let Err(error) = publisher.publish(stamp, &state) {
+                assert!(begin.elapsed() < Duration::from_secs(10), "{error}");
                 thread::sleep(Duration::from_millis(1));
             }
         }

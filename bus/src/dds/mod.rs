@@ -8,6 +8,7 @@ mod qos;
 mod raw;
 mod senders;
 mod subscriber;
+mod writer;
 
 use std::{
     fmt,

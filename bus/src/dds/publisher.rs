@@ -2,16 +2,12 @@
 
 use std::fmt;
 
-use ferntast_msgs::{Message, Time, topics::Topic};
-use ros2_client::{
-    Publisher,
-    dds::rustdds::{TopicDescription, TopicKind, dds::CreateError as CreateDdsError},
+use ferntast_msgs::{
+    Message, Time,
+    topics::{Delivery, Topic},
 };
 
-use super::{
-    DdsBus, create_topic, middleware,
-    qos::{offered, qos},
-};
+use super::{DdsBus, create_topic, middleware, qos::qos, writer::Writer};
 use crate::{
     cdr,
     error::{CreateError, PublishError},
@@ -20,32 +16,20 @@ use crate::{
 /// Sends on one topic over DDS.
 pub struct DdsPublisher<M: Message> {
     topic: Topic<M>,
-    writer: Publisher<M::Ros>,
-    // Kept: a writer without its participant is dead.
-    _bus: DdsBus,
+    writer: Writer<M::Ros>,
 }
 
 impl<M: Message> DdsPublisher<M> {
     pub(super) fn create(bus: &DdsBus, topic: Topic<M>) -> Result<DdsPublisher<M>, CreateError> {
         let mut node = bus.node();
-        let failed =
-            |error: CreateDdsError| middleware(&topic.name, "publisher", error.to_string());
         let ros_topic = create_topic(&node, topic, &qos(topic.delivery), "publisher")?;
-        // The same once more, with the limits that the node's has not.
-        let (name, kind) = (ros_topic.name(), ros_topic.get_type());
-        let policies = offered(topic.delivery);
-        let limited = bus
-            .participant
-            .create_topic(name, kind.name().to_owned(), &policies, TopicKind::NoKey)
-            .map_err(failed)?;
-        let writer = node
-            .create_publisher(&limited, None)
-            .map_err(|error| middleware(&topic.name, "publisher", error.to_string()))?;
-        Ok(DdsPublisher {
-            topic,
-            writer,
-            _bus: bus.clone(),
-        })
+        let kept = match topic.delivery {
+            Delivery::State => Some(1),
+            Delivery::Stream | Delivery::Event => None,
+        };
+        let writer = Writer::new(bus, &mut node, &ros_topic, kept)
+            .map_err(|reason| middleware(&topic.name, "publisher", reason))?;
+        Ok(DdsPublisher { topic, writer })
     }
 
     /// Publishes in ROS 2 form. Allocates, and may wait for a short time on
@@ -61,11 +45,11 @@ impl<M: Message> DdsPublisher<M> {
             source,
         })?;
         self.writer
-            .publish(ros)
-            .map_err(|error| PublishError::Middleware {
+            .write(ros)
+            .map_err(|reason| PublishError::Middleware {
                 transport: "DDS",
                 topic: self.topic.name,
-                reason: error.to_string(),
+                reason,
             })
     }
 }

@@ -5,33 +5,8 @@ use std::time::Duration;
 use ferntast_msgs::topics::{Delivery, EVENT_QUEUE};
 use ros2_client::{
     QosProfile,
-    dds::rustdds::{QosPolicies, policy::ResourceLimits},
     qos::{Durability, History, WhenFull},
 };
-
-/// Samples of a state that a writer holds at most.
-///
-/// RustDDS 0.15.1 keeps of a reliable writer of durability transient local all
-/// samples that not every reader has confirmed; without a reader it takes none
-/// as confirmed, whatever the depth of the history, and its own limit is 8192
-/// samples a topic. So many are enough for readers whose confirmation is on its
-/// way.
-const MAX_STATES: i32 = 64;
-
-/// What is offered on a topic, with limits that a ROS 2 profile does not have.
-pub(super) fn offered(delivery: Delivery) -> QosPolicies {
-    let limits = match delivery {
-        Delivery::Stream | Delivery::Event => QosPolicies::qos_none(),
-        Delivery::State => QosPolicies::builder()
-            .resource_limits(ResourceLimits {
-                max_samples: MAX_STATES,
-                max_instances: 1,
-                max_samples_per_instance: MAX_STATES,
-            })
-            .build(),
-    };
-    QosPolicies::from(&qos(delivery)).modify_by(&limits)
-}
 
 /// How long a reliable writer waits for space before it gives up on a message.
 pub(super) const WAIT: WhenFull = WhenFull::Wait(Duration::from_millis(10));

@@ -1,13 +1,12 @@
 //! Sending bytes over DDS.
 
 use ros2_client::{
-    MessageTypeName, Name, Publisher,
-    dds::rustdds::{QosPolicies, TopicDescription, TopicKind, policy::ResourceLimits},
+    MessageTypeName, Name,
     qos::{Durability, History, QosProfile},
 };
 use serde::{Serialize, Serializer, ser::SerializeTuple};
 
-use super::{DdsBus, qos::WAIT};
+use super::{DdsBus, qos::WAIT, writer::Writer};
 use crate::{
     error::{CreateError, RawPublishError},
     namespace::within,
@@ -16,6 +15,7 @@ use crate::{
 
 /// The body of a message. To the CDR serializer of ros2-client it is a tuple of octets, which
 /// CDR writes as they are, one after the other.
+#[derive(Clone)]
 struct Body(Vec<u8>);
 
 impl Serialize for Body {
@@ -30,9 +30,7 @@ impl Serialize for Body {
 
 /// Sends bytes on one topic over DDS.
 pub struct RawDdsPublisher {
-    writer: Publisher<Body>,
-    // Kept: a writer without its participant is dead.
-    _bus: DdsBus,
+    writer: Writer<Body>,
 }
 
 impl DdsBus {
@@ -50,34 +48,19 @@ impl DdsBus {
         let ros_topic = node
             .create_topic(&name, MessageTypeName::new(package, kind), &profile(topic))
             .map_err(|error| failed(error.to_string()))?;
-        // The same once more, with the limits that the node's has not.
-        let (name, kind) = (ros_topic.name(), ros_topic.get_type());
-        let limited = self
-            .participant
-            .create_topic(
-                name,
-                kind.name().to_owned(),
-                &offered(topic),
-                TopicKind::NoKey,
-            )
-            .map_err(|error| failed(error.to_string()))?;
-        let writer = node
-            .create_publisher(&limited, None)
-            .map_err(|error| failed(error.to_string()))?;
-        Ok(RawDdsPublisher {
-            writer,
-            _bus: self.clone(),
-        })
+        let kept = topic.transient_local.then_some(topic.depth);
+        let writer = Writer::new(self, &mut node, &ros_topic, kept).map_err(failed)?;
+        Ok(RawDdsPublisher { writer })
     }
 }
 
 impl RawDdsPublisher {
     /// Publishes the body of a message, without its header.
     pub(crate) fn publish(&mut self, body: &[u8]) -> Result<(), RawPublishError> {
-        let sent = self.writer.publish(Body(body.to_vec()));
-        sent.map_err(|error| RawPublishError::Middleware {
+        let sent = self.writer.write(Body(body.to_vec()));
+        sent.map_err(|reason| RawPublishError::Middleware {
             transport: "DDS",
-            reason: error.to_string(),
+            reason,
         })
     }
 }
@@ -94,19 +77,4 @@ fn profile(topic: &RawTopic) -> QosProfile {
     };
     base.durability(durability)
         .history(History::KeepLast { depth: topic.depth })
-}
-
-/// What is kept for late joiners has the limits that [`super::qos`] tells of.
-fn offered(topic: &RawTopic) -> QosPolicies {
-    let policies = QosPolicies::from(&profile(topic));
-    if !topic.transient_local {
-        return policies;
-    }
-    let most = i32::try_from(topic.depth.max(64)).unwrap_or(i32::MAX);
-    let limits = ResourceLimits {
-        max_samples: most,
-        max_instances: 1,
-        max_samples_per_instance: most,
-    };
-    policies.modify_by(&QosPolicies::builder().resource_limits(limits).build())
 }
