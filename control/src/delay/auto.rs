@@ -82,7 +82,7 @@ impl Parameters for Auto {
     }
 
     fn samples(&self) -> [Samples; 2] {
-        self.layers().samples()
+        self.0.samples()
     }
 
     fn between(&self, mapping: &Mapping) -> Auto {

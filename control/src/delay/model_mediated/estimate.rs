@@ -37,7 +37,7 @@ const SLIDING: f64 = 5e-3;
 const GONE: f64 = 1e-3;
 
 /// A stiffness is known well with the first relative standard error, and not with the second [-].
-const SURE: f64 = 0.1;
+pub(super) const SURE: f64 = 0.1;
 const UNSURE: f64 = 0.3;
 
 /// A plane with stiffness and friction.

@@ -19,36 +19,35 @@ pub(super) struct Told {
 }
 
 impl Told {
-    /// As in a packet: place, friction and the error of the stiffness or, below zero, the force in
-    /// the position, the normal times the stiffness in the vector.
+    /// As in a packet: place, friction and, below zero, the force in the position, the normal times
+    /// the stiffness in the vector.
     pub fn packed(&self, energy: Energy) -> Packet {
         let surface = &self.surface;
-        let known = match self.force {
-            Some(force) => -(force / FORCE_UNIT).max(f64::from(f32::MIN_POSITIVE)),
-            None => surface.stiffness_error,
-        };
+        let force = self.force.map_or(0.0, |force| {
+            -(force / FORCE_UNIT).max(f64::from(f32::MIN_POSITIVE))
+        });
         Packet::new(
-            [surface.place, surface.friction, known],
+            [surface.place, surface.friction, force],
             (surface.stiffness.min(STIFFEST_SENT) * surface.normal).into(),
             energy,
         )
     }
 
     /// Back from a packet, if that says anything of a surface. How well its stiffness is known is
-    /// not told with the force, and counts as not at all.
+    /// not told: it is that stiff for sure.
     pub fn unpacked(packet: &Packet) -> Option<Told> {
         let direction = vector(packet.vector);
         let stiffness = direction.norm();
-        let [place, friction, known] = packet.position.map(f64::from);
+        let [place, friction, force] = packet.position.map(f64::from);
         (stiffness >= 0.5 * SOFTEST).then(|| Told {
             surface: SurfaceModel {
                 normal: direction / stiffness,
                 place,
                 stiffness,
-                stiffness_error: if known < 0.0 { 1.0 } else { known.min(1.0) },
+                stiffness_error: 0.0,
                 friction: friction.clamp(0.0, 2.0),
             },
-            force: (known < 0.0).then_some(-FORCE_UNIT * known),
+            force: (force < 0.0).then_some(-FORCE_UNIT * force),
         })
     }
 }
@@ -64,7 +63,7 @@ mod tests {
             normal: Vector3::new(-0.6, 0.8, 0.0),
             place: 0.0123,
             stiffness: 1234.0,
-            stiffness_error: 0.07,
+            stiffness_error: 0.0,
             friction: 0.25,
         };
         let told = Told {
@@ -78,7 +77,6 @@ mod tests {
         assert!((back.place - model.place).abs() < 1e-8);
         assert!((back.stiffness - model.stiffness).abs() < 1e-3);
         assert!((back.friction - model.friction).abs() < 1e-7);
-        assert!((back.stiffness_error - model.stiffness_error).abs() < 1e-7);
         let nothing = Told::default().packed(Energy::default());
         assert_eq!(Told::unpacked(&nothing), None);
         // With the force, also where that is zero.
@@ -90,7 +88,6 @@ mod tests {
             let back = Told::unpacked(&told.packed(Energy::default())).unwrap();
             let told = back.force.expect("a force");
             assert!((told - force).abs() <= 1e-6 * force.max(1.0), "{told} N");
-            assert_eq!(back.surface.stiffness_error, 1.0);
         }
     }
 }

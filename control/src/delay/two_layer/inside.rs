@@ -28,6 +28,10 @@ impl Default for InnerLaw {
             largest_stiffness: 9000.0,
             // It keeps books itself.
             paid_updates: false,
+            largest_chase: 0.01,
+            // What is quicker goes into the damping of the arm that holds on, and the tanks have
+            // nothing to spare.
+            emerge_speed: 0.02,
             ..ModelMediated::default()
         })
     }
