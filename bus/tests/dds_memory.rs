@@ -2,15 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::{
-    fs, process, thread,
-    time::{Duration, Instant},
-};
+mod dds_states;
 
+use std::{fs, process, thread, time::Duration};
+
+use dds_states::publish;
 use ferntast_bus::{Bus, DdsBus, DdsConfig};
 use ferntast_msgs::{
-    Text, Time,
-    sample::{OperatingState, OperatingStateSample},
+    sample::OperatingStateSample,
     topics::{Delivery, Topic, TopicName},
 };
 
@@ -36,29 +35,12 @@ fn states_that_nobody_reads_take_no_memory() {
     let name = TopicName::new(&name).unwrap();
     let topic = Topic::<OperatingStateSample>::new(name, Delivery::State);
     let mut publisher = bus.publisher(topic).unwrap();
-    let mut publish = |from: i64, to: i64| {
-        for k in from..to {
-            let stamp = Time::from_nanos(1_000_000_000 + k);
-            let state = OperatingStateSample {
-                stamp,
-                state: OperatingState::ENABLED,
-                is_homed: 1,
-                is_busy: 0,
-                reserved: [0; 5],
-                reason: Text::EMPTY,
-            };
-            // A burst that the loop of DDS has not taken yet is refused, and tried again.
-            let begin = Instant::now();
-            while let Err(error) = publisher.publish(stamp, &state) {
-                assert!(begin.elapsed() < Duration::from_secs(10), "{error}");
-                thread::sleep(Duration::from_millis(1));
-            }
-        }
-    };
     // RustDDS looks after its history every six seconds, and what it gave back by
     // then is used again.
     let mut burst = |number: i64| {
-        publish(2_500 * number, 2_500 * (number + 1));
+        for k in 2_500 * number..2_500 * (number + 1) {
+            publish(&mut publisher, k).unwrap();
+        }
         thread::sleep(Duration::from_secs(7));
         anonymous_memory()
     };

@@ -2,20 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::{
-    process, thread,
-    time::{Duration, Instant},
-};
+mod dds_states;
 
+use std::{process, thread};
+
+use dds_states::publish;
 use ferntast_bus::{Bus, DdsBus, DdsConfig};
 use ferntast_msgs::{
-    Text, Time,
-    sample::{OperatingState, OperatingStateSample},
+    sample::OperatingStateSample,
     topics::{Delivery, Topic, TopicName},
 };
-
-/// How long a publisher may be refused, where it takes 0.1 s on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Creates publishers, each of which sends more at once than may wait; says how many were
 /// refused for good.
@@ -34,25 +30,7 @@ fn refused_for_good(domain_id: u32, participant: usize) -> usize {
         let mut publisher = bus
             .publisher(Topic::<OperatingStateSample>::new(name, Delivery::State))
             .unwrap();
-        let begin = Instant::now();
-        (0..100).all(|k| {
-            let stamp = Time::from_nanos(1_000_000_000 + k);
-            let state = OperatingStateSample {
-                stamp,
-                state: OperatingState::ENABLED,
-                is_homed: 1,
-                is_busy: 0,
-                reserved: [0; 5],
-                reason: Text::EMPTY,
-            };
-            while publisher.publish(stamp, &state).is_err() {
-                if begin.elapsed() > PATIENCE {
-                    return false;
-                }
-                thread::sleep(Duration::from_millis(1));
-            }
-            true
-        })
+        (0..100).all(|k| publish(&mut publisher, k).is_ok())
     };
     (0..250).filter(|&number| !sends_all(number)).count()
 }
