@@ -14,8 +14,8 @@
 //! where nothing is near (`hand_damping.rs`).
 //!
 //! An update is blended in: the model rendered follows the one received by a first
-//! order lag, `blend_time`. Its place comes towards the hand no faster than 50 mm/s; a surface
-//! that appears around the hand begins at the hand, so that it winds nothing up at once.
+//! order lag, `blend_time`. Its place comes towards the hand no faster than `emerge_speed`; a
+//! surface that appears around the hand begins at the hand, so that it winds nothing up at once.
 //!
 //! **Updates are passive** (what the survey of Xu et al. asks of them): one that would wind up the
 //! spring under the hand goes on only as far as an energy account pays (`account.rs`, ours). The

@@ -6,7 +6,7 @@ use ferntast_control::planted::{Planted, Rule};
 use ferntast_msgs::{
     Message, Text, Time,
     sample::JointNames,
-    topics::{self, COMMANDS_SETTING, Row, Topic, TopicName, Visitor},
+    topics::{self, COMMANDS_SETTING, Delivery, Row, Topic, TopicName, Visitor},
 };
 
 /// How a topic is forwarded.
@@ -35,6 +35,8 @@ pub enum Forwarding {
 trait Route {
     fn forward(&mut self, now: Time) -> Forwarded;
     fn topic(&self) -> &TopicName;
+    /// Whether messages come all the time.
+    fn is_stream(&self) -> bool;
     fn counts(&self) -> SubscriberCounts;
     fn forget_losses(&mut self);
 }
@@ -50,6 +52,7 @@ pub struct Forwarded {
 
 struct TypedRoute<M: Message> {
     topic: TopicName,
+    delivery: Delivery,
     from: Subscriber<M>,
     to: Publisher<M>,
     forwarding: Forwarding,
@@ -128,6 +131,10 @@ impl<M: Message> Route for TypedRoute<M> {
         &self.topic
     }
 
+    fn is_stream(&self) -> bool {
+        self.delivery == Delivery::Stream
+    }
+
     fn counts(&self) -> SubscriberCounts {
         let mut counts = *self.from.counts();
         if self.refused > 0 {
@@ -149,6 +156,10 @@ impl<M: Message> Route for TypedRoute<M> {
 #[derive(Default)]
 pub struct Forwarder {
     routes: Vec<Box<dyn Route>>,
+    /// From one look at what is no stream to the next \[ns\].
+    seldom_nanos: i64,
+    /// The next of these.
+    due: Time,
     planted: Planted,
 }
 
@@ -156,6 +167,15 @@ impl Forwarder {
     /// The same with a planted bug.
     pub fn planted(self, planted: Planted) -> Forwarder {
         Forwarder { planted, ..self }
+    }
+
+    /// The same, which looks at topics that are no streams only once in `seldom_nanos`
+    /// \[ns\]: they are many, and nothing comes on them most of the time.
+    pub fn looking_seldom(self, seldom_nanos: i64) -> Forwarder {
+        Forwarder {
+            seldom_nanos,
+            ..self
+        }
     }
 
     /// Adds every topic of the table for which `how` says so, for an arm of
@@ -221,6 +241,7 @@ impl Forwarder {
         };
         self.routes.push(Box::new(TypedRoute {
             topic: topic.name,
+            delivery: topic.delivery,
             from: from.subscriber(topic, depth)?,
             to: to.publisher(topic)?,
             forwarding,
@@ -235,7 +256,14 @@ impl Forwarder {
     /// One round: forwards what is visible at `now`.
     pub fn forward(&mut self, now: Time) -> Forwarded {
         let mut all = Forwarded::default();
+        let seldom = now >= self.due;
+        if seldom {
+            self.due = now.plus_nanos(self.seldom_nanos);
+        }
         for route in &mut self.routes {
+            if !seldom && !route.is_stream() {
+                continue;
+            }
             let forwarded = route.forward(now);
             all.messages += forwarded.messages;
             if !self.planted.lacks(Rule::FailuresTold) {

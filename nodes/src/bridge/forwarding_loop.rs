@@ -72,8 +72,11 @@ impl ForwardingLoop {
             lost: self.failed,
             ..NodeHealth::default()
         };
-        self.watch
-            .note(|each| self.forwarder.inputs(each), &mut health);
+        // What was refused is told when the health is, and counted until then.
+        if self.meter.is_due(wake.now) {
+            self.watch
+                .note(|each| self.forwarder.inputs(each), &mut health);
+        }
         judge(&mut health, self.failed);
         let sample = self
             .meter

@@ -4,7 +4,10 @@
 //! process with DDS or a Zenoh router.
 
 use ferntast_bus::{Bus, BusParameters, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
-use ferntast_msgs::topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch};
+use ferntast_msgs::{
+    Time,
+    topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch},
+};
 
 use super::{
     choice_parameter::ChoiceParameter,
@@ -16,6 +19,9 @@ use crate::{
     config::{GatewaySection, HandSource, Middleware, Scenario},
     process::{NodeError, ProcessContext, end_after_a_stop},
 };
+
+/// How often it looks for what is said seldom: states, events, calls of services \[ns\].
+const SELDOM_NANOS: i64 = 5_000_000;
 
 /// Opens the ROS 2 side.
 ///
@@ -114,7 +120,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         .map_err(NodeError::own)?;
     }
     let ros = open_ros(section)?;
-    let mut forwarder = Forwarder::default();
+    let mut forwarder = Forwarder::default().looking_seldom(SELDOM_NANOS);
     let joints = process.session.joints();
     forwarder.add_topics(
         &process.bus,
@@ -141,13 +147,17 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let mut states = StateServices::open(&process.bus, &ros, section.commands)?;
     let mut forwarding = ForwardingLoop::new(process)?;
     forwarding.begin(forwarder);
+    let mut due = Time::INVALID;
     process.run(|wake| {
-        if let Some(own) = &own_parameters {
-            own.answer();
-        }
-        states.round(wake.now);
-        for parameter in &mut parameters {
-            parameter.round(wake.now);
+        if wake.now >= due {
+            due = wake.now.plus_nanos(SELDOM_NANOS);
+            if let Some(own) = &own_parameters {
+                own.answer();
+            }
+            states.round(wake.now);
+            for parameter in &mut parameters {
+                parameter.round(wake.now);
+            }
         }
         forwarding.round(wake.now, wake, |_, _| {})
     });

@@ -110,7 +110,9 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             lost: ports.round(wake.now),
             ..NodeHealth::default()
         };
-        watch.note(|each| ports.inputs(each), &mut health);
+        if meter.is_due(wake.now) {
+            watch.note(|each| ports.inputs(each), &mut health);
+        }
         if health.lost > 0 {
             health.level = health.level.max(Level::WARN);
         }

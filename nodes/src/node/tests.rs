@@ -3,8 +3,12 @@
 use ferntast_bus::{Bus, CreateError, Depth, MemoryBus};
 use ferntast_msgs::{
     Text, Time,
-    sample::{Faults, FrictionStatusSample, JointNames, JointSample, TemperatureSample},
-    topics::{FOLLOWER_JOINT_FRICTION, FOLLOWER_JOINT_TEMPERATURE},
+    sample::{
+        Faults, FrictionStatusSample, JointNames, JointSample, LawCommandSample, TemperatureSample,
+    },
+    topics::{
+        FOLLOWER_JOINT_FRICTION, FOLLOWER_JOINT_TEMPERATURE, FOLLOWER_MEASURED_JS, LINK_LAW_COMMAND,
+    },
 };
 
 use super::{HealthMeter, Newest, Node, PerJoint, Ports, Runner, Ticking, ports};
@@ -111,6 +115,34 @@ fn what_is_forwarded_goes_by_the_joints_too() {
     forwarder.forward(START.plus_nanos(1));
     let own = received.newest(START.plus_nanos(2)).unwrap();
     assert_eq!(own.message.temperature, 7.0);
+}
+
+#[test]
+fn what_is_no_stream_is_looked_at_seldom() {
+    let (from, to) = (MemoryBus::new(), MemoryBus::new());
+    let (from, to) = (Bus::Memory(from), Bus::Memory(to));
+    let mut forwarder = Forwarder::default().looking_seldom(5_000_000);
+    let every = Forwarding::Every { queue: 4 };
+    forwarder
+        .add(FOLLOWER_MEASURED_JS, &from, &to, Stamp::Round, every)
+        .unwrap();
+    forwarder
+        .add(LINK_LAW_COMMAND, &from, &to, Stamp::Round, every)
+        .unwrap();
+    let mut stream = from.publisher(FOLLOWER_MEASURED_JS).unwrap();
+    let mut event = from.publisher(LINK_LAW_COMMAND).unwrap();
+    let at = |millis: i64| START.plus_nanos(millis * 1_000_000);
+    forwarder.forward(at(0));
+    let law = Text::new("wave");
+    let stamp = at(1);
+    event
+        .publish(stamp, &LawCommandSample { stamp, law })
+        .unwrap();
+    stream
+        .publish(stamp, &JointSample::zero(joints(), stamp))
+        .unwrap();
+    let forwarded = [2, 4, 5, 6].map(|millis| forwarder.forward(at(millis)).messages);
+    assert_eq!(forwarded, [1, 0, 1, 0]);
 }
 
 #[test]

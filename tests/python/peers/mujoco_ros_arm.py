@@ -24,7 +24,7 @@ import numpy as np
 from arguments import print_report, ready, stop_on_signal
 from mujoco_plant import Plant, options_of
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from ros_peer import ros_node
+from ros_peer import quiet_node, take
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
@@ -185,9 +185,9 @@ def main() -> None:
     stop = stop_on_signal()
     real_time()
     robot = Robot(*arm_of(arguments.arm), arguments.interface)
-    with ros_node("mujoco_arm") as node:
+    with quiet_node("mujoco_arm") as node:
         publisher = node.create_publisher(JointState, arguments.joint_states, QOS)
-        node.create_subscription(Float64MultiArray, command, robot.take, QOS)
+        commands = node.create_subscription(Float64MultiArray, command, robot.take, QOS)
         clock = node.get_clock()
         ready()
         begun = due = last = time.monotonic()
@@ -196,6 +196,7 @@ def main() -> None:
             due += 1.0 / arguments.rate
             time.sleep(max(0.0, due - time.monotonic()))
             now = time.monotonic()
+            take(commands)
             # A machine that stalls is no time that goes by.
             robot.step(min(now - last, 0.02))
             due = max(due, now - 0.02)

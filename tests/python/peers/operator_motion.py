@@ -21,10 +21,14 @@ SPOILS = ("nan", "infinite", "far", "jump", "zero_stamp")
 
 
 def ticks(
-    rate: float, seconds: float, stop: threading.Event, arm: "Arm"
+    rate: float,
+    seconds: float,
+    stop: threading.Event,
+    arm: "Arm",
+    hear: Callable[[], None] = lambda: None,
 ) -> Iterator[tuple[float, float]]:
     """Yields the time since the start and that of the motion [s], `rate` times a second for
-    `seconds`, or until `stop`.
+    `seconds`, or until `stop`; calls `hear` each time before.
 
     A tick that comes late is yielded late, and those it overran are left out. The motion
     stands still while the arm does.
@@ -42,6 +46,7 @@ def ticks(
         if now - before <= patience and arm.obeys():
             moment += now - before
         before = now
+        hear()
         yield now, moment
         count = max(count + 1, int(now * rate) + 1)
 
@@ -70,7 +75,7 @@ def there_and_back(now: float, seconds: float) -> float:
 
 
 class Felt:
-    """The forces that came back. Filled from the middleware's own thread."""
+    """The forces that came back. Filled by the operator's loop, or from the middleware's own thread."""
 
     def __init__(self, trace: Path | None) -> None:
         self.stamps = Stamps()
@@ -140,8 +145,10 @@ def operate(
     felt: Felt,
     send: Callable[[float, float, bool], None],
     stop: threading.Event,
+    hear: Callable[[], None] = lambda: None,
 ) -> dict[str, object]:
-    """Moves the hand as recorded; `send(x, y, zero_stamp)` publishes one command.
+    """Moves the hand as recorded; `send(x, y, zero_stamp)` publishes one command, `hear` takes
+    the forces that came, unless they come by themselves.
 
     It waits while the arm stands. With `until_felt`, it goes back and there again until so
     many forces came, and one of `until_peak`.
@@ -158,7 +165,7 @@ def operate(
     felt.start = time.monotonic()
     passes = PASSES if arguments.until_felt else 1
     arm = Arm(arguments.arm_state)
-    for now, moment in ticks(arguments.rate, PASSES * seconds, stop, arm):
+    for now, moment in ticks(arguments.rate, PASSES * seconds, stop, arm, hear):
         enough = felt.nonzero >= arguments.until_felt and felt.peak >= arguments.until_peak
         done = moment >= seconds and enough
         if done or moment >= passes * seconds:

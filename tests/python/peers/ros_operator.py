@@ -12,7 +12,7 @@ from arguments import add_operator, print_report, ready, stop_on_signal, wait_un
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from operator_motion import Felt, operate
-from ros_peer import STREAM, ros_node
+from ros_peer import STREAM, quiet_node, take
 
 
 def main() -> None:
@@ -22,9 +22,9 @@ def main() -> None:
     arguments = parser.parse_args()
     stop = stop_on_signal()
     felt = Felt(arguments.trace)
-    with ros_node("ferntast_test_operator") as node:
+    with quiet_node("ferntast_test_operator") as node:
         publisher = node.create_publisher(PoseStamped, "/leader/measured_cp", STREAM)
-        node.create_subscription(WrenchStamped, "/leader/servo_cf", felt.wrench, STREAM)
+        forces = node.create_subscription(WrenchStamped, "/leader/servo_cf", felt.wrench, STREAM)
         clock = node.get_clock()
         message = PoseStamped()
         message.header.frame_id = "leader_base"
@@ -38,7 +38,7 @@ def main() -> None:
 
         heard = wait_until(lambda: publisher.get_subscription_count() > 0, arguments.wait)
         ready()
-        report = operate(arguments, felt, send, stop)
+        report = operate(arguments, felt, send, stop, lambda: take(forces))
     print_report(report | {"heard": heard})
 
 

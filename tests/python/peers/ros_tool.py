@@ -12,7 +12,7 @@ from pathlib import Path
 from arguments import positive, print_report, ready, stop_on_signal, wait_until
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from operator_motion import Arm, Felt, ticks
-from ros_peer import STREAM, ros_node
+from ros_peer import STREAM, quiet_node, take
 
 # How long each part lasts [s].
 REST, WANDER, DOWN, PRESS, UP = 3.0, 12.0, 2.5, 2.0, 2.0
@@ -79,9 +79,9 @@ def main() -> None:
     stop = stop_on_signal()
     felt = Felt(None)
     total = REST + WANDER + REST + DOWN + PRESS + UP + LONG_REST
-    with ros_node("ferntast_test_tool") as node:
+    with quiet_node("ferntast_test_tool") as node:
         publisher = node.create_publisher(PoseStamped, "/leader/measured_cp", STREAM)
-        node.create_subscription(WrenchStamped, "/leader/servo_cf", felt.wrench, STREAM)
+        forces = node.create_subscription(WrenchStamped, "/leader/servo_cf", felt.wrench, STREAM)
         clock = node.get_clock()
         message = PoseStamped()
         message.header.frame_id = "leader_base"
@@ -89,7 +89,8 @@ def main() -> None:
         ready()
         sent, before, now, silence = 0, None, 0.0, 0.0
         # Time that it waits for the arm comes on top.
-        for now, moment in ticks(arguments.rate, 5 * total, stop, Arm(arguments.arm_state)):
+        arm = Arm(arguments.arm_state)
+        for now, moment in ticks(arguments.rate, 5 * total, stop, arm, lambda: take(forces)):
             if moment >= total:
                 break
             (x, y, z), (qx, qy, qz, qw) = pose(moment, arguments.deep)

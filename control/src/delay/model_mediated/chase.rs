@@ -27,8 +27,9 @@ pub(super) struct Chase {
 }
 
 impl Chase {
-    /// How far \[m\], `furthest` \[m\] at most, `dt` \[s\] later, with the tip at `tip` \[m\]; `touched` are normal and speed
-    /// \[m/s\] of the surface there, `round_trip` \[s\] while the other end is heard.
+    /// How far \[m\], `furthest` \[m\] at most, `dt` \[s\] later, with the tip at `tip` \[m\];
+    /// `touched` are normal and speed \[m/s\] of the surface there, `round_trip` \[s\] while the
+    /// other end is heard.
     pub fn step(
         &mut self,
         dt: f64,
