@@ -21,6 +21,7 @@ mod pair;
 mod places;
 mod process;
 mod python;
+mod room;
 mod session;
 mod stranger;
 

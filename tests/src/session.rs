@@ -16,6 +16,7 @@ use crate::{
     deadline::wait_until,
     domain::Domain,
     places::{ferntast, peer, python},
+    room::Room,
 };
 
 /// What a sourced ROS installation, or our own Python, may have put into the environment.
@@ -46,6 +47,7 @@ pub struct Session {
     folder: TempDir,
     link_port: u16,
     router_port: u16,
+    _room: Room,
 }
 
 impl Session {
@@ -55,6 +57,20 @@ impl Session {
     ///
     /// No scratch folder, domain or port can be had.
     pub fn new() -> Session {
+        Session::within(Room::shared())
+    }
+
+    /// Opens one that no other runs beside in this process: for a page that shows a session, or
+    /// a peer in Python that has to be in time, beside it (`room.rs`).
+    ///
+    /// # Panics
+    ///
+    /// As [`Session::new`].
+    pub fn alone() -> Session {
+        Session::within(Room::alone())
+    }
+
+    fn within(room: Room) -> Session {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
         Session {
@@ -64,6 +80,7 @@ impl Session {
             folder: TempDir::new().unwrap_or_else(|error| panic!("no scratch folder: {error}")),
             link_port: free_tcp_port(),
             router_port: free_tcp_port(),
+            _room: room,
         }
     }
 

@@ -122,7 +122,7 @@ impl Stroke<'_> {
 
 #[test]
 fn a_session_is_driven_by_dragging_and_the_stop_stops() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = session_with_page(&session, &[]);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));
@@ -225,7 +225,7 @@ fn a_session_is_driven_by_dragging_and_the_stop_stops() {
 
 #[test]
 fn a_page_that_freezes_does_not_hold_the_arm() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = session_with_page(&session, &[]);
     let browser = Browser::start(900, 700);
     browser.open(&format!("http://{address}"));
@@ -266,7 +266,7 @@ fn a_page_that_freezes_does_not_hold_the_arm() {
 
 #[test]
 fn the_page_names_strangers_and_a_scenario_that_re_arms_by_itself() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = session_with_page(&session, &["--scenario", "kontur_2"]);
     let browser = Browser::start(900, 900);
     browser.open(&format!("http://{address}"));
@@ -325,7 +325,7 @@ pub fn recorded_by_a_page(session: &Session) -> PathBuf {
 
 #[test]
 fn recordings_are_begun_marked_and_ended_by_the_page() {
-    let session = Session::new();
+    let session = Session::alone();
     let address = format!("127.0.0.1:{}", free_tcp_port());
     let mut process = Process::spawn(session.ferntast_here(&["session", "--listen", &address]));
     await_armed(&session, &mut process);

@@ -95,7 +95,7 @@ fn state_is_off(browser: &Browser) -> bool {
 
 #[test]
 fn a_gamepad_drives_rumbles_and_lets_go() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = session_with_page(&session, &[]);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));

@@ -62,7 +62,7 @@ const HOUSINGS: &str = "const c = document.querySelector('#scene');
 
 #[test]
 fn an_arm_of_seven_joints_is_seen_and_its_hand_drawn_in_the_plane_of_the_view() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = session_with_page(&session, &["--arm", "panda"]);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));
@@ -161,7 +161,7 @@ fn an_arm_of_seven_joints_is_seen_and_its_hand_drawn_in_the_plane_of_the_view() 
 
 #[test]
 fn a_planar_arm_is_seen_at_its_contour_first_and_in_space_when_asked_for() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = session_with_page(&session, &[]);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));

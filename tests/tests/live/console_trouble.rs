@@ -31,7 +31,7 @@ fn told(browser: &Browser, words: &str) {
 
 #[test]
 fn out_of_every_crash_the_banner_leads_back() {
-    let session = Session::new();
+    let session = Session::alone();
     let (mut process, address) = unrecorded(&session);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));
@@ -65,7 +65,7 @@ const LOG: &str = "return document.querySelector('#log').innerText";
 
 #[test]
 fn what_happens_is_told_alike_in_the_page_on_diagnostics_in_the_terminal_and_to_who_follows() {
-    let session = Session::new();
+    let session = Session::alone();
     let (mut process, address) = session_with_page(&session, &[]);
     let arguments = ["state", "--follow", "--json", "--session", session.name()];
     let follows = Process::spawn(session.ferntast(&arguments));
@@ -118,7 +118,7 @@ fn what_happens_is_told_alike_in_the_page_on_diagnostics_in_the_terminal_and_to_
 
 #[test]
 fn a_page_that_is_opened_anew_shows_the_link_as_it_is() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = unrecorded(&session);
     let first = Browser::start(1280, 900);
     first.open(&format!("http://{address}"));
@@ -170,7 +170,7 @@ fn a_page_that_is_opened_anew_shows_the_link_as_it_is() {
 
 #[test]
 fn who_watches_records_and_marks_and_reads_the_charts() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = unrecorded(&session);
     let browser = Browser::start(1280, 1000);
     browser.open(&format!("http://{address}"));
@@ -248,7 +248,7 @@ fn draw(browser: &Browser, pixels: f64) {
 
 #[test]
 fn who_releases_the_mouse_lets_go_whatever_the_arm_does() {
-    let session = Session::new();
+    let session = Session::alone();
     let (process, address) = session_with_page(&session, &[]);
     let browser = Browser::start(1280, 800);
     browser.open(&format!("http://{address}"));

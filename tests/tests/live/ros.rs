@@ -219,7 +219,7 @@ fn a_gateway_that_was_stopped_is_seen_again() {
 /// The motion of a hand, sent by rclpy at 500 Hz for so many seconds, moves the
 /// arm; the force comes back to the same client.
 fn drives_the_arm(seconds: &str, hand: impl Fn(&Session) -> String) {
-    let session = Session::new();
+    let session = Session::alone();
     let mut process = start(&session, &["--hand", "crtk"]);
     await_enabled(&session, &mut process);
     // A machine that stalls holds the arm: the hand waits until it obeys again, and goes back to

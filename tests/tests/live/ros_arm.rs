@@ -91,7 +91,7 @@ fn a_robot_is_checked_without_being_moved() {
 /// A robot that falls silent in the middle: the arm is a fault in words, and the robot's brakes hold.
 #[test]
 fn a_robot_that_falls_silent_stops_the_arm() {
-    let session = Session::new();
+    let session = Session::alone();
     let arm = patient_arm(&session);
     let robot = robot(&session, &["--spoil", "silent", "--spoil-after", "12"]);
     let mut command = session.ferntast_here(&["session", "--json", "--no-console", "--no-rearm"]);
