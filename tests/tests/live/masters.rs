@@ -17,7 +17,7 @@ fn operator(session: &Session, name: &str, y: f64, seconds: &str) -> Process {
 
 #[test]
 fn the_first_holds_and_the_second_is_refused_and_told() {
-    let session = Session::new();
+    let session = Session::alone();
     let mut process = start(&session, &["--hand", "crtk"]);
     await_enabled(&session, &mut process);
     let mut first = operator(&session, "first.csv", 0.015, "40");

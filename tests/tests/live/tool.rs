@@ -106,7 +106,7 @@ fn the_tool_of_a_hand_without_an_orientation_stays() {
 /// 10 ms of the link, and the servo.
 #[test]
 fn rclpy_leads_the_tool_in_space() {
-    let session = Session::new();
+    let session = Session::alone();
     let mut process = start(&session, &["--arm", "panda", "--hand", "crtk"]);
     await_enabled(&session, &mut process);
     // The table is 30 mm below the tip at home.

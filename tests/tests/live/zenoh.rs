@@ -51,7 +51,7 @@ fn it_lists_every_topic_with_its_true_hash() {
 
 #[test]
 fn it_drives_the_arm_and_feels_the_contour() {
-    let session = Session::new();
+    let session = Session::alone();
     let mut process = start(&session, &[&MIDDLEWARE[..], &["--hand", "crtk"]].concat());
     await_enabled(&session, &mut process);
     let file = &hand_of_strokes(&session);
