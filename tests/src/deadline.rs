@@ -8,6 +8,16 @@ use std::{
 /// How often a condition is looked at.
 const PERIOD: Duration = Duration::from_millis(10);
 
+/// What a program may take that would end within `limit`: more, where all others go before it
+/// (`./tests/run` runs so what computes), as it waits for these.
+pub fn patience(limit: Duration) -> Duration {
+    // SAFETY: no pointers; 0 is this thread.
+    match unsafe { libc::sched_getscheduler(0) } {
+        libc::SCHED_IDLE => 5 * limit,
+        _ => limit,
+    }
+}
+
 /// Whether `condition` came true within `limit`.
 pub fn wait_until(limit: Duration, mut condition: impl FnMut() -> bool) -> bool {
     wait_for(limit, || condition().then_some(())).is_some()

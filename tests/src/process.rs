@@ -11,7 +11,7 @@ use std::{
     time::Duration,
 };
 
-use crate::deadline::{wait_for, wait_until};
+use crate::deadline::{patience, wait_for, wait_until};
 
 /// A process with its output captured, leader of a process group of its own
 /// which is killed when this is dropped.
@@ -192,6 +192,7 @@ impl Process {
     ///
     /// It does not end within `limit`.
     pub fn wait(mut self, limit: Duration) -> Ended {
+        let limit = patience(limit);
         let status = wait_for(limit, || self.child.try_wait().ok().flatten());
         let Some(status) = status else {
             panic!("still runs after {limit:?}: {}", self.describe());
