@@ -3,7 +3,8 @@
 //! A session takes half of a processor and more, a page that shows it as much again, and so does
 //! a peer in Python that has to be in time. Two of these together leave the real time of neither
 //! whole where there are two processors. So a test of this kind runs beside none that has a
-//! session; what computes goes on behind it.
+//! session; what computes goes on behind it, in a process of its own, whose sessions run nothing in
+//! real time and do not count here (so no lock file, as `Machine` has).
 
 use std::{
     sync::{Condvar, Mutex, PoisonError},
