@@ -12,6 +12,12 @@ const YEAR: usize = 365;
 /// The first seed that nothing was tuned on.
 const JUDGING: u64 = 770_000;
 
+/// How many fleet-years are watched: `FERNTAST_FLEET_YEARS`, else ten.
+fn years() -> u64 {
+    let told = std::env::var("FERNTAST_FLEET_YEARS").ok();
+    told.and_then(|text| text.parse().ok()).unwrap_or(10)
+}
+
 /// What is found of a fleet in so many days.
 fn watched(fleet: Fleet, seed: u64, ageing: Option<Ageing>, days: usize) -> Vec<Finding> {
     let names: Vec<String> = (0..fleet.robots)
@@ -53,11 +59,10 @@ fn shared<T: Send>(count: u64, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
     })
 }
 
-/// One false alarm a fleet-year at most: 20 years of fleets of 100 robots, 600 series each,
-/// with seasons, slopes of their own, correlated noise of heavy tails, loads that change.
+/// One false alarm a fleet-year at most, in fleets of 100 robots, 600 series each, with seasons, slopes of their own, correlated noise of heavy tails, loads that change.
 #[test]
 fn it_names_nobody_where_all_age_alike() {
-    let years = 20;
+    let years = years();
     let alarms = shared(years, |year| {
         let found = watched(Fleet::default(), JUDGING + year, None, YEAR);
         for own in &found {
@@ -80,7 +85,7 @@ fn it_names_nobody_where_all_age_alike() {
 /// 1.5 % a day is named within 10 days of its beginning, and nobody else is.
 #[test]
 fn it_names_the_one_that_ages() {
-    let trials = 40;
+    let trials = 2 * years();
     let days = shared(trials, |trial| {
         let seed = JUDGING + 1000 + trial;
         let mut draws = Draws::new(seed ^ 0xFFFF);
