@@ -59,7 +59,8 @@ fn shared<T: Send>(count: u64, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
     })
 }
 
-/// One false alarm a fleet-year at most, in fleets of 100 robots, 600 series each, with seasons, slopes of their own, correlated noise of heavy tails, loads that change.
+/// One false alarm a fleet-year at most, in fleets of 100 robots, 600 series each, with seasons,
+/// slopes of their own, correlated noise of heavy tails, loads that change.
 #[test]
 fn it_names_nobody_where_all_age_alike() {
     let years = years();
