@@ -1,16 +1,17 @@
-//! The one interface: enum dispatch over the ways across.
+//! The one interface to all ways across.
 
 use ferntast_msgs::{Message, Time, topics::Topic};
 
 use crate::{
-    dds::{DdsBus, DdsPublisher, DdsSubscriber},
+    dds::DdsBus,
+    ends::{self, Receives, Sends},
     error::{CreateError, PublishError},
-    foxglove::{FoxgloveBus, FoxglovePublisher},
-    mcap::{McapBus, McapPublisher, McapSubscriber},
+    foxglove::FoxgloveBus,
+    mcap::McapBus,
     memory::{MemoryBus, MemoryPublisher, MemorySubscriber},
-    shared_memory::{SharedMemoryBus, SharedMemoryPublisher, SharedMemorySubscriber},
+    shared_memory::SharedMemoryBus,
     types::{Depth, Received, SubscriberCounts},
-    zenoh_ros::{ZenohBus, ZenohPublisher, ZenohSubscriber},
+    zenoh_ros::ZenohBus,
 };
 
 /// A way across. A clone is another handle to the same bus.
@@ -51,11 +52,7 @@ impl Bus {
     pub fn publisher<M: Message>(&self, topic: Topic<M>) -> Result<Publisher<M>, CreateError> {
         Ok(match self {
             Bus::Memory(bus) => Publisher::Memory(bus.publisher(topic)?),
-            Bus::SharedMemory(bus) => Publisher::SharedMemory(bus.publisher(topic)?),
-            Bus::Dds(bus) => Publisher::Dds(Box::new(bus.publisher(topic)?)),
-            Bus::Zenoh(bus) => Publisher::Zenoh(Box::new(bus.publisher(topic)?)),
-            Bus::Mcap(bus) => Publisher::Mcap(bus.publisher(topic)?),
-            Bus::Foxglove(bus) => Publisher::Foxglove(bus.publisher(topic)?),
+            others => Publisher::Other(ends::publisher(others, topic)?),
         })
     }
 
@@ -73,15 +70,7 @@ impl Bus {
     ) -> Result<Subscriber<M>, CreateError> {
         Ok(match self {
             Bus::Memory(bus) => Subscriber::Memory(bus.subscriber(topic, depth)?),
-            Bus::SharedMemory(bus) => Subscriber::SharedMemory(bus.subscriber(topic, depth)?),
-            Bus::Dds(bus) => Subscriber::Dds(Box::new(bus.subscriber(topic, depth)?)),
-            Bus::Zenoh(bus) => Subscriber::Zenoh(Box::new(bus.subscriber(topic, depth)?)),
-            Bus::Mcap(bus) => Subscriber::Mcap(bus.subscriber(topic, depth)?),
-            Bus::Foxglove(_) => {
-                return Err(CreateError::OneWay {
-                    topic: topic.name.into(),
-                });
-            }
+            others => Subscriber::Other(ends::subscriber(others, topic, depth)?),
         })
     }
 }
@@ -89,18 +78,10 @@ impl Bus {
 /// Sends messages on one topic.
 #[derive(Debug)]
 pub enum Publisher<M: Message> {
-    /// Within this process.
+    /// Within this process: lockstep runs through it, so it is compiled where it is used.
     Memory(MemoryPublisher<M>),
-    /// Between processes of one host.
-    SharedMemory(SharedMemoryPublisher<M>),
-    /// ROS 2 over DDS.
-    Dds(Box<DdsPublisher<M>>),
-    /// ROS 2 over Zenoh.
-    Zenoh(Box<ZenohPublisher<M>>),
-    /// Into a recording.
-    Mcap(McapPublisher<M>),
-    /// To Foxglove.
-    Foxglove(FoxglovePublisher<M>),
+    /// Any other way across.
+    Other(Box<dyn Sends<M>>),
 }
 
 impl<M: Message> Publisher<M> {
@@ -114,11 +95,7 @@ impl<M: Message> Publisher<M> {
     pub fn publish(&mut self, now: Time, message: &M) -> Result<(), PublishError> {
         match self {
             Publisher::Memory(publisher) => publisher.publish(now, message),
-            Publisher::SharedMemory(publisher) => publisher.publish(now, message),
-            Publisher::Dds(publisher) => publisher.publish(now, message),
-            Publisher::Zenoh(publisher) => publisher.publish(now, message),
-            Publisher::Mcap(publisher) => publisher.publish(now, message),
-            Publisher::Foxglove(publisher) => publisher.publish(now, message),
+            Publisher::Other(publisher) => publisher.publish(now, message),
         }
     }
 }
@@ -128,14 +105,8 @@ impl<M: Message> Publisher<M> {
 pub enum Subscriber<M: Message> {
     /// Within this process.
     Memory(MemorySubscriber<M>),
-    /// Between processes of one host.
-    SharedMemory(SharedMemorySubscriber<M>),
-    /// ROS 2 over DDS.
-    Dds(Box<DdsSubscriber<M>>),
-    /// ROS 2 over Zenoh.
-    Zenoh(Box<ZenohSubscriber<M>>),
-    /// Out of a recording.
-    Mcap(McapSubscriber<M>),
+    /// Any other way across.
+    Other(Box<dyn Receives<M>>),
 }
 
 impl<M: Message> Subscriber<M> {
@@ -146,35 +117,31 @@ impl<M: Message> Subscriber<M> {
     pub fn newest(&mut self, now: Time) -> Option<Received<M>> {
         match self {
             Subscriber::Memory(subscriber) => subscriber.newest(now),
-            Subscriber::SharedMemory(subscriber) => subscriber.newest(now),
-            Subscriber::Dds(subscriber) => subscriber.newest(now),
-            Subscriber::Zenoh(subscriber) => subscriber.newest(now),
-            Subscriber::Mcap(subscriber) => subscriber.newest(now),
+            Subscriber::Other(subscriber) => subscriber.newest(now),
         }
     }
 
     /// The same as `take` takes it from where it lies: in memory a long message is copied
     /// once. Nobody publishes on the topic meanwhile.
     pub fn newest_to<R>(&mut self, now: Time, take: impl FnOnce(Received<&M>) -> R) -> Option<R> {
-        if let Subscriber::Memory(subscriber) = self {
-            return subscriber.newest_to(now, take);
+        match self {
+            Subscriber::Memory(subscriber) => subscriber.newest_to(now, take),
+            Subscriber::Other(subscriber) => {
+                let own = subscriber.newest(now)?;
+                Some(take(Received {
+                    message: &own.message,
+                    received: own.received,
+                    source: own.source,
+                }))
+            }
         }
-        let own = self.newest(now)?;
-        Some(take(Received {
-            message: &own.message,
-            received: own.received,
-            source: own.source,
-        }))
     }
 
     /// The oldest message visible at `now` that was not taken yet.
     pub fn next(&mut self, now: Time) -> Option<Received<M>> {
         match self {
             Subscriber::Memory(subscriber) => subscriber.next(now),
-            Subscriber::SharedMemory(subscriber) => subscriber.next(now),
-            Subscriber::Dds(subscriber) => subscriber.next(now),
-            Subscriber::Zenoh(subscriber) => subscriber.next(now),
-            Subscriber::Mcap(subscriber) => subscriber.next(now),
+            Subscriber::Other(subscriber) => subscriber.next(now),
         }
     }
 
@@ -182,10 +149,7 @@ impl<M: Message> Subscriber<M> {
     pub fn counts(&self) -> &SubscriberCounts {
         match self {
             Subscriber::Memory(subscriber) => subscriber.counts(),
-            Subscriber::SharedMemory(subscriber) => subscriber.counts(),
-            Subscriber::Dds(subscriber) => subscriber.counts(),
-            Subscriber::Zenoh(subscriber) => subscriber.counts(),
-            Subscriber::Mcap(subscriber) => subscriber.counts(),
+            Subscriber::Other(subscriber) => subscriber.counts(),
         }
     }
 }

@@ -188,6 +188,14 @@ pub enum CreateError {
         /// The topic.
         topic: String,
     },
+    /// A sample that is not among those that can be sent.
+    #[error("{topic} cannot carry {sample}, which msgs/src/sample/every.rs does not list")]
+    NoSample {
+        /// The topic.
+        topic: String,
+        /// Its sample.
+        sample: String,
+    },
     /// A joint whose name cannot be part of a topic's.
     #[error(transparent)]
     Joint(#[from] JointNameError),

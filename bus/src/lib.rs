@@ -9,6 +9,7 @@ mod bus;
 pub mod cdr;
 pub mod dds;
 mod endpoint;
+mod ends;
 pub mod error;
 pub mod foxglove;
 pub mod frames;
