@@ -1,15 +1,14 @@
 //! The ends of a topic on the ways across that bring middleware with them.
 //!
 //! What a middleware is to a message is a lot of code. It is compiled here, once a message
-//! ([`sample::visit`]), and used through [`Sends`] and [`Receives`]; else every crate that opens
+//! ([`topics::visit_samples`]), and used through [`Sends`] and [`Receives`]; else every crate that opens
 //! a topic would compile all of it again.
 
 use std::{any::Any, fmt};
 
 use ferntast_msgs::{
     Message, Time,
-    sample::{self, SampleVisitor},
-    topics::Topic,
+    topics::{self, SampleVisitor, Topic},
 };
 
 use crate::{
@@ -145,7 +144,7 @@ fn open(bus: &Bus, topic: &dyn Any, end: End) -> Option<Result<Box<dyn Any>, Cre
         end,
         opened: None,
     };
-    sample::visit(&mut opening);
+    topics::visit_samples(&mut opening);
     opening.opened
 }
 
@@ -161,6 +160,9 @@ impl SampleVisitor for Opening<'_> {
         let Some(&topic) = self.topic.downcast_ref::<Topic<M>>() else {
             return;
         };
+        if self.opened.is_some() {
+            return;
+        }
         self.opened = Some(match self.end {
             End::Publisher => sender(self.bus, topic).map(|end| Box::new(end) as Box<dyn Any>),
             End::Subscriber(depth) => {
@@ -202,15 +204,11 @@ fn receiver<M: Message>(
 
 #[cfg(test)]
 mod tests {
-    use ferntast_msgs::{
-        sample::JointNames,
-        topics::{self, Visitor},
-    };
+    use ferntast_msgs::{sample::JointNames, topics::Visitor};
 
     use super::*;
     use crate::MemoryBus;
 
-    /// A sample that is missing in [`sample::visit`] is found here, not by a session.
     #[test]
     fn every_topic_of_the_table_has_its_ends() {
         struct Open {

@@ -189,7 +189,7 @@ pub enum CreateError {
         topic: String,
     },
     /// A sample that is not among those that can be sent.
-    #[error("{topic} cannot carry {sample}, which msgs/src/sample/every.rs does not list")]
+    #[error("{topic} cannot carry {sample}: no row of msgs/src/topics/mod.rs has it")]
     NoSample {
         /// The topic.
         topic: String,

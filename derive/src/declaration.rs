@@ -2,10 +2,11 @@
 
 use proc_macro2::TokenStream;
 use syn::{
-    Attribute, Data, DeriveInput, Error, Expr, ExprLit, Fields, Ident, Lit, LitInt, Meta, Path,
-    Result, Visibility, meta::ParseNestedMeta, parse::Parser,
+    Data, DeriveInput, Error, Fields, Ident, LitInt, Path, Result, Visibility,
+    meta::ParseNestedMeta, parse::Parser,
 };
 
+use crate::comment::docs;
 use crate::field::{Field, Kind};
 
 /// A message or a sample.
@@ -116,19 +117,4 @@ impl Declaration {
             _ => lists.next(),
         }
     }
-}
-
-/// The lines of a doc comment.
-pub fn docs(attributes: &[Attribute]) -> Vec<String> {
-    let line = |attribute: &Attribute| match &attribute.meta {
-        Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
-            Expr::Lit(ExprLit {
-                lit: Lit::Str(text),
-                ..
-            }) => Some(text.value().trim().to_owned()),
-            _ => None,
-        },
-        _ => None,
-    };
-    attributes.iter().filter_map(line).collect()
 }

@@ -7,7 +7,7 @@ use syn::{
     Result, Type, Visibility, meta::ParseNestedMeta,
 };
 
-use crate::declaration::docs;
+use crate::comment::docs;
 
 /// A field.
 pub struct Field {

@@ -46,6 +46,7 @@
 //! the end, so that no padding crosses shared memory unset; it is a compile
 //! error where that does not come out.
 
+mod comment;
 mod declaration;
 mod expand;
 mod field;

@@ -1,7 +1,7 @@
 //! Every safety rule that is taken out is missed: a schedule of faults violates an
 //! invariant that holds otherwise.
 //!
-//! Needs a build of its own, with the feature `planted_bugs`: `./tests/run --planted-bugs` makes it.
+//! Needs a build of its own, with the feature `planted_bugs`: `./tests/run` makes it.
 
 use std::sync::{
     Mutex,

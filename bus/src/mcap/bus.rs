@@ -1,12 +1,6 @@
 //! A recording as a way across.
 
-use std::{
-    path::Path,
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicI64, Ordering},
-    },
-};
+use std::{path::Path, sync::Arc};
 
 use ferntast_msgs::{Message, Time, topics::Topic};
 
@@ -15,6 +9,7 @@ use super::{
     options::{BagOptions, BagSummary},
     publisher::McapPublisher,
     reader::BagReader,
+    shared::{Reading, SharedWriter},
     subscriber::McapSubscriber,
     writer::BagWriter,
 };
@@ -46,44 +41,6 @@ enum Side {
     Reading(Arc<Reading>),
 }
 
-/// A recording that several publishers write to; empty once closed.
-#[derive(Clone)]
-pub(super) struct SharedWriter(Arc<Mutex<Option<BagWriter>>>);
-
-impl SharedWriter {
-    /// A poisoned lock says that another publisher panicked; the recording
-    /// takes whole messages only.
-    pub(super) fn lock(&self) -> MutexGuard<'_, Option<BagWriter>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl std::fmt::Debug for SharedWriter {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let guard = self.lock();
-        f.debug_tuple("SharedWriter")
-            .field(&guard.as_ref().map(BagWriter::directory))
-            .finish()
-    }
-}
-
-/// A recording that several subscribers read.
-#[derive(Debug)]
-pub(super) struct Reading {
-    pub(super) reader: BagReader,
-    clock: AtomicI64,
-}
-
-impl Reading {
-    pub(super) fn now(&self) -> Time {
-        Time::from_nanos(self.clock.load(Ordering::Relaxed))
-    }
-
-    pub(super) fn advance(&self, now: Time) {
-        self.clock.fetch_max(now.nanos(), Ordering::Relaxed);
-    }
-}
-
 impl McapBus {
     /// A bus that records into the new rosbag2 directory `directory`.
     ///
@@ -102,7 +59,7 @@ impl McapBus {
     pub fn create_with(directory: &Path, options: BagOptions) -> Result<McapBus, CreateBagError> {
         let writer = BagWriter::create(directory, options)?;
         Ok(McapBus {
-            side: Side::Writing(SharedWriter(Arc::new(Mutex::new(Some(writer))))),
+            side: Side::Writing(SharedWriter::new(writer)),
         })
     }
 
@@ -114,10 +71,7 @@ impl McapBus {
     pub fn open(path: &Path) -> Result<McapBus, OpenBagError> {
         let reader = BagReader::open(path)?;
         Ok(McapBus {
-            side: Side::Reading(Arc::new(Reading {
-                reader,
-                clock: AtomicI64::new(0),
-            })),
+            side: Side::Reading(Arc::new(Reading::new(reader))),
         })
     }
 

@@ -13,8 +13,8 @@ use super::{
     layout::Layout,
     metadata::{BagMetadata, FileEntry, TopicEntry},
     options::BagOptions,
-    reader::topic_of,
-    writer::{ROSBAG2_RECORD, custom_data, rosbag2_record},
+    rosbag2_record::{ROSBAG2_RECORD, custom_data, rosbag2_record},
+    topic::topic_of,
 };
 
 /// Copies all readable messages into a new file at `part`, which is to be

@@ -7,7 +7,7 @@ use super::{
     error::{FinishBagError, WriteBagError},
     file_writer::FileWriter,
     metadata::{BagMetadata, FileEntry},
-    writer::finish_file,
+    rosbag2_record::finish_file,
 };
 
 /// Files that are full: closed, but for the last one perhaps.

@@ -13,7 +13,8 @@ use super::{
     error::{InfoError, ReadMessageError},
     layout::Layout,
     metadata::METADATA_FILE,
-    reader::{BagReader, BagTopic},
+    reader::BagReader,
+    topic::BagTopic,
 };
 
 /// An interval without a message is a gap when it is that many times the

@@ -16,17 +16,13 @@ use mcap::{
 use super::{
     block::{Block, BlockError, BlockKind, FRAME, Fault, for_each_record, frame, parse, read_at},
     error::OpenBagError,
-    scan::scan,
 };
 
 /// The footer record with its frame \[bytes\].
 const FOOTER: u64 = FRAME as u64 + 20;
 
-/// The record that ends the data section, with its frame \[bytes\].
-const DATA_END: u64 = FRAME as u64 + 4;
-
 /// Footer and magic number at a file's end \[bytes\].
-const TAIL: u64 = FOOTER + 8;
+pub(super) const TAIL: u64 = FOOTER + 8;
 
 /// An open file, its channels, and where its messages are.
 #[derive(Debug)]
@@ -48,73 +44,8 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Opens a file that is whole.
-    pub(super) fn open(path: &Path) -> Result<Layout, OpenBagError> {
-        let mut layout = Layout::begin(path)?;
-        let truncated = || OpenBagError::Truncated {
-            path: path.to_owned(),
-        };
-        let footer = layout.footer()?.ok_or_else(truncated)?;
-        layout.closed = true;
-        if footer.summary_start != 0 {
-            layout.read_summary(&footer)?;
-            if layout.is_indexed() {
-                layout.blocks.sort_by_key(|block| block.offset);
-                return Ok(layout);
-            }
-        }
-        // Closed, but without an index that could be used.
-        let layout = scan(Layout::begin(path)?)?;
-        match layout.faults.first() {
-            Some(fault) => Err(layout.damaged(fault.clone())),
-            None => Ok(layout),
-        }
-    }
-
-    /// Opens a file as far as it can be read; reads all of it once.
-    pub(super) fn salvage(path: &Path) -> Result<Layout, OpenBagError> {
-        let mut layout = match Layout::open(path) {
-            Err(OpenBagError::Truncated { .. } | OpenBagError::Damaged { .. }) => {
-                return scan(Layout::begin(path)?);
-            }
-            opened => opened?,
-        };
-        let broken = layout.check_data()?;
-        layout.faults.extend(broken);
-        Ok(layout)
-    }
-
-    /// Compares the data section with its checksum, if it has one.
-    fn check_data(&self) -> Result<Option<Fault>, OpenBagError> {
-        let Some(footer) = self.footer()? else {
-            return Ok(None);
-        };
-        let summary = match footer.summary_start {
-            0 => self.length - TAIL,
-            start => start,
-        };
-        let Some(end) = summary.checked_sub(DATA_END) else {
-            return Ok(None);
-        };
-        let record = self.bytes(end, DATA_END)?;
-        let expected = match parse(op::DATA_END, &record[FRAME..]) {
-            Ok(Record::DataEnd(end)) if frame(&record) == Some((op::DATA_END, 4)) => {
-                end.data_section_crc
-            }
-            _ => 0,
-        };
-        // Some writers count the magic number, some do not.
-        let intact = expected == 0
-            || self.checksum(0, end)? == expected
-            || self.checksum(MAGIC.len() as u64, end)? == expected;
-        Ok((!intact).then(|| Fault {
-            offset: end,
-            reason: "the checksum of all data is wrong".to_owned(),
-        }))
-    }
-
     /// Checksum of the bytes from `start` to `end`.
-    fn checksum(&self, start: u64, end: u64) -> Result<u32, OpenBagError> {
+    pub(super) fn checksum(&self, start: u64, end: u64) -> Result<u32, OpenBagError> {
         const PIECE: u64 = 1 << 20;
         let mut hasher = crc32fast::Hasher::new();
         for offset in (start..end).step_by(PIECE as usize) {
@@ -124,7 +55,7 @@ impl Layout {
     }
 
     /// Opens a file that begins as an MCAP file.
-    fn begin(path: &Path) -> Result<Layout, OpenBagError> {
+    pub(super) fn begin(path: &Path) -> Result<Layout, OpenBagError> {
         let owned = || path.to_owned();
         let io_error = |error: io::Error| match error.kind() {
             io::ErrorKind::NotFound => OpenBagError::Missing { path: owned() },
@@ -174,7 +105,8 @@ impl Layout {
         }
     }
 
-    fn read_summary(&mut self, footer: &Footer) -> Result<(), OpenBagError> {
+    /// Takes in what the summary that `footer` tells of says.
+    pub(super) fn read_summary(&mut self, footer: &Footer) -> Result<(), OpenBagError> {
         let end = self.length - TAIL;
         let offset = footer.summary_start;
         let fault = |reason: String| Fault { offset, reason };
@@ -230,7 +162,7 @@ impl Layout {
     }
 
     /// Whether the summary says where all messages are and what they are.
-    fn is_indexed(&self) -> bool {
+    pub(super) fn is_indexed(&self) -> bool {
         let Some(statistics) = &self.statistics else {
             return false;
         };
@@ -285,7 +217,7 @@ impl Layout {
         }
     }
 
-    fn damaged(&self, fault: Fault) -> OpenBagError {
+    pub(super) fn damaged(&self, fault: Fault) -> OpenBagError {
         OpenBagError::Damaged {
             path: self.path.clone(),
             offset: fault.offset,

@@ -7,7 +7,7 @@ use ferntast_msgs::{Message, Time};
 use super::{
     cursor::{Cursor, Found},
     error::ReadMessageError,
-    reader::{BagTopic, time},
+    topic::{BagTopic, time},
 };
 use crate::{cdr, error::DecodeError};
 

@@ -7,7 +7,7 @@ use ferntast_msgs::{
     topics::{Topic, TopicName},
 };
 
-use super::{bus::SharedWriter, error::WriteBagError, writer::ChannelId};
+use super::{error::WriteBagError, shared::SharedWriter, writer::ChannelId};
 use crate::error::PublishError;
 
 /// Sends on one topic of a recording. It keeps the recording open.

@@ -8,9 +8,9 @@ use ferntast_msgs::{
 };
 
 use super::{
-    bus::Reading,
     error::SelectTopicError,
     messages::{RawMessage, RawMessages},
+    shared::Reading,
 };
 use crate::{
     cdr,

@@ -20,6 +20,7 @@ use super::{
     metadata::{BagMetadata, METADATA_FILE, TopicEntry, join_bounds},
     options::{BagOptions, BagSummary, TopicCount},
     qos::{QosProfile, to_yaml},
+    rosbag2_record::{custom_data, finish_file, rosbag2_record},
 };
 use crate::cdr;
 
@@ -348,44 +349,6 @@ fn cannot_begin(path: &Path, error: &WriteBagError) -> CreateBagError {
         path: path.to_owned(),
         reason: error.to_string(),
     }
-}
-
-/// Writes what `metadata` says of the file into it, and closes it; gives its bytes.
-pub(super) fn finish_file(
-    file: &mut FileWriter,
-    metadata: &BagMetadata,
-) -> Result<u64, FinishBagError> {
-    file.metadata(&rosbag2_record(metadata))
-        .and_then(|()| file.finish())
-        .map_err(|source| FinishBagError::File {
-            path: file.path().to_owned(),
-            source,
-        })
-}
-
-/// rosbag2's own record inside the MCAP file.
-pub(super) fn rosbag2_record(metadata: &BagMetadata) -> Metadata {
-    Metadata {
-        name: ROSBAG2_RECORD.to_owned(),
-        metadata: BTreeMap::from([("serialized_metadata".to_owned(), metadata.to_yaml())]),
-    }
-}
-
-/// The name of that record.
-pub(super) const ROSBAG2_RECORD: &str = "rosbag2";
-
-/// Metadata records in one map, `name.key`.
-pub(super) fn custom_data(
-    records: &BTreeMap<String, BTreeMap<String, String>>,
-) -> BTreeMap<String, String> {
-    records
-        .iter()
-        .flat_map(|(name, entries)| {
-            entries
-                .iter()
-                .map(move |(key, value)| (format!("{name}.{key}"), value.clone()))
-        })
-        .collect()
 }
 
 /// Writes `metadata.yaml` whole or not at all.

@@ -80,7 +80,7 @@ impl Live<'_> {
         self.keep(&rest)?;
         match json {
             true => print_json_line(&json!({"event": "end", "days": rest}))?,
-            false => terminal::tell(&fleet.told(super::watch::STANDING)),
+            false => terminal::tell(&fleet.told(terminal::STANDING)),
         }
         Ok(ExitCode::SUCCESS)
     }
@@ -155,9 +155,9 @@ fn judge(
             continue;
         }
         match json {
-            true => print_json_line(
-                &json!({"event": "day", "fleet": fleet.told(super::watch::STANDING)}),
-            )?,
+            true => {
+                print_json_line(&json!({"event": "day", "fleet": fleet.told(terminal::STANDING)}))?
+            }
             false => println!(
                 "a day of {} joints was judged, {} named",
                 own.len(),

@@ -5,6 +5,9 @@ use ferntast_fleet::{
     ageing::{Kind, Standing},
 };
 
+/// Parameters that are told though nothing is named.
+pub const STANDING: usize = 10;
+
 /// Tells how the fleet is.
 pub fn tell(told: &Told) {
     let (Some(from), Some(to)) = (&told.from, &told.to) else {

@@ -59,9 +59,6 @@ pub struct Arguments {
     least_step: f64,
 }
 
-/// Parameters that are told though nothing is named.
-pub(super) const STANDING: usize = 10;
-
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     let settings = settings(arguments)?;
@@ -74,7 +71,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     if arguments.router.is_empty() && arguments.listen.is_none() {
         let mut fleet = Fleet::new(settings);
         fleet.days(&days(&known)).map_err(Failure::refused)?;
-        let told = fleet.told(STANDING);
+        let told = fleet.told(terminal::STANDING);
         match json {
             true => print_json(&told)?,
             false => terminal::tell(&told),

@@ -1,7 +1,9 @@
 //! The forms of equation (5): how motion and joint torques tell the torque of the
 //! contact, Jᵀ F.
 
-use super::{DerivativeFilter, links::Links, observer::MomentumObserver};
+use super::{
+    DerivativeFilter, filtered_motion::FilteredMotion, links::Links, observer::MomentumObserver,
+};
 use ferntast_model::{JointCount, Joints};
 use serde::{Deserialize, Serialize};
 
@@ -19,19 +21,6 @@ pub enum Form {
     /// As direct, with joint torques by the motors' currents in place of torque sensors:
     /// see [`TorqueByMotorCurrent`](super::TorqueByMotorCurrent).
     MotorCurrent,
-}
-
-/// Filtered motion of the links, all as late as the torque of the contact.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FilteredMotion {
-    /// q \[rad\].
-    pub(super) position: Joints<f64>,
-    /// q̇ \[rad/s\].
-    pub(super) velocity: Joints<f64>,
-    /// q̇ as it should be by now \[rad/s\]: predicted over the delay, and noisier.
-    pub(super) present_velocity: Joints<f64>,
-    /// Jᵀ F \[Nm\].
-    pub(super) contact_torque: Joints<f64>,
 }
 
 /// Link positions and joint torques of all joints, filtered alike.

@@ -1,7 +1,8 @@
 //! From measurements to the torque of the contact: the part of the estimator that does not
 //! depend on how an arm is made.
 
-use super::form::{FilteredMotion, TorqueOfContact};
+use super::filtered_motion::FilteredMotion;
+use super::form::TorqueOfContact;
 use super::links::Links;
 use super::sensors::{SensorState, SensorWatch};
 use super::{EstimatorParameters, Form, JointMeasurement};

@@ -18,6 +18,7 @@ mod calibration;
 mod coefficient;
 mod estimate;
 mod filter;
+mod filtered_motion;
 mod form;
 mod intake;
 mod links;

@@ -10,7 +10,7 @@
 //! Haddadin, Hirzinger: Collision Detection and Safe Reaction with the
 //! DLR-III Lightweight Manipulator Arm, IROS 2006).
 
-use super::form::FilteredMotion;
+use super::filtered_motion::FilteredMotion;
 use super::links::Links;
 use ferntast_model::{JointCount, Joints};
 use std::f64::consts::TAU;

@@ -1,6 +1,5 @@
 //! Every effect that the model lacks, tried on the same rows.
 
-use super::equivalents::SUSPECT_MAX_P_VALUE;
 use crate::design::{Design, PreparedModel};
 use crate::effects::{self, BoundTerm, EffectHandle, Row};
 use crate::shape_search::{self, Search, periodicity};
@@ -13,6 +12,8 @@ const MAX_DISAGREEMENT_P_VALUE: f64 = 0.005;
 /// Fewest sessions of which one test of the variation between them is enough.
 const MIN_SESSIONS_ALONE: usize = 4;
 
+/// Largest p-value of an effect that is suspect.
+pub(super) const SUSPECT_MAX_P_VALUE: f64 = 0.1;
 /// Smallest share of the mean square that a named effect explains.
 pub(super) const MIN_SHARE: f64 = 0.01;
 /// Share of the mean square that an effect has to explain on a part of very many rows to be

@@ -2,7 +2,7 @@
 
 use ferntast_model::friction::Proposal;
 
-use super::candidates::Candidate;
+use super::candidates::{Candidate, SUSPECT_MAX_P_VALUE};
 use crate::design::{Design, PreparedModel, columns};
 use crate::numerics::statistics::mean_error;
 
@@ -12,10 +12,8 @@ const MAX_GAIN_DIFFERENCE: f64 = 2.0;
 const MIN_GAIN_RATIO: f64 = 0.85;
 /// … and largest ratio of the mean squares that they leave.
 const MAX_REMAINDER_RATIO: f64 = 1.05;
-/// Smallest share of the mean square that a suspect explains …
+/// Smallest share of the mean square that a suspect explains.
 const SUSPECT_MIN_SHARE: f64 = 0.2;
-/// … and its largest p-value.
-pub(super) const SUSPECT_MAX_P_VALUE: f64 = 0.1;
 /// A suspect is equivalent to the best if the ratio of their gains is above this …
 const SUSPECT_MIN_GAIN_RATIO: f64 = 0.5;
 /// … and the gains differ by fewer standard errors than this: 5 % with the five

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 
 use super::dictionary::bounds;
 use super::rows::{Rows, dot, extend_basis, square, take_out};
-use super::search::State;
+use super::state::State;
 use super::term::{At, Term, constant, constants, set};
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::jackknife_covariance;

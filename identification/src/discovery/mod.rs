@@ -20,6 +20,7 @@ mod rows;
 mod search;
 mod shape;
 mod significance;
+mod state;
 mod term;
 
 use crate::data::error::PrepareError;

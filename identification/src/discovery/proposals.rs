@@ -9,7 +9,8 @@ use super::constants::errors;
 use super::map::draw;
 use super::results::Formula;
 use super::rows::{Kind, Rows};
-use super::search::{SIGNIFICANCE, State};
+use super::search::SIGNIFICANCE;
+use super::state::State;
 use super::term::{
     Signal, Term as FormulaTerm, coefficient_names, constant, constant_names, constants, rounded,
     set, text,

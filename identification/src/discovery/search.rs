@@ -5,6 +5,7 @@ use super::constants::polish;
 use super::dictionary::{Dictionary, factors_in_products};
 use super::rows::{Rows, dot, extend_basis, square, take_out};
 use super::significance::Chance;
+use super::state::State;
 use super::term::Term;
 
 /// Largest p-value of a term.
@@ -24,62 +25,6 @@ const OF_SAME_SIGNALS: usize = 3;
 const MIN_OWN_SHARE: f64 = 0.02;
 /// Terms that gain less than this share of what the best gains are not tried.
 const MIN_SHARE_OF_BEST: f64 = 0.3;
-
-/// Terms, and what they leave of the residual.
-#[derive(Clone)]
-pub(super) struct State {
-    pub(super) terms: Vec<Term>,
-    /// What is left \[Nm\], row by row.
-    residual: Vec<f64>,
-    /// Orthonormal columns of the terms.
-    basis: Vec<Vec<f64>>,
-    /// Sum of squares that is left \[Nm²\].
-    pub(super) error: f64,
-    /// Of the least certain of its terms, for all that was searched.
-    pub(super) p_value: f64,
-}
-
-impl State {
-    /// No term yet.
-    fn empty(rows: &Rows) -> Self {
-        Self {
-            terms: Vec::new(),
-            residual: rows.residual.clone(),
-            basis: Vec::new(),
-            error: square(&rows.residual),
-            p_value: 0.0,
-        }
-    }
-
-    /// With these terms; `None` where one of them is nothing here.
-    pub(super) fn of(rows: &Rows, terms: Vec<Term>, p_value: f64) -> Option<Self> {
-        let mut basis = Vec::new();
-        for term in &terms {
-            extend_basis(&mut basis, rows.column_of(term)?);
-        }
-        let mut residual = rows.residual.clone();
-        take_out(&basis, &mut residual);
-        let error = square(&residual);
-        (basis.len() == terms.len() && error.is_finite()).then_some(Self {
-            terms,
-            residual,
-            basis,
-            error,
-            p_value,
-        })
-    }
-
-    pub(super) fn complexity(&self) -> usize {
-        self.terms.iter().map(Term::complexity).sum::<usize>() + self.terms.len() - 1
-    }
-
-    /// Signals and functions of all terms.
-    pub(super) fn structure(&self) -> Vec<(bool, Vec<(usize, super::shape::Shape)>)> {
-        let mut all: Vec<_> = self.terms.iter().map(Term::structure).collect();
-        all.sort_unstable();
-        all
-    }
-}
 
 /// What every term of the dictionary gains beside the terms of `state`, and what
 /// chance gains there.

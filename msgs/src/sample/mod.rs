@@ -2,7 +2,6 @@
 
 mod checks;
 mod codes;
-mod every;
 mod fault;
 mod frame;
 mod health;
@@ -20,7 +19,6 @@ mod wrench;
 
 pub use crate::layout::{Field, Flag, Identity, Plain, Rule, Sample};
 pub use codes::Named;
-pub use every::{SampleVisitor, visit};
 pub use fault::{Fault, Faults};
 pub use frame::Frame;
 pub use health::{HealthSample, Level};

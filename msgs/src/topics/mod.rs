@@ -16,11 +16,12 @@ pub use topic::{Authority, COMMANDS_SETTING, Delivery, EVENT_QUEUE, Row, Switch,
 use crate::{
     Message,
     sample::{
-        AuthoritySample, CommandStatusSample, ContactStateSample, FrictionCommandSample,
-        FrictionStatusSample, HealthSample, JointNames, JointSample, LawCommandSample,
-        LinkCommandSample, LinkPeerSample, LinkStatusSample, OperatingStateSample, PoseSample,
-        RecorderCommandSample, RecorderStatusSample, RobotDescriptionSample, StateCommandSample,
-        TemperatureSample, TransformsSample, TwinParametersSample, WrenchSample,
+        AuthoritySample, CommandStatusSample, ContactStateSample, ControllerCommandSample,
+        FrictionCommandSample, FrictionStatusSample, HealthSample, JointNames, JointSample,
+        LawCommandSample, LinkCommandSample, LinkPeerSample, LinkStatusSample,
+        OperatingStateSample, PoseSample, RecorderCommandSample, RecorderStatusSample,
+        RobotDescriptionSample, RobotJointsSample, StateCommandSample, TemperatureSample,
+        TransformsSample, TwinParametersSample, WrenchSample,
     },
 };
 
@@ -31,11 +32,20 @@ pub trait Visitor {
     fn topic<M: Message>(&mut self, topic: Topic<M>);
 }
 
+/// Something to be done with every sample that a topic can carry.
+pub trait SampleVisitor {
+    /// Called once a row of the table, so more than once for most samples.
+    fn sample<M: Message>(&mut self);
+}
+
 macro_rules! topics {
-    ($(
-        $(#[$doc:meta])*
-        $constant:ident: $kind:ident<$sample:ty> = $name:literal, $delivery:ident, from($($publisher:ident)*), $authority:ident $(($switch:ident))?;
-    )*) => {
+    (
+        elsewhere($($other:ty),*);
+        $(
+            $(#[$doc:meta])*
+            $constant:ident: $kind:ident<$sample:ty> = $name:literal, $delivery:ident, from($($publisher:ident)*), $authority:ident $(($switch:ident))?;
+        )*
+    ) => {
         $($(#[$doc])* pub const $constant: $kind<$sample> = $kind::of_table(
             $name,
             Delivery::$delivery,
@@ -58,10 +68,18 @@ macro_rules! topics {
             })*
             Ok(())
         }
+
+        /// Calls `visitor` for the sample of every row, and for those of topics that only
+        /// other people's robots have.
+        pub fn visit_samples(visitor: &mut impl SampleVisitor) {
+            $(visitor.sample::<$sample>();)*
+            $(visitor.sample::<$other>();)*
+        }
     };
 }
 
 topics! {
+    elsewhere(RobotJointsSample, ControllerCommandSample);
     /// Motor position on the joint side \[rad\], velocity \[rad/s\], joint torque sensor \[Nm\].
     FOLLOWER_MEASURED_JS: Topic<JointSample> = "/follower/measured_js", Stream, from(arm), Never;
     /// Motor position \[rad\]; effort is the motor torque from the current, joint side \[Nm\],
