@@ -28,6 +28,7 @@ pub mod zenoh_ros;
 pub use self::mcap::McapBus;
 pub use bus::{Bus, Publisher, Subscriber};
 pub use dds::{DdsBus, DdsConfig};
+pub use ends::{Receives, Sends};
 pub use error::{
     CleanUpError, CreateError, DecodeError, EncodeError, OpenError, PublishError, RawPublishError,
     SendError,
