@@ -1,8 +1,8 @@
 //! The ends of a topic on the ways across that bring middleware with them.
 //!
 //! What a middleware is to a message is a lot of code. It is compiled here, once a message
-//! ([`topics::visit_samples`]), and used through [`Sends`] and [`Receives`]; else every crate that opens
-//! a topic would compile all of it again.
+//! ([`topics::visit_samples`]), and used through [`Sends`] and [`Receives`]; else every crate
+//! that opens a topic would compile all of it again.
 
 use std::{any::Any, fmt};
 

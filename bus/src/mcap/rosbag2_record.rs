@@ -1,4 +1,5 @@
-//! rosbag2's own record, which closes a file: what is in it, once more.
+//! rosbag2's own record in an MCAP file: what `metadata.yaml` says, of that file alone. It
+//! begins the file, without counts, and ends it.
 
 use std::collections::BTreeMap;
 
