@@ -17,6 +17,7 @@ the share done, 0 … 1. What is refused raises `RefusedError` with the lab's te
 from ferntast._native import FailedError, FerntastError, RefusedError
 from ferntast.experiment import Experiment
 from ferntast.lab import add, auto, challenge, compare, diagnose, discover, effects, export
+from ferntast.record import Record
 from ferntast.results import (
     Added,
     Automatic,
@@ -24,7 +25,6 @@ from ferntast.results import (
     Diagnosis,
     Discovery,
     Lockstep,
-    Record,
     Sweep,
 )
 from ferntast.virtual_time import lockstep, sweep

@@ -9,7 +9,8 @@ from typing import Any
 
 from ferntast import _native
 from ferntast.experiment import Experiment, PathLike
-from ferntast.results import Added, Automatic, Comparison, Diagnosis, Discovery, Record
+from ferntast.record import Record
+from ferntast.results import Added, Automatic, Comparison, Diagnosis, Discovery
 
 Progress = Callable[[float], object] | None
 

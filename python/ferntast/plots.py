@@ -9,7 +9,7 @@ from ferntast._native import RefusedError
 if TYPE_CHECKING:
     import matplotlib.figure
 
-    from ferntast.results import Automatic, Comparison, Diagnosis, Discovery, Sweep
+    from ferntast.record import Record
 
 
 def _subplots(rows: int, columns: int, **how: Any) -> tuple[matplotlib.figure.Figure, Any]:
@@ -21,7 +21,7 @@ def _subplots(rows: int, columns: int, **how: Any) -> tuple[matplotlib.figure.Fi
     return figure, figure.subplots(rows, columns, squeeze=False, **how)
 
 
-def comparison(result: Comparison) -> matplotlib.figure.Figure:
+def comparison(result: Record) -> matplotlib.figure.Figure:
     """Measured and modelled torque and residual of every session; residual maps below."""
     series = [own.to_dict() for own in result.series]
     maps = [own.to_dict() for own in result.residual_maps]
@@ -56,7 +56,7 @@ def comparison(result: Comparison) -> matplotlib.figure.Figure:
     return figure
 
 
-def diagnosis(result: Diagnosis) -> matplotlib.figure.Figure:
+def diagnosis(result: Record) -> matplotlib.figure.Figure:
     """The error held out, as it is and with each candidate."""
     figure, axes = _subplots(1, 1)
     rows = [("as it is", result.rms.held_out)]
@@ -68,7 +68,7 @@ def diagnosis(result: Diagnosis) -> matplotlib.figure.Figure:
     return figure
 
 
-def discovery(result: Discovery) -> matplotlib.figure.Figure:
+def discovery(result: Record) -> matplotlib.figure.Figure:
     """Each formula beside what was measured: curves over one signal, maps over two."""
     formulas = result.to_dict()["formulas"]
     figure, axes = _subplots(max(1, len(formulas)), 2)
@@ -102,7 +102,7 @@ def discovery(result: Discovery) -> matplotlib.figure.Figure:
     return figure
 
 
-def automatic(result: Automatic) -> matplotlib.figure.Figure:
+def automatic(result: Record) -> matplotlib.figure.Figure:
     """The error held out, falling step by step."""
     figure, axes = _subplots(1, 1)
     steps = result.steps
@@ -114,7 +114,7 @@ def automatic(result: Automatic) -> matplotlib.figure.Figure:
     return figure
 
 
-def sweep(result: Sweep) -> matplotlib.figure.Figure:
+def sweep(result: Record) -> matplotlib.figure.Figure:
     """The share of trials that is stable, by law over the round trip."""
     figure, axes = _subplots(1, 1)
     counts: dict[str, dict[float, list[bool]]] = {}

@@ -2,59 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
+
+from ferntast import plots
+from ferntast.record import Record, wrapped
 
 if TYPE_CHECKING:
     import matplotlib.figure
     import pandas
 
     from ferntast.experiment import Experiment
-
-
-class Record:
-    """Fields by name, as attributes or by `record["name"]`; `to_dict()` has them all."""
-
-    def __init__(self, fields: dict[str, Any]) -> None:
-        self._fields = fields
-
-    def __getattr__(self, name: str) -> Any:
-        fields = self.__dict__.get("_fields", {})
-        if name not in fields:
-            raise AttributeError(f"{type(self).__name__} has no {name!r}: {', '.join(fields)}")
-        return _wrapped(fields[name])
-
-    def __getitem__(self, name: str) -> Any:
-        return _wrapped(self._fields[name])
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._fields)
-
-    def __len__(self) -> int:
-        return len(self._fields)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._fields
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._fields]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Record) and self._fields == other._fields
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        fields = ", ".join(f"{name}={_short(value)}" for name, value in self._fields.items())
-        return f"{type(self).__name__}({fields})"
-
-    def keys(self) -> list[str]:
-        """Names of the fields."""
-        return list(self._fields)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain dictionaries and lists, as in JSON."""
-        return self._fields
 
 
 class _Answer(Record):
@@ -99,7 +56,7 @@ class Comparison(_Answer):
     def from_answer(cls, answer: dict[str, Any], _experiment: Experiment) -> Comparison:
         """From what the compiled part says."""
         found = cls(answer["result"], answer["title"], answer["notes"])
-        found.series = _wrapped(answer["series"])
+        found.series = wrapped(answer["series"])
         return found
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -108,8 +65,6 @@ class Comparison(_Answer):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Measured and modelled torque over time, the residual, and where it is large."""
-        from ferntast import plots
-
         return plots.comparison(self)
 
 
@@ -144,8 +99,6 @@ class Diagnosis(_Answer):
 
     def plot(self) -> matplotlib.figure.Figure:
         """The error held out, as it is and with each candidate."""
-        from ferntast import plots
-
         return plots.diagnosis(self)
 
 
@@ -180,8 +133,6 @@ class Discovery(_Answer):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Each formula beside what was measured, over its signals."""
-        from ferntast import plots
-
         return plots.discovery(self)
 
 
@@ -233,8 +184,6 @@ class Automatic(_Answer):
 
     def plot(self) -> matplotlib.figure.Figure:
         """The error held out, falling step by step."""
-        from ferntast import plots
-
         return plots.automatic(self)
 
 
@@ -276,22 +225,7 @@ class Sweep(Record):
 
     def plot(self) -> matplotlib.figure.Figure:
         """The share of trials that is stable, by law over the round trip."""
-        from ferntast import plots
-
         return plots.sweep(self)
-
-
-def _wrapped(value: Any) -> Any:
-    if isinstance(value, dict):
-        return Record(value)
-    if isinstance(value, list) and value and isinstance(value[0], (dict, list)):
-        return [_wrapped(own) for own in value]
-    return value
-
-
-def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}…"
 
 
 def _parameters(parameters: dict[str, Any]) -> pandas.DataFrame:

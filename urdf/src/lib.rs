@@ -18,6 +18,7 @@ mod arm;
 mod document;
 pub mod edit;
 mod error;
+mod looks;
 mod robot;
 mod solid;
 

@@ -1,26 +1,12 @@
 //! The model of one series, followed from day to day by a Kalman filter.
 //!
-//! y = level + slope w + curvature w² + wander + e, w the temperature; the level moves by
-//! the drift and a random walk, the wander fades as an autoregression of first order.
+//! What is believed of it, and how that goes on from one day to the next: `states.rs`.
 
 use super::onsets::{Best, Onsets};
 use super::series::Observation;
 use super::spread::Spread;
+use super::states::{CURVATURE, Common, Innovation, SLOPE, States, moved, row};
 
-const STATES: usize = 5;
-const LEVEL: usize = 0;
-const DRIFT: usize = 1;
-const SLOPE: usize = 2;
-const CURVATURE: usize = 3;
-const WANDER: usize = 4;
-
-/// A value for each state.
-pub(super) type Vector = [f64; STATES];
-
-/// Variance of a level that nothing is known of: shares of the siblings' size are near 1.
-const UNKNOWN_LEVEL: f64 = 4.0;
-/// What is left of the wander after a day \[1\].
-const WANDER_KEEPS: f64 = 0.75;
 /// Innovations beyond so many standard deviations count as this.
 pub(super) const BOUND: f64 = 3.0;
 /// By so much at most a neighbouring day that was odd in the same direction moves the bound.
@@ -29,20 +15,6 @@ const MOST_MOVED: f64 = 12.0;
 const MOST_DIFFERENCE: f64 = 6.0;
 /// How many of n successive differences are worth as much as independent values.
 const WORTH: f64 = 2.0 / 3.0;
-
-/// How far a day's value is from what was expected.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Innovation {
-    pub residual: f64,
-    pub variance: f64,
-}
-
-/// What the siblings did together on a day, and its variance.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Common {
-    pub value: f64,
-    pub variance: f64,
-}
 
 /// The filter. A single odd day is bounded; one among others that were as odd in the same
 /// direction is none. That is known a day later: the newest day is learnt provisionally, and
@@ -136,80 +108,6 @@ impl Filter {
     }
 }
 
-impl Innovation {
-    fn without(self, common: Common) -> Innovation {
-        Innovation {
-            residual: self.residual - common.value,
-            variance: (self.variance + common.variance).max(1e-18),
-        }
-    }
-
-    fn standard(self) -> f64 {
-        self.residual / self.variance.sqrt()
-    }
-}
-
-/// What is believed of the states.
-#[derive(Clone, Debug)]
-struct States {
-    mean: Vector,
-    covariance: [Vector; STATES],
-    day: Option<i64>,
-}
-
-/// What is left of the wander after a number of days \[1\].
-fn kept(days: f64) -> f64 {
-    // Nearly every step is one of a day, and a power costs as much as the rest of it.
-    if days == 1.0 {
-        WANDER_KEEPS
-    } else {
-        WANDER_KEEPS.powf(days)
-    }
-}
-
-/// Moves states on by a number of days.
-fn moved(days: f64) -> impl Fn(&mut Vector) {
-    let keeps = kept(days);
-    move |states: &mut Vector| {
-        states[LEVEL] += days * states[DRIFT];
-        states[WANDER] *= keeps;
-    }
-}
-
-impl States {
-    fn predict(&mut self, day: i64, spread: &Spread) -> f64 {
-        let days = self.day.map_or(0, |own| (day - own).max(0)) as f64;
-        self.day = Some(day);
-        if days == 0.0 {
-            return days;
-        }
-        let keeps = kept(days);
-        let moved = moved(days);
-        moved(&mut self.mean);
-        // F P Fᵀ: rows, then columns.
-        self.covariance.iter_mut().for_each(&moved);
-        for column in 0..STATES {
-            self.covariance[LEVEL][column] += days * self.covariance[DRIFT][column];
-            self.covariance[WANDER][column] *= keeps;
-        }
-        self.covariance[LEVEL][LEVEL] += days * spread.walk;
-        self.covariance[WANDER][WANDER] += (1.0 - keeps * keeps) * spread.wander;
-        days
-    }
-
-    fn innovation(&self, own: &Observation, spread: &Spread) -> Innovation {
-        let h = row(own.warmth);
-        Innovation {
-            residual: own.value - dot(&h, &self.mean),
-            variance: dot(&h, &self.times(&h)) + spread.noise_of(own.std_error),
-        }
-    }
-
-    fn times(&self, h: &Vector) -> Vector {
-        self.covariance.map(|row| dot(&row, h))
-    }
-}
-
 /// The filter with what it says of noise and changes.
 #[derive(Clone, Debug)]
 struct Core {
@@ -226,21 +124,8 @@ struct Core {
 
 impl Core {
     fn new(spread: &Spread, onsets: bool) -> Core {
-        let mut covariance = [[0.0; STATES]; STATES];
-        covariance[LEVEL][LEVEL] = UNKNOWN_LEVEL;
-        covariance[DRIFT][DRIFT] = spread.drift;
-        covariance[SLOPE][SLOPE] = spread.slope;
-        covariance[CURVATURE][CURVATURE] = spread.curvature;
-        covariance[WANDER][WANDER] = spread.wander;
-        let mut mean = [0.0; STATES];
-        mean[SLOPE] = spread.mean_slope;
-        mean[CURVATURE] = spread.mean_curvature;
         Core {
-            states: States {
-                mean,
-                covariance,
-                day: None,
-            },
+            states: States::new(spread),
             seen: 0,
             before: None,
             differences: 0.0,
@@ -312,23 +197,9 @@ impl Core {
     }
 
     fn restart(&mut self) {
-        self.states.covariance[LEVEL][LEVEL] += UNKNOWN_LEVEL;
+        self.states.forget_level();
         self.seen = 0;
         self.before = None;
         self.onsets.clear();
     }
-}
-
-/// What an observation at that warmth sees of the states.
-fn row(warmth: f64) -> Vector {
-    let mut h = [0.0; STATES];
-    h[LEVEL] = 1.0;
-    h[SLOPE] = warmth;
-    h[CURVATURE] = warmth * warmth;
-    h[WANDER] = 1.0;
-    h
-}
-
-pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }

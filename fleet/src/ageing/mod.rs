@@ -13,11 +13,14 @@
 //! ramp in place of their jump), on innovations bounded as Huber's.
 
 mod filter;
+mod fit;
 mod group;
 mod location;
 mod onsets;
+mod pass;
 mod series;
 mod spread;
+mod states;
 #[cfg(test)]
 mod tests;
 mod threshold;

@@ -3,7 +3,7 @@
 //! A step is what another load or a repair does: a ramp counts as far as it explains more
 //! than the best step.
 
-use super::filter::{Vector, dot};
+use super::states::{Vector, dot};
 
 /// Days back on which every onset is tried \[d\].
 const RECENT: i64 = 30;

@@ -3,9 +3,10 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-use super::filter::{Common, Filter};
+use super::filter::Filter;
 use super::series::Observation;
 use super::spread::Spread;
+use super::states::Common;
 use super::threshold::false_alarms;
 
 fn normal(draws: &mut ChaCha8Rng) -> f64 {

@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::comparison::{fit, name_partner, of_arm};
-use super::data::{ArmDataset, ArmError, ArmSpec, ArmTerm};
+use super::data::ArmDataset;
+use super::error::ArmError;
 use super::prepared::PreparedArm;
-use super::shared::{self, weighted_decrease};
+use super::shared::weighted_decrease;
+use super::spec::ArmSpec;
+use super::term::ArmTerm;
 use super::trial::weights_of;
 use crate::fit::Parameter;
 use crate::validation::left_out::Decrease;
@@ -114,11 +117,8 @@ pub(super) fn parameters(arm: &PreparedArm<'_>) -> (BTreeMap<String, Parameter>,
 impl PreparedArm<'_> {
     /// The same model on the rows of `other`, which is bound to the same recordings.
     pub(super) fn on_rows_of(mut self, other: &Self) -> Self {
-        for (own, theirs) in self.joints.iter_mut().zip(&other.joints) {
-            own.prepared = own.prepared.clone().on_rows_of(&theirs.prepared);
-            own.design = crate::design::Design::new(&own.prepared);
-            own.held_out = shared::held_out(own);
-        }
+        let each = self.joints.into_iter().zip(&other.joints);
+        self.joints = each.map(|(own, theirs)| own.on_rows_of(theirs)).collect();
         self
     }
 }

@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::data::{ArmDataset, ArmError, ArmSession, ArmSpec};
-use super::prepared::{ArmJoint, PreparedArm};
-use super::shared::{self, ArmColumns, SharedFit, weighted};
+use super::data::{ArmDataset, ArmSession};
+use super::error::ArmError;
+use super::joint::ArmJoint;
+use super::prepared::PreparedArm;
+use super::shared::{self, SharedFit, weighted};
+use super::spec::ArmSpec;
 use super::trial::{self, weights_of};
 use crate::comparison::{Comparison, VariesTogether, compare_prepared};
 use crate::effects::{COUPLING, JointCoupling};
@@ -63,7 +66,7 @@ pub fn compare(dataset: &ArmDataset, spec: &ArmSpec) -> Result<ArmComparison, Ar
 
 /// The model as it is, its effects of the arm fitted anew without each fold.
 pub(super) fn fit(arm: &PreparedArm<'_>) -> SharedFit {
-    let columns = ArmColumns::new(arm, &arm.effects());
+    let columns = arm.columns(&arm.effects());
     shared::fit(&arm.joints, &columns, &arm.weights())
 }
 

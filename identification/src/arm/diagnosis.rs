@@ -11,10 +11,14 @@ use serde::Serialize;
 
 use super::comparison::{fit, name_partner, samples, used, varies_together};
 use super::contest::{Contender, Contest};
-use super::data::{ArmDataset, ArmError, ArmSpec, ArmTerm};
+use super::data::ArmDataset;
 use super::effects::ArmEffect;
-use super::prepared::{ArmJoint, PreparedArm};
+use super::error::ArmError;
+use super::joint::ArmJoint;
+use super::prepared::PreparedArm;
 use super::shared::{SharedFit, weighted, weighted_decrease};
+use super::spec::ArmSpec;
+use super::term::ArmTerm;
 use super::trial::{Tried, try_all, try_one};
 use crate::comparison::{Usage, VariesTogether, noise_floor::NoiseFloor};
 use crate::data::Term;

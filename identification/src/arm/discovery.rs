@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::data::{ArmDataset, ArmError, ArmSpec};
+use super::data::ArmDataset;
 use super::diagnosis::{ArmCandidate, ArmDependence, JointDiagnosis, diagnose};
+use super::error::ArmError;
 use super::prepared::PreparedArm;
+use super::spec::ArmSpec;
 use crate::diagnosis::Verdict;
 use crate::discovery::{self, Formula};
 use crate::fit::Rms;

@@ -3,9 +3,10 @@
 use ferntast_model::rigid_body::{LINK_PARAMETERS, Matrix3, Vector3};
 use nalgebra::{DMatrix, DVector};
 
-use super::data::{ArmError, ArmTerm};
+use super::error::ArmError;
 use super::motion::States;
 use super::rigid_body::RigidBody;
+use super::term::ArmTerm;
 use crate::data::Term;
 
 /// An effect of the arm. Its coefficients enter τ nonlinearly only to second order: it is

@@ -17,23 +17,31 @@ mod data;
 mod diagnosis;
 mod discovery;
 mod effects;
+mod error;
+mod joint;
 mod motion;
 mod parts;
 mod possible;
 mod prepared;
 mod rigid_body;
 mod shared;
+mod spec;
+mod term;
 #[cfg(test)]
 mod tests;
 mod trial;
 
 pub use addition::{ArmAddition, add};
 pub use comparison::{ArmComparison, compare};
-pub use data::{ArmDataset, ArmError, ArmSession, ArmSpec, ArmTerm};
+pub use data::{ArmDataset, ArmSession};
 pub use diagnosis::{
     ArmCandidate, ArmDependence, ArmDiagnosis, ArmSuspect, JointDiagnosis, diagnose,
 };
 pub use discovery::{ArmDiscovery, ArmFormula, discover};
 pub use effects::ArmEffect;
+pub use error::ArmError;
+pub use joint::ArmJoint;
 pub use parts::{ArmParts, Body, take_apart};
-pub use prepared::{ArmJoint, PreparedArm};
+pub use prepared::PreparedArm;
+pub use spec::ArmSpec;
+pub use term::ArmTerm;

@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use ferntast_model::rigid_body::{LinkInertia, Vector3};
 
 use super::comparison::{name_partner, of_arm};
-use super::data::{ArmDataset, ArmError, ArmSpec};
+use super::data::ArmDataset;
 use super::effects::ArmEffect;
+use super::error::ArmError;
 use super::prepared::PreparedArm;
+use super::spec::ArmSpec;
 use crate::comparison::parts::{Parts, Refitted, Says};
 use crate::fit::Parameter;
 

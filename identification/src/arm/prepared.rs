@@ -6,43 +6,28 @@ use std::collections::BTreeMap;
 use ferntast_model::rigid_body::LinkInertia;
 use nalgebra::{DMatrix, DVector};
 
-use super::data::{ArmDataset, ArmError, ArmSpec, ArmTerm};
+use super::data::ArmDataset;
 use super::effects::ArmEffect;
+use super::error::ArmError;
+use super::joint::ArmJoint;
 use super::motion::Motion;
 use super::possible::{nearest_link, nearest_payload};
 use super::rigid_body::RigidBody;
 use super::shared::{self, ArmColumns};
+use super::spec::ArmSpec;
+use super::term::ArmTerm;
 use crate::data::error::PrepareError;
 use crate::data::stated_filter::StatedFilter;
-use crate::data::{Dataset, ModelSpec, RecordedSession};
-use crate::design::{Design, PreparedModel};
+use crate::data::{Dataset, RecordedSession};
 use crate::effects::{LOAD_OF, POSITION_OF, VELOCITY_OF};
 use crate::numerics::gram::pseudo_inverse;
 use crate::preparation::prepare;
-use crate::validation::left_out::LeftOut;
 
 /// Fits of the effects of the arm, at most, …
 const MAX_FITS: usize = 5;
 /// … and none after one that moves no coefficient by this share of itself and of its
 /// standard error.
 const MIN_STEP: f64 = 0.01;
-
-/// One joint of an arm, as the pipeline takes it.
-pub struct ArmJoint {
-    /// Its name.
-    pub name: String,
-    /// Its recordings, with the torque of its links as the load and the other joints'
-    /// motions as extra signals.
-    pub dataset: Dataset,
-    /// Its model.
-    pub spec: ModelSpec,
-    /// Both put together.
-    pub prepared: PreparedModel,
-    /// The regression.
-    pub design: Design,
-    /// RMS on rows left out, with the coefficients of the arm as they are \[Nm\].
-    pub held_out: f64,
-}
 
 /// An effect of the arm that is in the model, with its coefficients.
 #[derive(Clone)]
@@ -129,15 +114,7 @@ impl<'a> PreparedArm<'a> {
                 source: Box::new(source),
             };
             let prepared = prepare(&dataset, &spec).map_err(refuse)?;
-            let design = Design::new(&prepared);
-            joints.push(ArmJoint {
-                name: name.clone(),
-                held_out: LeftOut::new(&prepared, &design).rms(),
-                dataset,
-                spec,
-                prepared,
-                design,
-            });
+            joints.push(ArmJoint::new(name.clone(), dataset, spec, prepared));
         }
         self.joints = joints;
         Ok(())
@@ -197,6 +174,12 @@ impl<'a> PreparedArm<'a> {
         free.map(|own| (own.effect, own.value.clone())).collect()
     }
 
+    /// Columns of `effects`, each linearised around coefficients.
+    pub(super) fn columns(&self, effects: &[(ArmEffect, Vec<f64>)]) -> ArmColumns {
+        let without = |effect| self.body_without(effect);
+        ArmColumns::new(&self.joints, &self.motion, effects, without)
+    }
+
     /// The effect as it is named in files.
     pub(super) fn term(&self, effect: ArmEffect) -> ArmTerm {
         effect.term(|at| self.joints.get(at).map(|joint| &joint.name))
@@ -214,7 +197,7 @@ impl<'a> PreparedArm<'a> {
         let before: Vec<(ArmEffect, Vec<f64>)> = (self.corrections.iter())
             .map(|own| (own.effect, own.value.clone()))
             .collect();
-        let columns = ArmColumns::new(self, &before);
+        let columns = self.columns(&before);
         let fitted = shared::fit(&self.joints, &columns, &self.weights());
         let mut at = 0;
         for own in &mut self.corrections {

@@ -7,7 +7,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::effects::ArmEffect;
-use super::prepared::{ArmJoint, PreparedArm};
+use super::joint::ArmJoint;
+use super::motion::Motion;
+use super::rigid_body::RigidBody;
 use crate::design::{BlockGrams, Design, SessionDesign};
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::jackknife_covariance;
@@ -28,23 +30,27 @@ pub(super) struct ArmColumns {
 }
 
 impl ArmColumns {
-    /// Of `effects`, each linearised around coefficients.
-    pub(super) fn new(arm: &PreparedArm<'_>, effects: &[(ArmEffect, Vec<f64>)]) -> Self {
+    /// Of `effects`, each linearised around coefficients; `without` is the arm's body without one.
+    pub(super) fn new<'a>(
+        joints: &[ArmJoint],
+        motion: &Motion,
+        effects: &[(ArmEffect, Vec<f64>)],
+        without: impl Fn(ArmEffect) -> RigidBody<'a>,
+    ) -> Self {
         let count = effects.iter().map(|(effect, _)| effect.columns()).sum();
-        let empty =
-            |sessions: usize| vec![vec![Vec::with_capacity(count); sessions]; arm.joints.len()];
-        let fitted = arm.motion.fitted;
+        let empty = |sessions: usize| vec![vec![Vec::with_capacity(count); sessions]; joints.len()];
+        let fitted = motion.fitted;
         let mut columns = Self {
             fitted: empty(fitted),
-            held_out: empty(arm.motion.states.len() - fitted),
+            held_out: empty(motion.states.len() - fitted),
             grams: Vec::new(),
             count,
         };
         for (effect, value) in effects {
-            let body = arm.body_without(*effect);
-            for (at, states) in arm.motion.states.iter().enumerate() {
+            let body = without(*effect);
+            for (at, states) in motion.states.iter().enumerate() {
                 let all = effect.derivatives(&body, value, states);
-                for (number, (joint, own)) in arm.joints.iter().zip(all).enumerate() {
+                for (number, (joint, own)) in joints.iter().zip(all).enumerate() {
                     let prepared = &joint.prepared;
                     let (signals, into) = match at.checked_sub(fitted) {
                         None => (prepared.sessions.get(at), &mut columns.fitted[number][at]),
@@ -59,7 +65,7 @@ impl ArmColumns {
                 }
             }
         }
-        columns.grams = (arm.joints.iter().zip(&columns.fitted))
+        columns.grams = (joints.iter().zip(&columns.fitted))
             .map(|(joint, own)| joint.design.with(own))
             .collect();
         columns
@@ -250,9 +256,4 @@ pub(super) fn weighted_decrease(each: &[Decrease], weights: &[f64]) -> Decrease 
         mean_square: mean(of(|own| own.mean_square)),
         std_error: error.sum::<f64>().sqrt() / sum,
     }
-}
-
-/// RMS of one joint on rows left out, with the coefficients of the arm as they are \[Nm\].
-pub(super) fn held_out(joint: &ArmJoint) -> f64 {
-    LeftOut::new(&joint.prepared, &joint.design).rms()
 }

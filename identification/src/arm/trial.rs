@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::effects::ArmEffect;
 use super::prepared::PreparedArm;
-use super::shared::{self, ArmColumns, SharedFit, weighted_decrease};
+use super::shared::{self, SharedFit, weighted_decrease};
 use crate::diagnosis::dependence::one_sided;
 use crate::fit::Parameter;
 use crate::validation::left_out::Decrease;
@@ -67,7 +67,7 @@ pub(super) fn try_one(
         ArmEffect::Payload | ArmEffect::BaseTilt => ROUNDS,
     };
     let mut weights: Vec<f64> = weights_of(&before.held_out());
-    let mut columns = ArmColumns::new(arm, &effects);
+    let mut columns = arm.columns(&effects);
     let mut fit = shared::fit(&arm.joints, &columns, &weights);
     let own = |fit: &SharedFit| fit.shared.rows(known, effect.columns()).into_owned();
     for _ in 1..rounds {
@@ -78,7 +78,7 @@ pub(super) fn try_one(
         }
         // Joints by what is left with the effect.
         weights = weights_of(&fit.held_out());
-        columns = ArmColumns::new(arm, &effects);
+        columns = arm.columns(&effects);
         fit = shared::fit(&arm.joints, &columns, &weights);
     }
     let folds = arm

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use super::{Lineage, reading::Join};
+use super::{
+    Lineage,
+    reading::{ColumnNames, Join},
+};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -93,23 +96,6 @@ impl Recordings {
                 paths.collect()
             }
         }
-    }
-}
-
-/// Names of all columns; of joined files a list each.
-#[derive(Debug, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected names of columns, [\"t\", \"q\", \"i\"], or of files that are joined a list of them each"
-)]
-pub(super) enum ColumnNames {
-    Same(Vec<String>),
-    Each(Vec<Vec<String>>),
-}
-
-impl Default for ColumnNames {
-    fn default() -> ColumnNames {
-        ColumnNames::Same(Vec::new())
     }
 }
 

@@ -9,7 +9,7 @@ use std::{collections::BTreeMap, path::Path};
 use ferntast_identification::{Inertia, JointType};
 use serde::{Deserialize, Serialize};
 
-use super::{Experiment, ExperimentError, Join, data_folder, file, of_each};
+use super::{Experiment, ExperimentError, Join, data_folder, file, of_each, reading::ColumnNames};
 
 /// Where a signal is.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -141,8 +141,8 @@ impl Mapping {
             recordings: groups(file.recording),
             held_out: groups(file.held_out),
             columns: match file.columns {
-                file::ColumnNames::Same(names) => names,
-                file::ColumnNames::Each(_) => Vec::new(),
+                ColumnNames::Same(names) => names,
+                ColumnNames::Each(_) => Vec::new(),
             },
             rate_hz: file.rate_hz,
             join: file.join,
@@ -175,7 +175,7 @@ fn kept(file: &file::File) -> Vec<String> {
         file::Effect::Catalogue(_) => None,
     });
     let arm = file.arm.as_ref();
-    let names = matches!(file.columns, file::ColumnNames::Each(_));
+    let names = matches!(file.columns, ColumnNames::Each(_));
     let there = [
         ("columns", names),
         (

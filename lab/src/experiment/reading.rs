@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ExperimentError, file};
+use super::ExperimentError;
 
 /// How tables are read, where they do not say it themselves.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,9 +26,26 @@ pub enum Join {
     Row,
 }
 
+/// Names of all columns; of joined files a list each.
+#[derive(Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected names of columns, [\"t\", \"q\", \"i\"], or of files that are joined a list of them each"
+)]
+pub(super) enum ColumnNames {
+    Same(Vec<String>),
+    Each(Vec<Vec<String>>),
+}
+
+impl Default for ColumnNames {
+    fn default() -> ColumnNames {
+        ColumnNames::Same(Vec::new())
+    }
+}
+
 /// What the file says of that.
 pub(super) fn reading(
-    columns: file::ColumnNames,
+    columns: ColumnNames,
     rate_hz: Option<f64>,
     join: Option<Join>,
     refuse: &impl Fn(&str, String) -> ExperimentError,
@@ -40,9 +57,9 @@ pub(super) fn reading(
         return Err(refuse("rate_hz", reason));
     }
     let columns = match columns {
-        file::ColumnNames::Same(names) if names.is_empty() => Vec::new(),
-        file::ColumnNames::Same(names) => vec![names],
-        file::ColumnNames::Each(lists) => lists,
+        ColumnNames::Same(names) if names.is_empty() => Vec::new(),
+        ColumnNames::Same(names) => vec![names],
+        ColumnNames::Each(lists) => lists,
     };
     Ok(Reading {
         columns,

@@ -6,11 +6,7 @@ use ferntast_identification::JointType;
 use serde::Serialize;
 
 use super::{
-    NewError,
-    chain::ArmChain,
-    new::kind,
-    request::Request,
-    signals::{NewSignal, guess},
+    NewError, chain::ArmChain, new::kind, new_signal::NewSignal, request::Request, signals::guess,
     sources::Sources,
 };
 use crate::{guess::unit_in_name, table::ColumnSurvey};

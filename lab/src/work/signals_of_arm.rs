@@ -5,8 +5,8 @@ use ferntast_identification::JointType;
 use super::{
     NewError,
     chain::{ArmChain, ArmJoint},
+    new_signal::{Guessed, NewSignal, TakenFor, signal_of, signal_said, unsure},
     request::{Request, Said},
-    signals::{Guessed, NewSignal, TakenFor, signal_of, signal_said, unsure},
     sources::Sources,
 };
 use crate::guess::{Role, angle_unit, array_by_name, by_joint};

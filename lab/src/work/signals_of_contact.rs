@@ -1,8 +1,8 @@
 //! Which columns are the signals of a contact.
 
 use super::{
+    new_signal::{Guessed, must},
     request::Request,
-    signals::{Guessed, must},
     sources::Sources,
 };
 use crate::guess::{Role, opposes};

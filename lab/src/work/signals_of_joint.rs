@@ -3,8 +3,8 @@
 use ferntast_identification::JointType;
 
 use super::{
+    new_signal::{Guessed, NewSignal, TakenFor, must, unsure},
     request::Request,
-    signals::{Guessed, NewSignal, TakenFor, must, unsure},
     sources::Sources,
 };
 use crate::{

@@ -8,7 +8,10 @@ use std::fmt::Write;
 
 use sha2::{Digest, Sha256};
 
-use super::definition::{Base, Count, Definition, Primitive, Type};
+use super::{
+    definition::Definition,
+    kind::{Base, Count, Primitive, Type},
+};
 
 /// The field that an interface without fields has in the description, since
 /// the languages that ROS 2 generates for know no empty structure.

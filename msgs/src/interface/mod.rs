@@ -6,6 +6,7 @@
 mod definition;
 mod error;
 mod hash;
+mod kind;
 mod library;
 mod parse;
 mod value;
@@ -15,8 +16,9 @@ mod hash_tests;
 #[cfg(test)]
 mod parse_tests;
 
-pub use definition::{Base, Constant, Count, Definition, Field, Primitive, Type};
+pub use definition::{Constant, Definition, Field};
 pub use error::{InterfaceError, ParseError, Problem};
+pub use kind::{Base, Count, Primitive, Type};
 pub use library::Library;
 pub use parse::parse;
 pub use value::Value;

@@ -7,8 +7,9 @@
 //! package name may stand as `package/Type` or `package/msg/Type`.
 
 use super::{
-    definition::{Base, Constant, Count, Definition, Field, Primitive, Type},
+    definition::{Constant, Definition, Field},
     error::{InterfaceError, ParseError, Problem},
+    kind::{Base, Count, Primitive, Type},
     value::{self, Quotes},
 };
 

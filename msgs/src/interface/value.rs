@@ -1,6 +1,6 @@
 //! Default values and constants.
 
-use super::definition::{Base, Count, Primitive, Type};
+use super::kind::{Base, Count, Primitive, Type};
 
 /// A default value or the value of a constant.
 #[derive(Clone, Debug, PartialEq)]

@@ -31,7 +31,8 @@ parameters! {
 impl TrueSurface {
     /// The surface as it is on `day` of the mission.
     pub(super) fn on_day(&self, day: f64) -> TrueSurface {
-        self.wear.map_or(*self, |wear| wear.worn(self, day))
+        let friction = (self.wear).map_or(self.friction, |wear| wear.friction(self.friction, day));
+        TrueSurface { friction, ..*self }
     }
 }
 

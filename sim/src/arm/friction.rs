@@ -77,9 +77,16 @@ impl TrueFriction {
 
     /// The gear as it is on `day` of the mission.
     pub(crate) fn on_day(&self, day: f64) -> Gear {
-        let friction = self.wear.map_or(*self, |wear| wear.worn(self, day));
+        let share = self.wear.map_or(1.0, |wear| wear.share(day));
         Gear {
-            friction,
+            friction: TrueFriction {
+                b_0: self.b_0 * share,
+                b_0t: self.b_0t * share,
+                b_1: self.b_1 * share,
+                b_2: self.b_2 * share,
+                b_3: self.b_3 * share,
+                ..*self
+            },
             temperature: self.temperature.as_ref().map(TemperatureShare::new),
         }
     }

@@ -14,6 +14,7 @@ mod contact;
 mod elasticity;
 mod environment;
 mod friction;
+mod ground;
 mod noise;
 mod parameters;
 mod plant;

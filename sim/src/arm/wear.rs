@@ -1,7 +1,5 @@
 //! What two years outside do to gears and surfaces.
 
-use super::contact::TrueSurface;
-use super::friction::TrueFriction;
 use ferntast_model::parameters;
 
 const DAYS_PER_YEAR: f64 = 365.25;
@@ -18,18 +16,10 @@ parameters! {
 }
 
 impl GearWear {
-    /// `friction` as it is on `day` of the mission.
-    pub(super) fn worn(&self, friction: &TrueFriction, day: f64) -> TrueFriction {
+    /// What friction is multiplied by on `day` of the mission.
+    pub(super) fn share(&self, day: f64) -> f64 {
         let years = (day - self.reference_day) / DAYS_PER_YEAR;
-        let share = (1.0 + self.per_year * years).max(0.0);
-        TrueFriction {
-            b_0: friction.b_0 * share,
-            b_0t: friction.b_0t * share,
-            b_1: friction.b_1 * share,
-            b_2: friction.b_2 * share,
-            b_3: friction.b_3 * share,
-            ..*friction
-        }
+        (1.0 + self.per_year * years).max(0.0)
     }
 }
 
@@ -46,12 +36,10 @@ parameters! {
 }
 
 impl SurfaceWear {
-    /// `surface` as it is on `day` of the mission; before it, as on day 0.
-    pub(super) fn worn(&self, surface: &TrueSurface, day: f64) -> TrueSurface {
+    /// The Coulomb coefficient on `day` of the mission, of a surface that had `first` on day 0 and
+    /// before it.
+    pub(super) fn friction(&self, first: f64, day: f64) -> f64 {
         let left = (-day.max(0.0) / self.days).exp();
-        TrueSurface {
-            friction: self.worn_friction + (surface.friction - self.worn_friction) * left,
-            ..*surface
-        }
+        self.worn_friction + (first - self.worn_friction) * left
     }
 }

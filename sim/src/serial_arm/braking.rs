@@ -10,7 +10,7 @@ use ferntast_model::Joints;
 
 use super::{
     cholesky::Factor,
-    plant::{Drive, Share},
+    drive::{Drive, Share},
 };
 
 /// Rounds at most; three do where gears are soft against the links.

@@ -12,6 +12,7 @@
 
 mod braking;
 mod cholesky;
+mod drive;
 mod grip;
 mod output;
 mod parameters;
@@ -30,7 +31,8 @@ use ferntast_model::{
 };
 
 use crate::arm::{Encoder, Gear, LONGEST_ADVANCE, Noise, Thermal, TorqueSensor, sensors};
-use plant::{Drive, Plant};
+use drive::Drive;
+use plant::Plant;
 use substep::substep;
 use world::Object;
 

@@ -14,6 +14,7 @@
 mod draw;
 mod environment;
 mod follower;
+mod follower_model;
 mod servoed;
 mod task;
 mod tip;
@@ -22,7 +23,8 @@ mod whole_arm;
 
 pub use draw::Draw;
 pub use environment::Environment;
-pub use follower::{FollowerModel, TrueTip};
+pub use follower::TrueTip;
+pub use follower_model::FollowerModel;
 pub use servoed::{Estimated, TrialArm};
 pub use task::Task;
 pub use tip::TipParameters;

@@ -30,17 +30,21 @@ mod run;
 mod schedule;
 mod seen;
 mod shrink;
+mod study;
 mod summary;
 #[cfg(test)]
 mod tests;
 mod truth;
+mod violation;
 mod wire;
 mod world;
 
 pub use fault::{Fault, Node, Way};
 pub use kit::{KitError, load};
-pub use results::{FaultStudy, Results};
-pub use run::{Kits, Look, Outcome, Plan, RunError, Violation, replay, run_many};
+pub use results::Results;
+pub use run::{Kits, Look, Outcome, Plan, RunError, replay, run_many};
 pub use schedule::{Event, Schedule, ScheduleError};
 pub use shrink::{shrink, shrink_where, violates};
+pub use study::FaultStudy;
 pub use summary::{Found, Summary};
+pub use violation::Violation;

@@ -1,7 +1,6 @@
 //! Runs schedules, one or many.
 
 use std::{
-    borrow::Cow,
     collections::BTreeMap,
     ops::Range,
     panic::{AssertUnwindSafe, catch_unwind},
@@ -16,7 +15,6 @@ use std::{
 
 use ferntast_control::{delay::Law, planted::Planted};
 use ferntast_nodes::{config::Loaded, graph::Graph};
-use serde::{Deserialize, Serialize};
 
 use super::{
     draw::draw,
@@ -25,23 +23,13 @@ use super::{
     kit::{Kit, KitError},
     results::Results,
     schedule::{Event, Schedule},
+    violation::Violation,
     world::{Looks, World, WorldError},
 };
 use crate::shard::Shard;
 
 /// One schedule in so many is run twice.
 const RUN_TWICE: u64 = 200;
-
-/// What does not hold.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Violation {
-    /// The invariant.
-    pub invariant: Cow<'static, str>,
-    /// When \[ms after the start\].
-    pub at_ms: i64,
-    /// How.
-    pub told: String,
-}
 
 /// What became of a schedule.
 #[derive(Clone, Debug, Default)]

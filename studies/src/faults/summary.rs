@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use serde::Serialize;
 
-use super::{fault::Fault, invariants, results::Results, run::Violation, schedule::Schedule};
+use super::{fault::Fault, invariants, results::Results, schedule::Schedule, violation::Violation};
 
 /// A violated invariant.
 #[derive(Clone, Debug, Serialize)]

@@ -29,8 +29,8 @@ pub use page::render;
 /// off and friction that is found are to the forces felt.
 pub fn judge(evidence: &Evidence) -> Vec<Section> {
     let mut sections = vec![table1::section(evidence)];
-    let speeds = &evidence::SPEEDS;
-    sections.push(trajectory::identification_trajectory(evidence, speeds));
+    let (driven, speeds) = (&evidence.march[1].trajectory, &evidence::SPEEDS);
+    sections.push(trajectory::identification_trajectory(driven, speeds));
     sections.extend(joints::linear_and_cubic(evidence));
     sections.extend(time::at_low_speed(evidence));
     sections.push(joints::shares(evidence));

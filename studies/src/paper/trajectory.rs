@@ -2,7 +2,6 @@
 
 use ferntast_identification::data::Dataset;
 
-use super::evidence::Evidence;
 use super::item::{Chart, Curve, Item, Section};
 
 /// Points that are drawn, at most.
@@ -78,9 +77,8 @@ impl Trajectory {
     }
 }
 
-/// Fig. 3.
-pub fn identification_trajectory(evidence: &Evidence, speeds: &[f64]) -> Section {
-    let own = &evidence.march[1].trajectory;
+/// Fig. 3, of the trajectory `own` that was driven at `speeds` \[deg/s\].
+pub fn identification_trajectory(own: &Trajectory, speeds: &[f64]) -> Section {
     let off = |speed: &f64| {
         own.median_near(*speed)
             .map(|found| (found / speed - 1.0).abs())

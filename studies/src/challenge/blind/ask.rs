@@ -7,7 +7,9 @@ use ferntast_identification::{
     design::Design, diagnose, diagnosis::NamedCandidate, fit::fit, prepare,
 };
 
-use super::{super::TestBench, Case, Made, tally::FollowedUp};
+use serde::{Deserialize, Serialize};
+
+use super::{super::TestBench, Case, Made};
 
 /// Sessions of an experiment that the lab proposes.
 const MORE_SESSIONS: usize = 6;
@@ -16,7 +18,7 @@ const MORE_SESSIONS: usize = 6;
 const HIDDEN_PART: &str = "hidden";
 
 /// What the lab said of one recording.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Given {
     pub(super) verdict: Verdict,
     pub(super) named: Option<String>,
@@ -27,6 +29,19 @@ pub(super) struct Given {
     pub(super) over_true: Option<f64>,
     /// After the experiment that the lab proposed, where it proposed one.
     pub(super) followed_up: Option<FollowedUp>,
+}
+
+/// What came of the experiment that the lab proposed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FollowedUp {
+    /// Which experiment.
+    pub experiment: String,
+    /// Whether it was to split a family; else, to prove a suspicion.
+    pub was_family: bool,
+    /// Whether the right effect was named then, and no other beside it.
+    pub resolved: bool,
+    /// What was named first then.
+    pub named: Option<String>,
 }
 
 pub(super) fn ask<H: TestBench>(case: &Case<H>, made: &Made<H>) -> Result<Given, String> {

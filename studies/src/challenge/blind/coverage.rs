@@ -12,7 +12,7 @@ use ferntast_benches::bench::{BenchConfig, Hideable};
 use ferntast_identification::{ModelSpec, Term, design::Design, fit::fit, prepare};
 use serde::{Deserialize, Serialize};
 
-use super::{super::TestBench, Case, Made, tally::Count};
+use super::{super::TestBench, Case, Made, count::Count};
 
 /// How often intervals hold the true value.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -2,6 +2,7 @@
 //! or none, put to the diagnosis; and recordings like real ones.
 
 mod ask;
+mod count;
 mod coverage;
 mod real_like;
 mod tally;
@@ -22,13 +23,15 @@ use crate::{
     shard::{Placed, Shard, Study},
 };
 
+pub use ask::FollowedUp;
 use ask::Given;
 pub(super) use ask::true_model_reaches;
+pub use count::Count;
 use coverage::Held;
 pub use coverage::{Coverage, Outside};
 use real_like::RealCase;
 pub use real_like::{RealAnswer, RealLikeRow};
-pub use tally::{BlindTest, Count, FollowedUp, Miss};
+pub use tally::{BlindTest, Miss};
 
 /// What is tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use ferntast_benches::joint_bench::{
 use ferntast_identification::{Dataset, ModelSpec, RecordedSession, Term, Verdict, add, diagnose};
 use serde::{Deserialize, Serialize};
 
-use super::{super::TestBench, tally::Count};
+use super::{super::TestBench, count::Count};
 
 /// Sessions of a fresh run of a joint.
 const FRESH_SESSIONS: usize = 2;

@@ -3,50 +3,20 @@
 use std::collections::BTreeMap;
 
 use ferntast_identification::Verdict;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use super::{super::TestBench, Case, ask::Given, coverage::Coverage, real_like::Rows};
+use super::{
+    super::TestBench,
+    Case,
+    ask::{FollowedUp, Given},
+    count::Count,
+    coverage::Coverage,
+    real_like::Rows,
+};
 
 /// Within this factor of what the true model reaches on the same recording, an
 /// error has fallen as far as it can.
 const AS_GOOD_AS_TRUE: f64 = 1.05;
-
-/// A share, as found out of tried.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Count {
-    /// How often it was so.
-    pub found: usize,
-    /// How often it was tried.
-    pub tried: usize,
-}
-
-impl Count {
-    pub(in crate::challenge) fn note(&mut self, found: bool) {
-        self.found += usize::from(found);
-        self.tried += 1;
-    }
-
-    /// found over tried; 0 where nothing was tried.
-    pub fn share(self) -> f64 {
-        match self.tried {
-            0 => 0.0,
-            tried => self.found as f64 / tried as f64,
-        }
-    }
-}
-
-/// What came of the experiment that the lab proposed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FollowedUp {
-    /// Which experiment.
-    pub experiment: String,
-    /// Whether it was to split a family; else, to prove a suspicion.
-    pub was_family: bool,
-    /// Whether the right effect was named then, and no other beside it.
-    pub resolved: bool,
-    /// What was named first then.
-    pub named: Option<String>,
-}
 
 /// One recording that was not answered rightly.
 #[derive(Clone, Debug, PartialEq, Serialize)]
