@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use ferntast_msgs::{
-    InvalidMessage,
+    cdr::EncodeError,
     topics::{JointNameError, TopicName},
 };
 
@@ -297,73 +297,6 @@ pub enum PublishError {
         /// What the library said.
         reason: String,
     },
-}
-
-/// Why a message does not go into CDR.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum EncodeError {
-    /// Longer than [`crate::cdr::MAX_LENGTH`].
-    #[error("{interface} takes {length} bytes in CDR, more than the {limit} allowed")]
-    TooLarge {
-        /// Interface name.
-        interface: &'static str,
-        /// Bytes needed.
-        length: usize,
-        /// Bytes allowed.
-        limit: usize,
-    },
-    /// A field that CDR has no form for.
-    #[error("{interface} has no CDR form: {reason}")]
-    NotCdr {
-        /// Interface name.
-        interface: &'static str,
-        /// What the encoder said.
-        reason: String,
-    },
-}
-
-/// Why received bytes are no message.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DecodeError {
-    /// Longer than [`crate::cdr::MAX_LENGTH`].
-    #[error("{length} bytes are more than the {limit} allowed for a message")]
-    TooLarge {
-        /// Bytes received.
-        length: usize,
-        /// Bytes allowed.
-        limit: usize,
-    },
-    /// Shorter than the header of four bytes.
-    #[error("{length} bytes are too short for a CDR header")]
-    NoHeader {
-        /// Bytes received.
-        length: usize,
-    },
-    /// An encoding other than plain CDR.
-    #[error("representation {identifier:#06x} is not plain CDR (0x0000 or 0x0001)")]
-    NotPlainCdr {
-        /// Representation identifier, the header's first two bytes.
-        identifier: u16,
-    },
-    /// The content does not fit the type.
-    #[error("not a {interface}: {reason}")]
-    NotThisType {
-        /// Interface name.
-        interface: &'static str,
-        /// What the decoder said.
-        reason: String,
-    },
-    /// Bytes are left over.
-    #[error("not a {interface}: {left} bytes are left over")]
-    LeftOver {
-        /// Interface name.
-        interface: &'static str,
-        /// Bytes left over.
-        left: usize,
-    },
-    /// Readable, but nothing that can be acted on.
-    #[error(transparent)]
-    Invalid(#[from] InvalidMessage),
 }
 
 /// Why what a dead session left in shared memory cannot be removed.

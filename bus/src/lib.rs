@@ -6,7 +6,6 @@
 //! the teleoperation link, which have no ROS 2 form.
 
 mod bus;
-pub mod cdr;
 pub mod dds;
 mod endpoint;
 mod ends;
@@ -29,10 +28,7 @@ pub use self::mcap::McapBus;
 pub use bus::{Bus, Publisher, Subscriber};
 pub use dds::{DdsBus, DdsConfig};
 pub use ends::{Receives, Sends};
-pub use error::{
-    CleanUpError, CreateError, DecodeError, EncodeError, OpenError, PublishError, RawPublishError,
-    SendError,
-};
+pub use error::{CleanUpError, CreateError, OpenError, PublishError, RawPublishError, SendError};
 pub use foxglove::{FoxgloveBus, FoxgloveConfig};
 pub use memory::MemoryBus;
 pub use parameter::{BusParameters, Choice, ParameterNode};

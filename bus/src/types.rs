@@ -1,8 +1,6 @@
 //! What the ways across have in common.
 
-use ferntast_msgs::{Message, Text, Time};
-
-use crate::error::DecodeError;
+use ferntast_msgs::{Message, Text, Time, cdr::DecodeError};
 
 /// How many messages wait for a subscriber.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

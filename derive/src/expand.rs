@@ -180,10 +180,7 @@ fn ros_struct(declaration: &Declaration, own: &Ident) -> TokenStream {
             #(#fields)*
         }
 
-        impl crate::RosMessage for #own {
-            const INTERFACE: &'static str = #interface;
-            const DEFINITION: Option<&'static str> = Some(#text);
-        }
+        crate::message::ros_message!(#own, #interface, Some(#text));
     }
 }
 

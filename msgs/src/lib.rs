@@ -10,11 +10,12 @@
 //! [`Message`] ties the two together. A message of ferntast's own is declared
 //! once (`sample/own.rs`): its sample, ROS 2 form, conversions, checks and
 //! `.msg` text come from that, and `msgs/msg/` is written by a test. Names of topics are in [`topics`], the
-//! `.msg` texts, schemas and RIHS01 type hashes in [`interface`].
+//! `.msg` texts, schemas and RIHS01 type hashes in [`interface`], messages as bytes in [`cdr`].
 //!
 //! This folder is at the same time the ROS 2 package `ferntast_msgs`
 //! (`package.xml`, `CMakeLists.txt`, `msg/`).
 
+pub mod cdr;
 pub mod interface;
 mod layout;
 mod message;

@@ -2,7 +2,11 @@
 
 use serde::{Serialize, de::DeserializeOwned};
 
-use crate::{layout::Sample, time::Time};
+use crate::{
+    cdr::{DecodeError, EncodeError},
+    layout::Sample,
+    time::Time,
+};
 
 /// A message in its ROS 2 form: a serde struct whose fields follow the
 /// `.msg` definition in order, so that CDR comes out right.
@@ -13,8 +17,57 @@ pub trait RosMessage:
     const INTERFACE: &'static str;
     /// The `.msg` text, where the message is declared in Rust; those of other
     /// packages are in `msgs/standard/`.
-    const DEFINITION: Option<&'static str> = None;
+    const DEFINITION: Option<&'static str>;
+
+    /// Writes it in CDR with its header into `bytes`, replacing what was there.
+    /// The buffer grows on the first messages only.
+    ///
+    /// # Errors
+    ///
+    /// [`EncodeError`]; `bytes` is then of no use.
+    fn encode(&self, bytes: &mut Vec<u8>) -> Result<(), EncodeError>;
+
+    /// Bytes that it takes in CDR with its header; nothing is written.
+    ///
+    /// # Errors
+    ///
+    /// As [`encode`](Self::encode).
+    fn encoded_length(&self) -> Result<usize, EncodeError>;
+
+    /// The message in `bytes` of CDR, header included, little- or big-endian.
+    ///
+    /// # Errors
+    ///
+    /// [`DecodeError`], whatever the bytes are.
+    fn decode(bytes: &[u8]) -> Result<Self, DecodeError>;
 }
+
+/// Says of a struct which interface it is. Its way into CDR and out of it is thereby compiled
+/// here, once; what is generic is compiled again in each crate that uses it.
+macro_rules! ros_message {
+    ($message:ty, $interface:literal) => {
+        $crate::message::ros_message!($message, $interface, None);
+    };
+    ($message:ty, $interface:literal, $definition:expr) => {
+        impl $crate::RosMessage for $message {
+            const INTERFACE: &'static str = $interface;
+            const DEFINITION: Option<&'static str> = $definition;
+
+            fn encode(&self, bytes: &mut Vec<u8>) -> Result<(), $crate::cdr::EncodeError> {
+                $crate::cdr::encode(self, bytes)
+            }
+
+            fn encoded_length(&self) -> Result<usize, $crate::cdr::EncodeError> {
+                $crate::cdr::length(self)
+            }
+
+            fn decode(bytes: &[u8]) -> Result<Self, $crate::cdr::DecodeError> {
+                $crate::cdr::decode(bytes)
+            }
+        }
+    };
+}
+pub(crate) use ros_message;
 
 /// A message: the sample that nodes read and write, and its ROS 2 form.
 /// Shared memory is read as found there: what is wrong with a sample,

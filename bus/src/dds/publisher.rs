@@ -3,20 +3,18 @@
 use std::fmt;
 
 use ferntast_msgs::{
-    Message, Time,
+    Message, RosMessage, Time, cdr,
     topics::{Delivery, Topic},
 };
 
 use super::{DdsBus, create_topic, middleware, qos::qos, writer::Writer};
-use crate::{
-    cdr,
-    error::{CreateError, PublishError},
-};
+use crate::error::{CreateError, PublishError};
 
 /// Sends on one topic over DDS.
 pub struct DdsPublisher<M: Message> {
     topic: Topic<M>,
-    writer: Writer<M::Ros>,
+    writer: Writer,
+    bytes: Vec<u8>,
 }
 
 impl<M: Message> DdsPublisher<M> {
@@ -29,7 +27,11 @@ impl<M: Message> DdsPublisher<M> {
         };
         let writer = Writer::new(bus, &mut node, &ros_topic, kept)
             .map_err(|reason| middleware(&topic.name, "publisher", reason))?;
-        Ok(DdsPublisher { topic, writer })
+        Ok(DdsPublisher {
+            topic,
+            writer,
+            bytes: Vec::new(),
+        })
     }
 
     /// Publishes in ROS 2 form. Allocates, and may wait for a short time on
@@ -39,13 +41,13 @@ impl<M: Message> DdsPublisher<M> {
     ///
     /// [`PublishError::Encode`], [`PublishError::Middleware`].
     pub fn publish(&mut self, _now: Time, message: &M) -> Result<(), PublishError> {
-        let ros = message.to_ros();
-        cdr::length(&ros).map_err(|source| PublishError::Encode {
+        let encoded = message.to_ros().encode(&mut self.bytes);
+        encoded.map_err(|source| PublishError::Encode {
             topic: self.topic.name,
             source,
         })?;
         self.writer
-            .write(ros)
+            .write(cdr::body(&self.bytes))
             .map_err(|reason| PublishError::Middleware {
                 transport: "DDS",
                 topic: self.topic.name,

@@ -4,7 +4,6 @@ use ros2_client::{
     MessageTypeName, Name,
     qos::{Durability, History, QosProfile},
 };
-use serde::{Serialize, Serializer, ser::SerializeTuple};
 
 use super::{DdsBus, qos::WAIT, writer::Writer};
 use crate::{
@@ -13,24 +12,9 @@ use crate::{
     raw_topic::RawTopic,
 };
 
-/// The body of a message. To the CDR serializer of ros2-client it is a tuple of octets, which
-/// CDR writes as they are, one after the other.
-#[derive(Clone)]
-struct Body(Vec<u8>);
-
-impl Serialize for Body {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut tuple = serializer.serialize_tuple(self.0.len())?;
-        for byte in &self.0 {
-            tuple.serialize_element(byte)?;
-        }
-        tuple.end()
-    }
-}
-
 /// Sends bytes on one topic over DDS.
 pub struct RawDdsPublisher {
-    writer: Writer<Body>,
+    writer: Writer,
 }
 
 impl DdsBus {
@@ -57,7 +41,7 @@ impl DdsBus {
 impl RawDdsPublisher {
     /// Publishes the body of a message, without its header.
     pub(crate) fn publish(&mut self, body: &[u8]) -> Result<(), RawPublishError> {
-        let sent = self.writer.write(Body(body.to_vec()));
+        let sent = self.writer.write(body);
         sent.map_err(|reason| RawPublishError::Middleware {
             transport: "DDS",
             reason,

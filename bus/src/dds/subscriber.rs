@@ -2,13 +2,16 @@
 
 use std::{collections::VecDeque, fmt};
 
-use ferntast_msgs::{Message, RosMessage, Time, topics::Topic};
+use ferntast_msgs::{
+    Message, RosMessage, Time,
+    cdr::{DecodeError, EncodeError},
+    topics::Topic,
+};
 use ros2_client::{MessageInfo, ReadError, Subscription, qos::History};
 
 use super::{DdsBus, MAX_QUEUE, create_topic, middleware, qos::qos, senders::Senders, type_name};
 use crate::{
-    cdr,
-    error::{CreateError, DecodeError, EncodeError},
+    error::CreateError,
     sequence_gaps::{self, SequenceGaps},
     types::{Depth, Received, SubscriberCounts},
 };
@@ -135,7 +138,7 @@ impl<M: Message> DdsSubscriber<M> {
         }
         // RustDDS decodes before it can be asked for the length; lengths in
         // the bytes are checked there against the bytes that came.
-        match cdr::length(ros) {
+        match ros.encoded_length() {
             Ok(_) => {}
             Err(EncodeError::TooLarge { length, limit, .. }) => {
                 self.counts.count(&DecodeError::TooLarge { length, limit });

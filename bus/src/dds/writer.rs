@@ -13,9 +13,8 @@ use ros2_client::{
         QosPolicies, Topic, TopicDescription, TopicKind, policy::ResourceLimits, qos::HasQoSPolicy,
     },
 };
-use serde::Serialize;
 
-use super::DdsBus;
+use super::{DdsBus, body::Body};
 
 /// Samples of a writer that keeps some for late joiners: those that wait to be sent, and those
 /// that not every reader has confirmed.
@@ -26,26 +25,26 @@ use super::DdsBus;
 /// whose confirmation is on its way.
 const MAX_KEPT: usize = 64;
 
-/// Sends messages in their ROS 2 form.
-pub(super) struct Writer<T: Serialize> {
+/// Sends the bodies of messages in CDR.
+pub(super) struct Writer {
     bus: DdsBus,
     topic: Topic,
-    writer: Publisher<T>,
+    writer: Publisher<Body>,
     // Of a writer that keeps messages for late joiners, until it has surely been taken up.
-    first: Option<First<T>>,
+    first: Option<First>,
 }
 
 /// What was written before a writer is known to have been taken up.
-struct First<T> {
+struct First {
     /// How many may wait.
     room: usize,
     written: usize,
     /// The newest ones, as many as late joiners get.
-    newest: VecDeque<T>,
+    newest: VecDeque<Body>,
     depth: usize,
 }
 
-impl<T: Serialize + Clone> Writer<T> {
+impl Writer {
     /// On a topic of that node, of which late joiners get `kept` messages; at least 1.
     ///
     /// # Errors
@@ -56,7 +55,7 @@ impl<T: Serialize + Clone> Writer<T> {
         node: &mut ros2_client::Node,
         topic: &Topic,
         kept: Option<usize>,
-    ) -> Result<Writer<T>, String> {
+    ) -> Result<Writer, String> {
         let room = kept.map(|depth| depth.max(MAX_KEPT));
         // The same topic once more, with the limits that the node's has not.
         let topic = bus
@@ -84,12 +83,13 @@ impl<T: Serialize + Clone> Writer<T> {
         })
     }
 
-    /// Writes one message.
+    /// Writes the body of one message.
     ///
     /// # Errors
     ///
     /// What the middleware said; the writer stays usable.
-    pub(super) fn write(&mut self, message: T) -> Result<(), String> {
+    pub(super) fn write(&mut self, body: &[u8]) -> Result<(), String> {
+        let message = Body(body.to_vec());
         let Some(first) = &mut self.first else {
             return published(&self.writer, message);
         };
@@ -115,10 +115,10 @@ impl<T: Serialize + Clone> Writer<T> {
     }
 }
 
-impl<T> First<T> {
+impl First {
     /// Notes a message that was written; says whether so many were that some must have been
     /// sent.
-    fn take(&mut self, message: T) -> bool {
+    fn take(&mut self, message: Body) -> bool {
         self.written += 1;
         if self.newest.len() == self.depth {
             self.newest.pop_front();
@@ -128,7 +128,7 @@ impl<T> First<T> {
     }
 }
 
-fn published<T: Serialize>(writer: &Publisher<T>, message: T) -> Result<(), String> {
+fn published(writer: &Publisher<Body>, message: Body) -> Result<(), String> {
     writer.publish(message).map_err(|error| error.to_string())
 }
 

@@ -9,10 +9,7 @@ use ferntast_msgs::{
 use foxglove::{ChannelBuilder, PartialMetadata, RawChannel, Schema};
 
 use super::FoxgloveBus;
-use crate::{
-    cdr,
-    error::{CreateError, PublishError},
-};
+use crate::error::{CreateError, PublishError};
 
 /// Sends on one topic to Foxglove's clients.
 pub struct FoxglovePublisher<M: Message> {
@@ -60,7 +57,8 @@ impl<M: Message> FoxglovePublisher<M> {
         if !state && !self.channel.has_sinks() {
             return Ok(());
         }
-        cdr::encode(&message.to_ros(), &mut self.bytes).map_err(|source| PublishError::Encode {
+        let encoded = message.to_ros().encode(&mut self.bytes);
+        encoded.map_err(|source| PublishError::Encode {
             topic: self.topic.name,
             source,
         })?;

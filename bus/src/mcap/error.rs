@@ -2,9 +2,10 @@
 
 use std::{io, path::PathBuf};
 
-use ferntast_msgs::{InvalidMessage, Time};
-
-use crate::error::{DecodeError, EncodeError};
+use ferntast_msgs::{
+    InvalidMessage, Time,
+    cdr::{DecodeError, EncodeError},
+};
 
 /// Why a recording cannot be begun.
 #[derive(Debug, thiserror::Error)]

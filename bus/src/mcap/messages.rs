@@ -2,14 +2,13 @@
 
 use std::{collections::BTreeMap, marker::PhantomData, sync::Arc};
 
-use ferntast_msgs::{Message, Time};
+use ferntast_msgs::{Message, RosMessage, Time, cdr::DecodeError};
 
 use super::{
     cursor::{Cursor, Found},
     error::ReadMessageError,
     topic::{BagTopic, time},
 };
-use crate::{cdr, error::DecodeError};
 
 /// A message of a recording as it stands there.
 #[derive(Clone, Debug)]
@@ -162,7 +161,7 @@ impl<M: Message> Iterator for Messages<M> {
             Err(error) => return Some(Err(error)),
         };
         let topic = || raw.topic.name.clone();
-        let message = cdr::decode::<M::Ros>(raw.bytes())
+        let message = M::Ros::decode(raw.bytes())
             .and_then(|ros| M::from_ros(&ros).map_err(DecodeError::Invalid))
             .map_err(|error| match error {
                 DecodeError::Invalid(source) => ReadMessageError::Invalid {

@@ -3,7 +3,7 @@
 use std::{collections::VecDeque, marker::PhantomData, sync::Arc};
 
 use ferntast_msgs::{
-    Message, Text, Time,
+    Message, Text, Time, cdr,
     topics::{Delivery, Topic},
 };
 
@@ -12,10 +12,7 @@ use super::{
     messages::{RawMessage, RawMessages},
     shared::Reading,
 };
-use crate::{
-    cdr,
-    types::{Depth, Received, SubscriberCounts},
-};
+use crate::types::{Depth, Received, SubscriberCounts};
 
 /// Receives from one topic of a recording.
 #[derive(Debug)]

@@ -22,7 +22,6 @@ use super::{
     qos::{QosProfile, to_yaml},
     rosbag2_record::{custom_data, finish_file, rosbag2_record},
 };
-use crate::cdr;
 
 /// A topic of one recording that is being written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -181,11 +180,10 @@ impl BagWriter {
             log_time: nanos(&channel.topic, "log time", log_time)?,
             publish_time: nanos(&channel.topic, "publish time", publish_time)?,
         };
-        cdr::encode(&message.to_ros(), &mut self.buffer).map_err(|source| {
-            WriteBagError::Encode {
-                topic: channel.topic.into(),
-                source,
-            }
+        let encoded = message.to_ros().encode(&mut self.buffer);
+        encoded.map_err(|source| WriteBagError::Encode {
+            topic: channel.topic.into(),
+            source,
         })?;
         // MCAP's sequence numbers have 32 bits and begin again.
         channel.sequence = channel.sequence.wrapping_add(1);

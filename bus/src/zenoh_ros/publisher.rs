@@ -1,6 +1,6 @@
 //! Sending over Zenoh.
 
-use ferntast_msgs::{Message, Time, topics::Topic};
+use ferntast_msgs::{Message, RosMessage, Time, topics::Topic};
 use hiroz::{Builder, msg::SerdeCdrSerdes, pubsub::ZPub};
 
 use super::{
@@ -9,7 +9,6 @@ use super::{
     raw::{Raw, type_info},
 };
 use crate::{
-    cdr,
     error::{CreateError, PublishError},
     namespace::within,
 };
@@ -52,7 +51,8 @@ impl<M: Message> ZenohPublisher<M> {
     ///
     /// [`PublishError::Encode`], [`PublishError::Middleware`].
     pub fn publish(&mut self, _now: Time, message: &M) -> Result<(), PublishError> {
-        cdr::encode(&message.to_ros(), &mut self.bytes).map_err(|source| PublishError::Encode {
+        let encoded = message.to_ros().encode(&mut self.bytes);
+        encoded.map_err(|source| PublishError::Encode {
             topic: self.topic.name,
             source,
         })?;

@@ -4,6 +4,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use ferntast_msgs::{
     Message, Time,
+    cdr::{self, DecodeError},
     topics::{Topic, TopicName},
 };
 use hiroz::{BufferGroup, Builder, attachment::Attachment, msg::SerdeCdrSerdes, pubsub::ZSub};
@@ -15,8 +16,7 @@ use super::{
     raw::{Raw, type_info},
 };
 use crate::{
-    cdr,
-    error::{CreateError, DecodeError},
+    error::CreateError,
     namespace::within,
     sequence_gaps::{self, SequenceGaps},
     types::{Depth, Received, SubscriberCounts},

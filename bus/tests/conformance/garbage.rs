@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use ferntast_bus::{Depth, cdr};
+use ferntast_bus::Depth;
 use ferntast_msgs::{
-    Message, RosMessage, interface,
+    Message, RosMessage, cdr, interface,
     ros::sensor_msgs::JointState,
     sample::JointSample,
     topics::{Delivery, Topic},
@@ -62,7 +62,7 @@ fn oversized() -> JointState {
 
 fn body(ros: &JointState) -> Vec<u8> {
     let mut bytes = Vec::new();
-    cdr::encode(ros, &mut bytes).unwrap();
+    ros.encode(&mut bytes).unwrap();
     bytes[4..].to_vec()
 }
 
@@ -223,7 +223,7 @@ fn dds(world: &World) {
 
 /// The body of a message of any length; ours refuse to encode one like that.
 fn encode_unbounded(ros: &JointState, bytes: &mut Vec<u8>) {
-    assert!(cdr::encode(ros, &mut Vec::new()).is_err());
+    assert!(ros.encode(&mut Vec::new()).is_err());
     cdr_encoding::to_writer::<JointState, byteorder::LittleEndian, _>(bytes, ros).unwrap();
 }
 

@@ -1,6 +1,6 @@
 //! Goes through the bytes of a CDR message whose type the recording describes.
 //!
-//! It is apart from `ferntast_bus::cdr`, which decodes types known here by
+//! It is apart from `ferntast_msgs::cdr`, which decodes types known here by
 //! serde: filters look at a field more than once (a copy of the cursor goes
 //! its own way), arrays are passed over unread, and recordings of others have
 //! plain CDR 2 and wide texts, none of which `cdr-encoding` can do.

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use ferntast_bus::cdr::MAX_PADDING;
+use ferntast_msgs::cdr::MAX_PADDING;
 use ferntast_msgs::interface::Count;
 
 use super::{

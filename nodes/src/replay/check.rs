@@ -2,7 +2,7 @@
 
 use ferntast_bus::{Bus, CreateError, Depth, Subscriber};
 use ferntast_msgs::{
-    Message, Time,
+    Message, RosMessage, Time,
     sample::JointNames,
     topics::{self, Topic, TopicName, Visitor},
 };
@@ -60,10 +60,10 @@ impl<M: Message> Check for TypedCheck<M> {
 }
 
 /// Whether two messages are the same bytes on the wire (NaN equals NaN).
-fn same_bytes<R: ferntast_msgs::RosMessage>(first: &R, second: &R) -> bool {
+fn same_bytes<R: RosMessage>(first: &R, second: &R) -> bool {
     let (mut first_bytes, mut second_bytes) = (Vec::new(), Vec::new());
-    ferntast_bus::cdr::encode(first, &mut first_bytes).is_ok()
-        && ferntast_bus::cdr::encode(second, &mut second_bytes).is_ok()
+    first.encode(&mut first_bytes).is_ok()
+        && second.encode(&mut second_bytes).is_ok()
         && first_bytes == second_bytes
 }
 

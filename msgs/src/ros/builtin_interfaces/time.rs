@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 /// A point in time since the UNIX epoch.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -13,9 +13,7 @@ pub struct Time {
     pub nanosec: u32,
 }
 
-impl RosMessage for Time {
-    const INTERFACE: &'static str = "builtin_interfaces/msg/Time";
-}
+ros_message!(Time, "builtin_interfaces/msg/Time");
 
 impl From<crate::Time> for Time {
     fn from(time: crate::Time) -> Time {

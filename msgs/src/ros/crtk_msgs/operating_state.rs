@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 /// Operating state of a device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -17,6 +17,4 @@ pub struct OperatingState {
     pub is_busy: bool,
 }
 
-impl RosMessage for OperatingState {
-    const INTERFACE: &'static str = "crtk_msgs/msg/OperatingState";
-}
+ros_message!(OperatingState, "crtk_msgs/msg/OperatingState");

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 /// A text with its time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -13,6 +13,4 @@ pub struct StringStamped {
     pub string: String,
 }
 
-impl RosMessage for StringStamped {
-    const INTERFACE: &'static str = "crtk_msgs/msg/StringStamped";
-}
+ros_message!(StringStamped, "crtk_msgs/msg/StringStamped");

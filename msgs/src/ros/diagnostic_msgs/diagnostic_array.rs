@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 use super::DiagnosticStatus;
 
@@ -15,6 +15,4 @@ pub struct DiagnosticArray {
     pub status: Vec<DiagnosticStatus>,
 }
 
-impl RosMessage for DiagnosticArray {
-    const INTERFACE: &'static str = "diagnostic_msgs/msg/DiagnosticArray";
-}
+ros_message!(DiagnosticArray, "diagnostic_msgs/msg/DiagnosticArray");

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 use super::KeyValue;
 
@@ -21,6 +21,4 @@ pub struct DiagnosticStatus {
     pub values: Vec<KeyValue>,
 }
 
-impl RosMessage for DiagnosticStatus {
-    const INTERFACE: &'static str = "diagnostic_msgs/msg/DiagnosticStatus";
-}
+ros_message!(DiagnosticStatus, "diagnostic_msgs/msg/DiagnosticStatus");

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 /// A value with its name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -13,9 +13,7 @@ pub struct KeyValue {
     pub value: String,
 }
 
-impl RosMessage for KeyValue {
-    const INTERFACE: &'static str = "diagnostic_msgs/msg/KeyValue";
-}
+ros_message!(KeyValue, "diagnostic_msgs/msg/KeyValue");
 
 impl KeyValue {
     /// A value with that name.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 /// A position.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,9 +15,7 @@ pub struct Point {
     pub z: f64,
 }
 
-impl RosMessage for Point {
-    const INTERFACE: &'static str = "geometry_msgs/msg/Point";
-}
+ros_message!(Point, "geometry_msgs/msg/Point");
 
 impl From<[f64; 3]> for Point {
     fn from([x, y, z]: [f64; 3]) -> Point {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 use super::{Point, Quaternion};
 
@@ -15,6 +15,4 @@ pub struct Pose {
     pub orientation: Quaternion,
 }
 
-impl RosMessage for Pose {
-    const INTERFACE: &'static str = "geometry_msgs/msg/Pose";
-}
+ros_message!(Pose, "geometry_msgs/msg/Pose");

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 use super::Pose;
 
@@ -15,6 +15,4 @@ pub struct PoseStamped {
     pub pose: Pose,
 }
 
-impl RosMessage for PoseStamped {
-    const INTERFACE: &'static str = "geometry_msgs/msg/PoseStamped";
-}
+ros_message!(PoseStamped, "geometry_msgs/msg/PoseStamped");

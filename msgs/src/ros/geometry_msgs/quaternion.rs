@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 /// An orientation as unit quaternion; the default is no rotation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,9 +17,7 @@ pub struct Quaternion {
     pub w: f64,
 }
 
-impl RosMessage for Quaternion {
-    const INTERFACE: &'static str = "geometry_msgs/msg/Quaternion";
-}
+ros_message!(Quaternion, "geometry_msgs/msg/Quaternion");
 
 impl Default for Quaternion {
     fn default() -> Quaternion {

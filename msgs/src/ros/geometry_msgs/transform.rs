@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 use super::{Quaternion, Vector3};
 
@@ -15,6 +15,4 @@ pub struct Transform {
     pub rotation: Quaternion,
 }
 
-impl RosMessage for Transform {
-    const INTERFACE: &'static str = "geometry_msgs/msg/Transform";
-}
+ros_message!(Transform, "geometry_msgs/msg/Transform");

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 use super::Transform;
 
@@ -17,6 +17,4 @@ pub struct TransformStamped {
     pub transform: Transform,
 }
 
-impl RosMessage for TransformStamped {
-    const INTERFACE: &'static str = "geometry_msgs/msg/TransformStamped";
-}
+ros_message!(TransformStamped, "geometry_msgs/msg/TransformStamped");

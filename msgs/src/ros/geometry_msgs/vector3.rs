@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 /// A vector without a place.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,9 +15,7 @@ pub struct Vector3 {
     pub z: f64,
 }
 
-impl RosMessage for Vector3 {
-    const INTERFACE: &'static str = "geometry_msgs/msg/Vector3";
-}
+ros_message!(Vector3, "geometry_msgs/msg/Vector3");
 
 impl From<[f64; 3]> for Vector3 {
     fn from([x, y, z]: [f64; 3]) -> Vector3 {

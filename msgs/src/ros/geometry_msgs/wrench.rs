@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 use super::Vector3;
 
@@ -15,6 +15,4 @@ pub struct Wrench {
     pub torque: Vector3,
 }
 
-impl RosMessage for Wrench {
-    const INTERFACE: &'static str = "geometry_msgs/msg/Wrench";
-}
+ros_message!(Wrench, "geometry_msgs/msg/Wrench");

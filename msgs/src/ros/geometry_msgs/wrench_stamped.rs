@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 use super::Wrench;
 
@@ -15,6 +15,4 @@ pub struct WrenchStamped {
     pub wrench: Wrench,
 }
 
-impl RosMessage for WrenchStamped {
-    const INTERFACE: &'static str = "geometry_msgs/msg/WrenchStamped";
-}
+ros_message!(WrenchStamped, "geometry_msgs/msg/WrenchStamped");

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 /// State or command of joints. A sequence that is empty is not given; the others
 /// are as long as `name`.
@@ -20,6 +20,4 @@ pub struct JointState {
     pub effort: Vec<f64>,
 }
 
-impl RosMessage for JointState {
-    const INTERFACE: &'static str = "sensor_msgs/msg/JointState";
-}
+ros_message!(JointState, "sensor_msgs/msg/JointState");

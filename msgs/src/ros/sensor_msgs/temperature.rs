@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::std_msgs::Header};
+use crate::{message::ros_message, ros::std_msgs::Header};
 
 /// A temperature.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,6 +15,4 @@ pub struct Temperature {
     pub variance: f64,
 }
 
-impl RosMessage for Temperature {
-    const INTERFACE: &'static str = "sensor_msgs/msg/Temperature";
-}
+ros_message!(Temperature, "sensor_msgs/msg/Temperature");

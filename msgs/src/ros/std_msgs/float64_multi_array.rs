@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 /// One dimension of an array.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,9 +15,7 @@ pub struct MultiArrayDimension {
     pub stride: u32,
 }
 
-impl RosMessage for MultiArrayDimension {
-    const INTERFACE: &'static str = "std_msgs/msg/MultiArrayDimension";
-}
+ros_message!(MultiArrayDimension, "std_msgs/msg/MultiArrayDimension");
 
 /// How the numbers of an array lie.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,9 +26,7 @@ pub struct MultiArrayLayout {
     pub data_offset: u32,
 }
 
-impl RosMessage for MultiArrayLayout {
-    const INTERFACE: &'static str = "std_msgs/msg/MultiArrayLayout";
-}
+ros_message!(MultiArrayLayout, "std_msgs/msg/MultiArrayLayout");
 
 /// Numbers in an array.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,6 +37,4 @@ pub struct Float64MultiArray {
     pub data: Vec<f64>,
 }
 
-impl RosMessage for Float64MultiArray {
-    const INTERFACE: &'static str = "std_msgs/msg/Float64MultiArray";
-}
+ros_message!(Float64MultiArray, "std_msgs/msg/Float64MultiArray");

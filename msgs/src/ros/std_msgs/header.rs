@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::builtin_interfaces::Time};
+use crate::{message::ros_message, ros::builtin_interfaces::Time};
 
 /// What stands at the head of every stamped message.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -13,9 +13,7 @@ pub struct Header {
     pub frame_id: String,
 }
 
-impl RosMessage for Header {
-    const INTERFACE: &'static str = "std_msgs/msg/Header";
-}
+ros_message!(Header, "std_msgs/msg/Header");
 
 impl Header {
     /// A header with that stamp and frame.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RosMessage;
+use crate::message::ros_message;
 
 /// A text.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -11,6 +11,4 @@ pub struct String {
     pub data: std::string::String,
 }
 
-impl RosMessage for String {
-    const INTERFACE: &'static str = "std_msgs/msg/String";
-}
+ros_message!(String, "std_msgs/msg/String");

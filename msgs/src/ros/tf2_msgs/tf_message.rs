@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RosMessage, ros::geometry_msgs::TransformStamped};
+use crate::{message::ros_message, ros::geometry_msgs::TransformStamped};
 
 /// Frames and where they are.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -11,6 +11,4 @@ pub struct TFMessage {
     pub transforms: Vec<TransformStamped>,
 }
 
-impl RosMessage for TFMessage {
-    const INTERFACE: &'static str = "tf2_msgs/msg/TFMessage";
-}
+ros_message!(TFMessage, "tf2_msgs/msg/TFMessage");

@@ -4,13 +4,15 @@
 //! Whatever comes in is bounded: nothing longer than [`MAX_LENGTH`] is looked
 //! at, every length in it is checked against the bytes that are there, and no
 //! memory is set aside by what a length field says.
+//!
+//! What is generic here is compiled for each message where that is said to be one
+//! (`ros_message!`), and nowhere else.
 
 use std::io;
 
 use byteorder::{BigEndian, LittleEndian};
-use ferntast_msgs::{Message, RosMessage};
 
-pub use crate::error::{DecodeError, EncodeError};
+use crate::{InvalidMessage, Message, RosMessage};
 
 /// Longest message with its header \[byte\].
 pub const MAX_LENGTH: usize = 64 * 1024;
@@ -21,28 +23,91 @@ const HEADER_LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];
 /// RTPS pads a payload to a multiple of four bytes; more left over than that is no padding \[byte\].
 pub const MAX_PADDING: usize = 3;
 
-/// Writes `message` with its header into `bytes`, replacing what was there.
-/// The buffer grows on the first messages only.
-///
-/// # Errors
-///
-/// [`EncodeError`]; `bytes` is then of no use.
-pub fn encode<R: RosMessage>(message: &R, bytes: &mut Vec<u8>) -> Result<(), EncodeError> {
+/// Why a message does not go into CDR.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EncodeError {
+    /// Longer than [`MAX_LENGTH`].
+    #[error("{interface} takes {length} bytes in CDR, more than the {limit} allowed")]
+    TooLarge {
+        /// Interface name.
+        interface: &'static str,
+        /// Bytes needed.
+        length: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+    /// A field that CDR has no form for.
+    #[error("{interface} has no CDR form: {reason}")]
+    NotCdr {
+        /// Interface name.
+        interface: &'static str,
+        /// What the encoder said.
+        reason: String,
+    },
+}
+
+/// Why received bytes are no message.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DecodeError {
+    /// Longer than [`MAX_LENGTH`].
+    #[error("{length} bytes are more than the {limit} allowed for a message")]
+    TooLarge {
+        /// Bytes received.
+        length: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+    /// Shorter than the header of four bytes.
+    #[error("{length} bytes are too short for a CDR header")]
+    NoHeader {
+        /// Bytes received.
+        length: usize,
+    },
+    /// An encoding other than plain CDR.
+    #[error("representation {identifier:#06x} is not plain CDR (0x0000 or 0x0001)")]
+    NotPlainCdr {
+        /// Representation identifier, the header's first two bytes.
+        identifier: u16,
+    },
+    /// The content does not fit the type.
+    #[error("not a {interface}: {reason}")]
+    NotThisType {
+        /// Interface name.
+        interface: &'static str,
+        /// What the decoder said.
+        reason: String,
+    },
+    /// Bytes are left over.
+    #[error("not a {interface}: {left} bytes are left over")]
+    LeftOver {
+        /// Interface name.
+        interface: &'static str,
+        /// Bytes left over.
+        left: usize,
+    },
+    /// Readable, but nothing that can be acted on.
+    #[error(transparent)]
+    Invalid(#[from] InvalidMessage),
+}
+
+/// As [`RosMessage::encode`].
+pub(crate) fn encode<R: RosMessage>(message: &R, bytes: &mut Vec<u8>) -> Result<(), EncodeError> {
     bytes.clear();
     bytes.extend_from_slice(&HEADER_LITTLE_ENDIAN);
     cdr_encoding::to_writer::<R, LittleEndian, _>(&mut *bytes, message).map_err(not_cdr::<R>)?;
     bounded::<R>(bytes.len()).map(|_length| ())
 }
 
-/// Bytes that `message` takes with its header; nothing is written.
-///
-/// # Errors
-///
-/// [`EncodeError`], as [`encode`].
-pub fn length<R: RosMessage>(message: &R) -> Result<usize, EncodeError> {
+/// As [`RosMessage::encoded_length`].
+pub(crate) fn length<R: RosMessage>(message: &R) -> Result<usize, EncodeError> {
     let mut count = Count(HEADER_LITTLE_ENDIAN.len());
     cdr_encoding::to_writer::<R, LittleEndian, _>(&mut count, message).map_err(not_cdr::<R>)?;
     bounded::<R>(count.0)
+}
+
+/// What follows the header in `bytes`, nothing where they are shorter than that.
+pub fn body(bytes: &[u8]) -> &[u8] {
+    bytes.get(HEADER_LITTLE_ENDIAN.len()..).unwrap_or_default()
 }
 
 /// Counts what is written to it.
@@ -77,12 +142,8 @@ fn bounded<R: RosMessage>(length: usize) -> Result<usize, EncodeError> {
     Ok(length)
 }
 
-/// The message in `bytes`, header included, little- or big-endian.
-///
-/// # Errors
-///
-/// [`DecodeError`], whatever the bytes are.
-pub fn decode<R: RosMessage>(bytes: &[u8]) -> Result<R, DecodeError> {
+/// As [`RosMessage::decode`].
+pub(crate) fn decode<R: RosMessage>(bytes: &[u8]) -> Result<R, DecodeError> {
     if bytes.len() > MAX_LENGTH {
         return Err(DecodeError::TooLarge {
             length: bytes.len(),
@@ -115,28 +176,28 @@ pub fn decode<R: RosMessage>(bytes: &[u8]) -> Result<R, DecodeError> {
     Ok(message)
 }
 
-/// The message in `bytes`, as [`decode`] reads it, as a sample that can be
+/// The message in `bytes`, as [`RosMessage::decode`] reads it, as a sample that can be
 /// acted on.
 ///
 /// # Errors
 ///
 /// [`DecodeError`]: also [`DecodeError::Invalid`].
-pub(crate) fn decode_sample<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
-    let message = M::from_ros(&decode::<M::Ros>(bytes)?)?;
+pub fn decode_sample<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
+    let message = M::from_ros(&M::Ros::decode(bytes)?)?;
     message.check()?;
     Ok(message)
 }
 
 #[cfg(test)]
 mod tests {
-    use ferntast_msgs::{
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
         Time,
         ros::sensor_msgs::JointState,
         sample::{JointNames, JointSample},
     };
-    use proptest::prelude::*;
-
-    use super::*;
 
     fn joint_state() -> JointState {
         JointSample::empty(JointNames::numbered(2), Time::from_ros(1, 2))
