@@ -26,7 +26,7 @@ parameters! {
         pub jitter_ms: Vec<f64> [0.0..=1000.0, "ms"],
         /// Jitter buffer of both ends, in standard deviations of the delay, and 200 ms at most:
         /// frames that come later than that count as lost \[-\].
-        #[serde(default = "three")]
+        #[serde(default = "buffer_per_jitter")]
         pub buffer_per_jitter: f64 [0.0..=10.0, "-"],
         /// Shares of frames lost, each way \[-\].
         pub loss: Vec<f64> [0.0..=1.0, "-"],
@@ -68,9 +68,13 @@ fn one_task() -> Vec<Task> {
     vec![Task::PressAndSlide]
 }
 
-/// In a thousand frames of normally distributed delay one or two come later.
-fn three() -> f64 {
-    3.0
+/// Jitter buffer of both ends, in standard deviations of the delay \[-\]. Of 500 frames a second,
+/// which stay in order, one beyond three of them pauses the arm every eight seconds, and beyond
+/// four every nine minutes.
+pub(super) const BUFFER_PER_JITTER: f64 = 4.0;
+
+fn buffer_per_jitter() -> f64 {
+    BUFFER_PER_JITTER
 }
 
 /// A law that a sweep has not.

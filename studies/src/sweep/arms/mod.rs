@@ -20,7 +20,7 @@ use ferntast_nodes::{
 };
 use ferntast_sim::teleoperation::{Environment, Outcome, Task, Trial};
 
-use super::{Condition, Row, SweepConfig};
+use super::{Condition, Row, SweepConfig, config::BUFFER_PER_JITTER};
 use crate::parallel;
 use driven::{ArmOfSweep, DrivenArm};
 
@@ -29,10 +29,6 @@ pub use table::arms_table;
 
 /// Round trip \[ms\], standard deviation of the delay each way \[ms\] and share of frames lost.
 const RELAY: (f64, f64, f64) = (600.0, 50.0, 0.1);
-/// Jitter buffer of both ends, in standard deviations of the delay \[-\]. Of 500 frames a second,
-/// which stay in order, one beyond three of them pauses the arm every eight seconds, and beyond
-/// four every nine minutes.
-const BUFFER: f64 = 4.0;
 /// What an operator does at each wall.
 const TASKS: [Task; 2] = [Task::PressAndSlide, Task::Tap];
 
@@ -135,7 +131,7 @@ fn jobs<'a>(config: &SweepConfig, arm: &'a ArmOfSweep) -> Vec<Job<'a>> {
                         law: law.clone(),
                         rtt_ms,
                         jitter_ms,
-                        buffer_ms: BUFFER * jitter_ms,
+                        buffer_ms: BUFFER_PER_JITTER * jitter_ms,
                         loss,
                         environment,
                         task,
