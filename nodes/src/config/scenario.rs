@@ -121,7 +121,8 @@ parameters! {
         #[serde(default = "link_endpoint")]
         pub endpoint: String,
         /// Jitter buffer at both ends: frames are played out evenly, this much after
-        /// the quickest way; 0 acts on the newest at once \[s\].
+        /// the quickest way; 0 acts on the newest at once. Four standard deviations of the
+        /// delay keep jitter from pausing the arm \[s\].
         #[serde(default)]
         pub buffer: f64 [0.0..=LONGEST_BUFFER, "s"],
         /// The arm goes on by itself, on its ramp, after gaps in the link up to this
