@@ -36,6 +36,7 @@ pub(super) struct Common {
 }
 
 impl Innovation {
+    /// Less what the siblings did together.
     pub fn without(self, common: Common) -> Innovation {
         Innovation {
             residual: self.residual - common.value,
@@ -43,6 +44,7 @@ impl Innovation {
         }
     }
 
+    /// In standard deviations.
     pub fn standard(self) -> f64 {
         self.residual / self.variance.sqrt()
     }
