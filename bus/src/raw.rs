@@ -1,6 +1,8 @@
 //! Messages of types that we do not know, as bytes, to ROS 2: what other people's recordings
 //! hold.
 
+use ferntast_msgs::cdr;
+
 use crate::{
     bus::Bus,
     dds::RawDdsPublisher,
@@ -9,10 +11,6 @@ use crate::{
     zenoh_ros::RawZenohPublisher,
 };
 
-/// Header of a message in CDR, little endian, as ROS 2 writes it.
-const LITTLE_ENDIAN: [u8; 2] = [0x00, 0x01];
-/// Bytes of that header, with two that are for options.
-const HEADER: usize = 4;
 /// Longest message that is sent: a picture of full HD and some more.
 const MAX_LENGTH: usize = 16 * 1024 * 1024;
 
@@ -38,11 +36,11 @@ impl RawPublisher {
                 limit: MAX_LENGTH,
             });
         }
-        if bytes.len() < HEADER || bytes[..2] != LITTLE_ENDIAN {
+        if !cdr::is_little_endian(bytes) {
             return Err(RawPublishError::Encoding);
         }
         match self {
-            RawPublisher::Dds(publisher) => publisher.publish(&bytes[HEADER..]),
+            RawPublisher::Dds(publisher) => publisher.publish(bytes),
             RawPublisher::Zenoh(publisher) => publisher.publish(bytes),
         }
     }

@@ -7,6 +7,7 @@
 
 pub mod arming;
 pub mod codec;
+mod contact_torque;
 pub mod delay;
 pub mod estimator;
 pub mod frame;

@@ -91,7 +91,7 @@ impl Bench {
     fn new(joints: usize) -> Bench {
         let rest = Joints::filled(JointCount::new(joints).unwrap(), 0.0);
         Bench {
-            servo: Servo::new(&vec![joint(); joints], None, &config(joints)).unwrap(),
+            servo: Servo::new(&vec![joint(); joints], &config(joints)).unwrap(),
             position: rest,
             velocity: rest,
             now: START,
@@ -249,7 +249,7 @@ fn lists_of_another_length_are_refused_by_key_and_counts() {
         for found in [0, 2, 4] {
             let mut config = config(3);
             list(&mut config).resize(found, 50.0);
-            let error = Servo::new(&vec![joint(); 3], None, &config).unwrap_err();
+            let error = Servo::new(&vec![joint(); 3], &config).unwrap_err();
             let expected = format!(
                 "{key} has {found} entries where 3 are needed: one for each joint of the arm"
             );
@@ -258,7 +258,7 @@ fn lists_of_another_length_are_refused_by_key_and_counts() {
     }
     for joints in [0, MAX_JOINTS + 1] {
         let joints = vec![joint(); joints];
-        let error = Servo::new(&joints, None, &config(joints.len())).unwrap_err();
+        let error = Servo::new(&joints, &config(joints.len())).unwrap_err();
         assert_eq!(error.key(), "number of joints");
     }
 }

@@ -110,6 +110,12 @@ pub fn body(bytes: &[u8]) -> &[u8] {
     bytes.get(HEADER_LITTLE_ENDIAN.len()..).unwrap_or_default()
 }
 
+/// Whether `bytes` begin as a message in little-endian CDR does, of whatever type.
+pub fn is_little_endian(bytes: &[u8]) -> bool {
+    // The header's last two bytes are options.
+    bytes.len() >= HEADER_LITTLE_ENDIAN.len() && bytes.starts_with(&HEADER_LITTLE_ENDIAN[..2])
+}
+
 /// Counts what is written to it.
 struct Count(usize);
 
@@ -177,15 +183,13 @@ pub(crate) fn decode<R: RosMessage>(bytes: &[u8]) -> Result<R, DecodeError> {
 }
 
 /// The message in `bytes`, as [`RosMessage::decode`] reads it, as a sample that can be
-/// acted on.
+/// acted on, which [`Message::from_ros`] has checked.
 ///
 /// # Errors
 ///
 /// [`DecodeError`]: also [`DecodeError::Invalid`].
 pub fn decode_sample<M: Message>(bytes: &[u8]) -> Result<M, DecodeError> {
-    let message = M::from_ros(&M::Ros::decode(bytes)?)?;
-    message.check()?;
-    Ok(message)
+    Ok(M::from_ros(&M::Ros::decode(bytes)?)?)
 }
 
 #[cfg(test)]

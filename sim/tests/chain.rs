@@ -140,8 +140,7 @@ struct Sight {
 }
 
 fn servo(config: &ArmConfig) -> Servo {
-    let kinematics = Some(config.arm.kinematics());
-    Servo::new(&config.joint, kinematics, &ServoConfig::default()).expect("valid")
+    Servo::planar(&config.joint, &config.arm, &ServoConfig::default()).expect("valid")
 }
 
 impl Chain {

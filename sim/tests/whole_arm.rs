@@ -266,16 +266,19 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
         // 1 N·s/m and up to 14 that fill the tank.
         assert!((13.0..15.0).contains(&outcome.felt_damping), "{told}");
         assert!((0.0..=0.491).contains(&outcome.force_step), "{told}");
-        assert!(outcome.drift < 1.2e-3, "{told}");
+        assert!(outcome.drift < 3e-4, "{told}");
+        // A servo that did not stop where it runs into something would hit the wall with 17 N.
+        assert!((1.0..14.0).contains(&outcome.peak_force), "{told}");
         let felt = outcome.felt_stiffness.expect("it presses");
         (felt / environment.surface().0, told)
     };
     for round_trip in ROUND_TRIPS {
         let (share, told) = felt(Environment::SoftSpring, round_trip);
         assert!((0.98..1.02).contains(&share), "{told}");
-        // 20 kN/m, of which 9 are rendered once they are known.
+        // 20 kN/m, of which 9.9 are rendered once they are known, from a place that is known to 0.1 mm
+        // of the 0.6 that 6 N come to.
         let (share, told) = felt(Environment::HardWall, round_trip);
-        assert!((0.25..0.5).contains(&share), "{told}");
+        assert!((0.4..0.6).contains(&share), "{told}");
         // What recedes takes energy at once, and the hand's comes a round trip later.
         let (share, told) = felt(Environment::MovingWall, round_trip);
         assert!((0.92..1.07).contains(&share), "{told}");
@@ -343,7 +346,7 @@ fn two_layers_meet_a_wall_after_a_hold_as_softly_as_before() {
         let told = format!("{round_trip} s: {outcome:?}");
         // The operator's word takes 0.5 s.
         assert!((0.4..1.1).contains(&outcome.held), "{told}");
-        assert!((6.0..20.0).contains(&outcome.peak_force), "{told}");
+        assert!((6.0..15.0).contains(&outcome.peak_force), "{told}");
         assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
     }
 }
@@ -364,7 +367,7 @@ fn two_layers_feel_a_hard_wall_behind_jitter_and_loss() {
         assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
         assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
         let felt = outcome.felt_stiffness.expect("it presses");
-        assert!((4000.0..10_000.0).contains(&felt), "{told}");
+        assert!((8000.0..12_000.0).contains(&felt), "{told}");
         // The operator's word takes 0.5 s.
         assert!(outcome.held < 1.1, "{told}");
     }

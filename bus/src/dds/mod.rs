@@ -3,7 +3,7 @@
 //! One participant and one node a bus. Messages go in their ROS 2 form; what
 //! comes in is bounded, decoded, and checked before it is handed out.
 
-mod body;
+mod encoded;
 mod publisher;
 mod qos;
 mod raw;

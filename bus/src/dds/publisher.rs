@@ -3,7 +3,7 @@
 use std::fmt;
 
 use ferntast_msgs::{
-    Message, RosMessage, Time, cdr,
+    Message, RosMessage, Time,
     topics::{Delivery, Topic},
 };
 
@@ -14,7 +14,6 @@ use crate::error::{CreateError, PublishError};
 pub struct DdsPublisher<M: Message> {
     topic: Topic<M>,
     writer: Writer,
-    bytes: Vec<u8>,
 }
 
 impl<M: Message> DdsPublisher<M> {
@@ -27,11 +26,7 @@ impl<M: Message> DdsPublisher<M> {
         };
         let writer = Writer::new(bus, &mut node, &ros_topic, kept)
             .map_err(|reason| middleware(&topic.name, "publisher", reason))?;
-        Ok(DdsPublisher {
-            topic,
-            writer,
-            bytes: Vec::new(),
-        })
+        Ok(DdsPublisher { topic, writer })
     }
 
     /// Publishes in ROS 2 form. Allocates, and may wait for a short time on
@@ -41,13 +36,14 @@ impl<M: Message> DdsPublisher<M> {
     ///
     /// [`PublishError::Encode`], [`PublishError::Middleware`].
     pub fn publish(&mut self, _now: Time, message: &M) -> Result<(), PublishError> {
-        let encoded = message.to_ros().encode(&mut self.bytes);
+        let mut bytes = Vec::new();
+        let encoded = message.to_ros().encode(&mut bytes);
         encoded.map_err(|source| PublishError::Encode {
             topic: self.topic.name,
             source,
         })?;
         self.writer
-            .write(cdr::body(&self.bytes))
+            .write(bytes)
             .map_err(|reason| PublishError::Middleware {
                 transport: "DDS",
                 topic: self.topic.name,

@@ -39,9 +39,9 @@ impl DdsBus {
 }
 
 impl RawDdsPublisher {
-    /// Publishes the body of a message, without its header.
-    pub(crate) fn publish(&mut self, body: &[u8]) -> Result<(), RawPublishError> {
-        let sent = self.writer.write(body);
+    /// Publishes a message with its header.
+    pub(crate) fn publish(&mut self, bytes: &[u8]) -> Result<(), RawPublishError> {
+        let sent = self.writer.write(bytes.to_vec());
         sent.map_err(|reason| RawPublishError::Middleware {
             transport: "DDS",
             reason,

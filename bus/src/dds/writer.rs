@@ -14,7 +14,7 @@ use ros2_client::{
     },
 };
 
-use super::{DdsBus, body::Body};
+use super::{DdsBus, encoded::Encoded};
 
 /// Samples of a writer that keeps some for late joiners: those that wait to be sent, and those
 /// that not every reader has confirmed.
@@ -25,11 +25,11 @@ use super::{DdsBus, body::Body};
 /// whose confirmation is on its way.
 const MAX_KEPT: usize = 64;
 
-/// Sends the bodies of messages in CDR.
+/// Sends messages that are in CDR.
 pub(super) struct Writer {
     bus: DdsBus,
     topic: Topic,
-    writer: Publisher<Body>,
+    writer: Publisher<Encoded>,
     // Of a writer that keeps messages for late joiners, until it has surely been taken up.
     first: Option<First>,
 }
@@ -40,7 +40,7 @@ struct First {
     room: usize,
     written: usize,
     /// The newest ones, as many as late joiners get.
-    newest: VecDeque<Body>,
+    newest: VecDeque<Encoded>,
     depth: usize,
 }
 
@@ -83,13 +83,13 @@ impl Writer {
         })
     }
 
-    /// Writes the body of one message.
+    /// Writes one message in CDR with its header.
     ///
     /// # Errors
     ///
     /// What the middleware said; the writer stays usable.
-    pub(super) fn write(&mut self, body: &[u8]) -> Result<(), String> {
-        let message = Body(body.to_vec());
+    pub(super) fn write(&mut self, message: Vec<u8>) -> Result<(), String> {
+        let message = Encoded(message);
         let Some(first) = &mut self.first else {
             return published(&self.writer, message);
         };
@@ -118,7 +118,7 @@ impl Writer {
 impl First {
     /// Notes a message that was written; says whether so many were that some must have been
     /// sent.
-    fn take(&mut self, message: Body) -> bool {
+    fn take(&mut self, message: Encoded) -> bool {
         self.written += 1;
         if self.newest.len() == self.depth {
             self.newest.pop_front();
@@ -128,7 +128,7 @@ impl First {
     }
 }
 
-fn published(writer: &Publisher<Body>, message: Body) -> Result<(), String> {
+fn published(writer: &Publisher<Encoded>, message: Encoded) -> Result<(), String> {
     writer.publish(message).map_err(|error| error.to_string())
 }
 

@@ -2,7 +2,10 @@
 
 use std::{collections::BTreeMap, marker::PhantomData, sync::Arc};
 
-use ferntast_msgs::{Message, RosMessage, Time, cdr::DecodeError};
+use ferntast_msgs::{
+    Message, Time,
+    cdr::{self, DecodeError},
+};
 
 use super::{
     cursor::{Cursor, Found},
@@ -161,20 +164,18 @@ impl<M: Message> Iterator for Messages<M> {
             Err(error) => return Some(Err(error)),
         };
         let topic = || raw.topic.name.clone();
-        let message = M::Ros::decode(raw.bytes())
-            .and_then(|ros| M::from_ros(&ros).map_err(DecodeError::Invalid))
-            .map_err(|error| match error {
-                DecodeError::Invalid(source) => ReadMessageError::Invalid {
-                    topic: topic(),
-                    log_time: raw.log_time,
-                    source,
-                },
-                source => ReadMessageError::Decode {
-                    topic: topic(),
-                    log_time: raw.log_time,
-                    source,
-                },
-            });
+        let message = cdr::decode_sample(raw.bytes()).map_err(|error| match error {
+            DecodeError::Invalid(source) => ReadMessageError::Invalid {
+                topic: topic(),
+                log_time: raw.log_time,
+                source,
+            },
+            source => ReadMessageError::Decode {
+                topic: topic(),
+                log_time: raw.log_time,
+                source,
+            },
+        });
         Some(message.map(|message| TypedMessage {
             log_time: raw.log_time,
             publish_time: raw.publish_time,

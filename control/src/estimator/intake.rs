@@ -1,11 +1,9 @@
 //! From measurements to the torque of the contact: the part of the estimator that does not
 //! depend on how an arm is made.
 
-use super::filtered_motion::FilteredMotion;
-use super::form::TorqueOfContact;
-use super::links::Links;
 use super::sensors::{SensorState, SensorWatch};
 use super::{EstimatorParameters, Form, JointMeasurement};
+use crate::contact_torque::{FilteredMotion, Links, TorqueOfContact};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, ParameterError};
 

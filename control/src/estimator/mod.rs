@@ -17,13 +17,8 @@
 mod calibration;
 mod coefficient;
 mod estimate;
-mod filter;
-mod filtered_motion;
-mod form;
 mod intake;
-mod links;
 mod motor_current;
-mod observer;
 mod parameters;
 mod sensors;
 mod spatial;
@@ -32,11 +27,10 @@ mod systematic;
 mod touch;
 mod zeroing;
 
+pub use crate::contact_torque::{DerivativeFilter, Form};
 pub use calibration::{Calibrated, Calibration, Push, SelfCalibration};
 pub use coefficient::{Coefficient, CoefficientEstimator};
 pub use estimate::{ContactEstimate, JointMeasurement};
-pub use filter::DerivativeFilter;
-pub use form::Form;
 pub use motor_current::{
     MotorCurrentParameters, MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor,
 };

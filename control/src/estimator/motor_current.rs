@@ -14,7 +14,8 @@
 //! Friction at rest is whatever holds the joint, between −τ_F and +τ_F: nothing tells the
 //! torque then, nor until the filters have forgotten the rest.
 
-use super::{DerivativeFilter, EstimatorParameters, JointMeasurement, form::half_as_late};
+use super::{EstimatorParameters, JointMeasurement};
+use crate::contact_torque::{DerivativeFilter, half_as_late};
 use crate::servo::{FeedForward, TakeOverConfig};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, ParameterError, parameters};

@@ -1,6 +1,6 @@
 //! What can be tuned about the servo.
 
-use super::TakeOverConfig;
+use super::{ContactStopConfig, TakeOverConfig};
 use ferntast_model::{JointCount, Joints, ParameterError, check, parameters};
 
 parameters! {
@@ -49,6 +49,8 @@ parameters! {
         pub hold_stiffness: Vec<f64> [0.0..=1e6, "Nm/rad"] = vec![1000.0, 1000.0],
         /// k_D while paused \[Nm·s/rad\].
         pub hold_damping: Vec<f64> [0.0..=1e6, "Nm·s/rad"] = vec![40.0, 40.0],
+        /// How it stops where the arm runs into something.
+        pub contact_stop: ContactStopConfig [section] = ContactStopConfig::default(),
         /// How a paused arm lets go of what it presses against.
         pub release: ReleaseConfig [section] = ReleaseConfig::default(),
         /// Share of the modelled friction that is fed forward \[-\].

@@ -58,6 +58,8 @@ pub(super) struct JointServo {
     overspeed: f64,
     torque_limit: f64,
     torque_sensor_range: f64,
+    /// The arm has just run into something.
+    stands: bool,
     planted: Planted,
 }
 
@@ -95,6 +97,7 @@ impl JointServo {
             overspeed: config.overspeed_share * joint.velocity_limit,
             torque_limit: joint.motor_torque_limit,
             torque_sensor_range: joint.torque_sensor_range,
+            stands: false,
             planted: Planted::NONE,
         })
     }
@@ -137,6 +140,11 @@ impl JointServo {
     /// The arm has come to the first command.
     pub(super) fn end_approach(&mut self) {
         self.generator.end_approach();
+    }
+
+    /// Whether the setpoint stands where it is: the arm has just run into something.
+    pub(super) fn stand(&mut self, stands: bool) {
+        self.stands = stands;
     }
 
     pub(super) fn set_target(&mut self, target: f64) {
@@ -244,7 +252,13 @@ impl JointServo {
                 {
                     self.generator.start(setpoint.position);
                 }
-                let velocity_limited = self.generator.step(dt);
+                let velocity_limited = match self.stands {
+                    true => {
+                        self.generator.stand();
+                        false
+                    }
+                    false => self.generator.step(dt),
+                };
                 let setpoint = self.generator.setpoint();
                 Driven {
                     torque: self.law.follow(&setpoint, position, velocity, seen.torque),

@@ -3,9 +3,9 @@
 //! One call of [`Servo::step`] a period: measurement, newest command and state
 //! command in; motor torques, setpoint, state and everything refused or
 //! limited out. It has the joints that it is made for, one to
-//! [`MAX_JOINTS`](ferntast_model::MAX_JOINTS); the arm's kinematics it needs only
-//! to be told tips. What a serial arm's links weigh, and what their motion takes, is fed
-//! forward.
+//! [`MAX_JOINTS`](ferntast_model::MAX_JOINTS); the arm itself it needs only
+//! to be told tips and to stop at what it runs into. What a serial arm's links weigh, and what
+//! their motion takes, is fed forward.
 //!
 //! **When commands count.** After `enable` or `resume` the arm holds where it
 //! is, with full gains, and waits: no command yet is not a silent command. The
@@ -23,6 +23,7 @@
 mod command;
 mod compliance;
 mod config;
+mod contact_stop;
 mod feed_forward;
 mod frozen;
 mod joint;
@@ -45,11 +46,13 @@ pub use command::{
 };
 pub use compliance::{stiffest, stiffest_serial, tip_compliance};
 pub use config::{JointTuning, ReleaseConfig, ServoConfig};
+pub use contact_stop::ContactStopConfig;
 pub use feed_forward::{FedForward, FedTorque, FeedForward, MAX_TERMS};
 pub use law::{LimitedTorque, PositionLaw};
 pub use setpoint::{Setpoint, SetpointGenerator, SetpointLimits};
 pub use take_over::{FoundParameter, LeftOut, TakeOverConfig, TakeOverRefusal, TakenOver};
 
+use self::contact_stop::ContactStop;
 use self::frozen::FrozenWatch;
 use self::joint::{JointServo, Seen};
 use self::jumped::JumpWatch;
@@ -58,8 +61,8 @@ use self::stall::{BEGINS_ANEW, Stall};
 use crate::operating::{Event, OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
 use crate::planted::{Planted, Rule};
 use crate::{nanoseconds, seconds};
+use ferntast_model::arm::{Arm, ArmParameters};
 use ferntast_model::joint::JointParameters;
-use ferntast_model::kinematics::Kinematics;
 use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, ParameterError};
 
@@ -179,23 +182,42 @@ pub struct Servo {
     accepted: u64,
     /// What the joints carry of a serial arm's links.
     carried: Option<Carried>,
+    /// The links of a planar arm.
+    planar: Option<Arm>,
+    contact_stop: Option<ContactStop>,
     planted: Planted,
 }
 
 impl Servo {
-    /// A servo for `joints` as they are believed to be; with the arm's
-    /// `kinematics` it takes tips as well as joint positions.
+    /// A servo for `joints` as they are believed to be, of whatever arm: it takes joint
+    /// positions only.
     ///
     /// # Errors
     ///
     /// The first value of `config` or of the joints that is out of bounds; a list
-    /// of `config`, or kinematics, of another number of joints.
-    pub fn new(
+    /// of `config` of another number of joints.
+    pub fn new(joints: &[JointParameters], config: &ServoConfig) -> Result<Servo, ParameterError> {
+        Servo::of(joints, CartesianModel::None, config)
+    }
+
+    /// A servo for a planar arm of those `links`: it takes tips as well as joint positions, and
+    /// stops at what it runs into.
+    ///
+    /// # Errors
+    ///
+    /// As [`Servo::new`]; another number of joints than of links.
+    pub fn planar(
         joints: &[JointParameters],
-        kinematics: Option<Kinematics>,
+        links: &ArmParameters,
         config: &ServoConfig,
     ) -> Result<Servo, ParameterError> {
-        Servo::of(joints, kinematics.into(), config)
+        let links = Arm::new(links);
+        let kinematics = CartesianModel::Planar(*links.kinematics());
+        let servo = Servo::of(joints, kinematics, config)?;
+        Ok(Servo {
+            planar: Some(links),
+            ..servo
+        })
     }
 
     /// A servo for a serial `arm` in space: it takes tips as well as joint positions, and
@@ -222,6 +244,8 @@ impl Servo {
         let tuning = config.joints(count)?;
         let limits = |joint: usize| [joints[joint].position_lower, joints[joint].position_upper];
         let limits = Joints::from_fn(count, limits);
+        let stops = config.contact_stop.torque > 0.0;
+        let contact_stop = stops.then(|| ContactStop::new(joints, count, &config.contact_stop));
         let each = joints.iter().zip(tuning.iter()).enumerate();
         let each = each.map(|(index, (joint, tuning))| {
             JointServo::new(joint, tuning, config)
@@ -246,6 +270,8 @@ impl Servo {
             refusals: RefusalCounts::default(),
             accepted: 0,
             carried: None,
+            planar: None,
+            contact_stop,
             planted: Planted::NONE,
         })
     }
@@ -497,6 +523,19 @@ impl Servo {
         Joints::from_fn(self.count, |joint| self.joints[joint].setpoint())
     }
 
+    /// Whether the arm has just run into something that its torque sensors feel.
+    fn runs_into_something(&mut self, measured: &Measurement) -> bool {
+        let velocity = self.setpoint().map(|own| own.velocity);
+        let (Some(stop), period) = (&mut self.contact_stop, self.period) else {
+            return false;
+        };
+        match (&self.planar, &self.carried) {
+            (Some(links), _) => stop.step(links, period, measured, &velocity),
+            (None, Some(carried)) => stop.step(carried.arm(), period, measured, &velocity),
+            (None, None) => false,
+        }
+    }
+
     fn drive(
         &mut self,
         measured: &Measurement,
@@ -506,8 +545,11 @@ impl Servo {
         let state = self.machine.state();
         let times = self.joints.iter().map(JointServo::time_left);
         let slowest = times.fold(0.0, f64::max);
-        let joints = &mut self.joints;
-        joints.iter_mut().for_each(|own| own.keep_pace(slowest));
+        let stands = self.runs_into_something(measured);
+        for own in &mut self.joints {
+            own.keep_pace(slowest);
+            own.stand(stands);
+        }
         let joints = self.joints.iter_mut().zip(measured.joints(weight));
         for (torque, (joint, seen)) in output.torque.iter_mut().zip(joints) {
             let driven = joint.drive(state, self.period, &seen);

@@ -32,6 +32,11 @@ impl Carried {
         }
     }
 
+    /// The arm that it is of.
+    pub(super) fn arm(&self) -> &SerialArm {
+        &self.arm
+    }
+
     /// The links at `position` \[rad\], and what the joints carry of their weight there \[Nm\].
     pub(super) fn posture(&self, position: &Joints<f64>) -> (Posture, Joints<f64>) {
         let posture = self.arm.chain().posture(position);

@@ -181,6 +181,14 @@ impl SetpointGenerator {
         self.setpoint
     }
 
+    /// Stands still where it is, at once; what smooths the commands begins there anew.
+    pub fn stand(&mut self) {
+        self.tracked_position = self.setpoint.position;
+        self.tracked_velocity = 0.0;
+        self.setpoint.velocity = 0.0;
+        self.setpoint.acceleration = 0.0;
+    }
+
     /// Moves on by `dt` \[s\]. Returns whether velocity or acceleration was limited.
     pub fn step(&mut self, dt: f64) -> bool {
         let Some(target) = self.target else {

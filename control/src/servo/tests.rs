@@ -6,6 +6,7 @@ use super::*;
 use ferntast_model::Vector2;
 use ferntast_model::arm::{ArmParameters, LinkParameters};
 use ferntast_model::friction::FrictionParameters;
+use ferntast_model::kinematics::Kinematics;
 use proptest::prelude::*;
 use std::collections::VecDeque;
 
@@ -111,7 +112,7 @@ impl Bench {
     fn new(position: [f64; 2]) -> Bench {
         let joints = [joint(), joint()];
         let mut bench = Bench {
-            servo: Servo::new(&joints, Some(arm().kinematics()), &ServoConfig::default()).unwrap(),
+            servo: Servo::planar(&joints, &arm(), &ServoConfig::default()).unwrap(),
             joints: position.map(|q| Joint {
                 motor: [q, 0.0],
                 link: [q, 0.0],

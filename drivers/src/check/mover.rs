@@ -104,7 +104,7 @@ impl Mover {
         let count = JointCount::new(joints.len())?;
         let (servo, linear) = match believed {
             Believed::Planar(model) => (
-                Servo::new(&model.joint, Some(model.arm.kinematics()), config)?,
+                Servo::planar(&model.joint, &model.arm, config)?,
                 Joints::filled(count, false),
             ),
             Believed::Serial(serial) => {

@@ -105,7 +105,7 @@ impl ServoNode {
         let (arm, servo) = match model {
             Believed::Planar(model) => (
                 Some(Arm::new(&model.arm)),
-                Servo::new(&model.joint, Some(model.arm.kinematics()), config)?,
+                Servo::planar(&model.joint, &model.arm, config)?,
             ),
             Believed::Serial(serial) => (None, Servo::serial(&serial.arm, config)?),
         };

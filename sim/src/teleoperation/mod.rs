@@ -188,7 +188,8 @@ pub struct Outcome {
     /// Root mean square of the force on the hand less the contact's force as it
     /// was one delay ago \[N\].
     pub force_rmse: f64,
-    /// Hand less tip at the end \[m\].
+    /// Hand, as it was one delay ago, less tip at the end \[m\]: a handle that was let go may
+    /// still move.
     pub drift: f64,
     /// Stiffness that the hand feels while it presses, on a surface that moves while that
     /// moves \[N/m\]: of the surface where it was one way back ago. `None` where the hand

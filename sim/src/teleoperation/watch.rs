@@ -228,7 +228,8 @@ impl Watch {
         if (tick.tip[0] - start[0]).hypot(tick.tip[1] - start[1]) > ARRIVED {
             self.away_until = Some(tick.time);
         }
-        self.drift = (tick.hand[0] - tick.tip[0]).hypot(tick.hand[1] - tick.tip[1]);
+        let apart = difference(sent, tick.tip);
+        self.drift = apart[0].hypot(apart[1]);
     }
 
     /// The stiffness in the hand: of the surface where it was a way back ago, as the hand

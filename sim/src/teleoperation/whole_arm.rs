@@ -67,7 +67,7 @@ impl WholeArm {
                 reason: error.to_string(),
             },
         })?;
-        let servo = Servo::new(&model.joint, Some(kinematics), &trial.servo)?;
+        let servo = Servo::planar(&model.joint, &model.arm, &trial.servo)?;
         let own = WholeArm {
             environment,
             origin,

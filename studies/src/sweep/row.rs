@@ -51,7 +51,7 @@ pub struct Row {
     pub force_step: f64,
     /// For how long the arm did not obey \[s\].
     pub held_s: f64,
-    /// Hand less tip at the end \[mm\].
+    /// Hand, as it was one delay ago, less tip at the end \[mm\].
     pub drift_mm: f64,
     /// Largest force of the contact on the tip \[N\].
     #[serde(rename = "peak_force_N")]

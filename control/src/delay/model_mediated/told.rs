@@ -5,7 +5,7 @@ use super::estimate::SurfaceModel;
 use crate::delay::{Energy, Packet, vector};
 
 /// Stiffer than what is rendered, and within what a packet holds [N/m].
-const STIFFEST_SENT: f64 = 9000.0;
+const STIFFEST_SENT: f64 = 9900.0;
 
 /// The force goes in units of this, as a position in a packet is within 10 [N].
 const FORCE_UNIT: f64 = 100.0;

@@ -25,7 +25,7 @@ impl Default for InnerLaw {
             // The layer adds its own.
             free_damping: 1.0,
             // It lets nothing out that a spring so stiff made.
-            largest_stiffness: 9000.0,
+            largest_stiffness: 9900.0,
             // It keeps books itself.
             paid_updates: false,
             largest_chase: 0.01,

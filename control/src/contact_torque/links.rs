@@ -6,7 +6,7 @@ use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{Joints, Vector2};
 
 /// Dynamics of what is behind the torque sensors. Lists are of the arm's joints.
-pub(super) trait Links {
+pub(crate) trait Links {
     /// M q̈ + C q̇ + g \[Nm\].
     fn inverse_dynamics(&self, q: &Joints<f64>, qd: &Joints<f64>, qdd: &Joints<f64>)
     -> Joints<f64>;

@@ -19,7 +19,7 @@ pub enum Form {
     /// joint torque nor ∂L/∂q is the contact. Needs no acceleration.
     MomentumObserver,
     /// As direct, with joint torques by the motors' currents in place of torque sensors:
-    /// see [`TorqueByMotorCurrent`](super::TorqueByMotorCurrent).
+    /// see [`TorqueByMotorCurrent`](crate::estimator::TorqueByMotorCurrent).
     MotorCurrent,
 }
 
@@ -50,13 +50,13 @@ impl Channels {
 }
 
 /// With half the delay of one of `cut_off` \[Hz\], where something as late comes behind it.
-pub(super) fn half_as_late(cut_off: f64) -> DerivativeFilter {
+pub(crate) fn half_as_late(cut_off: f64) -> DerivativeFilter {
     DerivativeFilter::new(2.0 * cut_off)
 }
 
 /// Filters all channels alike and computes the torque of the contact.
 #[derive(Clone, Debug)]
-pub(super) struct TorqueOfContact {
+pub(crate) struct TorqueOfContact {
     channels: Channels,
     observer: Option<MomentumObserver>,
     /// How late the motion is, and how late everything is [s].
@@ -71,7 +71,7 @@ impl TorqueOfContact {
     /// asked for, and the filters before it twice that: their delays, 1/ω and
     /// 2/(2ω), add up to the 2/ω that the direct form's filters have. Torques by motor
     /// currents come through filters of their own: those and these have twice the cut-off.
-    pub(super) fn new(form: Form, cut_off: f64, joints: JointCount) -> Self {
+    pub(crate) fn new(form: Form, cut_off: f64, joints: JointCount) -> Self {
         let (filter, observer) = match form {
             Form::Direct => (DerivativeFilter::new(cut_off), None),
             Form::MomentumObserver => (
@@ -93,12 +93,12 @@ impl TorqueOfContact {
     }
 
     /// How late everything is \[s\].
-    pub(super) fn delay(&self) -> f64 {
+    pub(crate) fn delay(&self) -> f64 {
         self.delay
     }
 
     /// Starts again, at rest at link positions `position` \[rad\] under `torque` \[Nm\].
-    pub(super) fn reset(
+    pub(crate) fn reset(
         &mut self,
         links: &impl Links,
         position: &Joints<f64>,
@@ -113,7 +113,7 @@ impl TorqueOfContact {
     }
 
     /// Takes in link positions \[rad\] and joint torques \[Nm\], `dt` \[s\] after the last ones.
-    pub(super) fn step(&mut self, dt: f64, position: &Joints<f64>, torque: &Joints<f64>) {
+    pub(crate) fn step(&mut self, dt: f64, position: &Joints<f64>, torque: &Joints<f64>) {
         for (filter, value) in self.channels.each(position, torque) {
             filter.step(value, dt);
         }
@@ -121,7 +121,7 @@ impl TorqueOfContact {
 
     /// Motion and torque of the contact, after [`step`](Self::step) or
     /// [`reset`](Self::reset).
-    pub(super) fn motion(&mut self, links: &impl Links, dt: f64) -> FilteredMotion {
+    pub(crate) fn motion(&mut self, links: &impl Links, dt: f64) -> FilteredMotion {
         let channels = &self.channels;
         let channel =
             |read: fn(&DerivativeFilter) -> f64, from: &Joints<DerivativeFilter>| from.map(read);

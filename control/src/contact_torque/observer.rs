@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 
 /// The observer with what it knows of the last step.
 #[derive(Clone, Debug)]
-pub(super) struct MomentumObserver {
+pub(crate) struct MomentumObserver {
     omega: f64,
     /// p at the last step \[kg m²/s\].
     momentum: Joints<f64>,
@@ -32,7 +32,7 @@ pub(super) struct MomentumObserver {
 
 impl MomentumObserver {
     /// An observer of so many joints with bandwidth `cut_off` \[Hz\].
-    pub(super) fn new(cut_off: f64, joints: JointCount) -> Self {
+    pub(crate) fn new(cut_off: f64, joints: JointCount) -> Self {
         let none = Joints::filled(joints, 0.0);
         Self {
             omega: TAU * cut_off,
@@ -45,7 +45,7 @@ impl MomentumObserver {
     }
 
     /// Starts again, at rest: the contact bears what joint torques and gravity leave over.
-    pub(super) fn reset(
+    pub(crate) fn reset(
         &mut self,
         links: &impl Links,
         position: &Joints<f64>,
@@ -61,7 +61,7 @@ impl MomentumObserver {
     }
 
     /// Takes in motion and joint torques, filtered alike, `dt` \[s\] after the last ones.
-    pub(super) fn step(
+    pub(crate) fn step(
         &mut self,
         links: &impl Links,
         dt: f64,

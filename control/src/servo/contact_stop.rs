@@ -1,0 +1,288 @@
+//! Stops the setpoint where the arm runs into something.
+//!
+//! Contact force and command go round through estimator, law and tracker, which takes some
+//! 30 ms; a surface that is stiff has pushed the motors back by then, with what their inertia
+//! and the friction fed forward bring along. The servo has the joint torques at once. What they
+//! do not explain of the links' motion, after equation (5), Jᵀ F = M(q) q̈ + C(q, q̇) q̇ + g(q) − τ,
+//! is a contact's; where it comes suddenly and against the motion, the setpoint stands for a
+//! moment, in which the motors' own friction brakes them (collision detection and reaction:
+//! Haddadin, De Luca, Albu-Schäffer 2017, "Robot collisions: a survey on detection, isolation,
+//! and identification", IEEE T-RO 33, sections IV and VI; theirs by the momentum observer).
+//!
+//! What is slow stops nothing: errors of the torque sensors' zeros and of weights, up to half
+//! of the torque that stops, and contacts that grow as slowly as a command can follow. Nor does what
+//! changes in a contact. An arm without torque sensors, which tells zeros, has none of this.
+
+use super::Measurement;
+use crate::contact_torque::{Form, Links, TorqueOfContact};
+use crate::seconds;
+use ferntast_model::joint::JointParameters;
+use ferntast_model::{JointCount, Joints, parameters};
+
+parameters! {
+    /// How the setpoint stops where the arm runs into something. Every key may be left out.
+    #[derive(Copy)]
+    pub struct ContactStopConfig {
+        /// Torque against the motion that is a contact's \[Nm\], as the joints' share in the
+        /// motion has it: some times the noise of the torque sensors, twice differentiated;
+        /// 0: it never stops.
+        pub torque: f64 [0.0..=1e4, "Nm"] = 0.55,
+        /// For how long the setpoint stands \[s\].
+        pub time: f64 [0.001..=0.1, "s"] = 0.02,
+        /// Cut-off of the filters of motion and torque \[Hz\]: a contact is seen 2/(2π f) late.
+        pub cut_off: f64 [10.0..=400.0, "Hz"] = 80.0,
+    }
+}
+
+/// What grows with a larger time constant is not sudden [s].
+const SUDDEN: f64 = 0.01;
+/// Who is pressed on with more than this share of the torque that stops runs into nothing [-].
+const FREE: f64 = 0.5;
+/// A setpoint slower than this, all joints together, need not be stopped [rad/s].
+const SLOW: f64 = 0.02;
+/// From one stop to the next, and from the first measurement on: filters settle [s].
+const APART: f64 = 0.1;
+/// So many measurements of no torque at all are of no sensor: of one in steps of its noise some may be.
+const MOST_ZEROS: u32 = 20;
+/// Longer without a measurement, and the filters begin anew [s].
+const LONGEST_GAP: f64 = 0.005;
+
+/// Sees the arm run into something.
+#[derive(Clone, Debug)]
+pub(super) struct ContactStop {
+    config: ContactStopConfig,
+    joints: Vec<JointParameters>,
+    contact: TorqueOfContact,
+    /// When it was measured last [ns].
+    stamp_ns: Option<i64>,
+    /// Mean of the contact's torque over the time that is sudden [Nm].
+    lately: Joints<f64>,
+    /// Measurements of no torque, one after the other.
+    zeros: u32,
+    /// For how long the setpoint stands still [s], and for how long no stop may follow.
+    stands: f64,
+    rests: f64,
+}
+
+impl ContactStop {
+    /// For `joints` as they are believed to be, checked before.
+    pub(super) fn new(
+        joints: &[JointParameters],
+        count: JointCount,
+        config: &ContactStopConfig,
+    ) -> ContactStop {
+        ContactStop {
+            config: *config,
+            joints: joints.to_vec(),
+            contact: TorqueOfContact::new(Form::Direct, config.cut_off, count),
+            stamp_ns: None,
+            lately: Joints::filled(count, 0.0),
+            zeros: 0,
+            stands: 0.0,
+            rests: 0.0,
+        }
+    }
+
+    /// Whether the setpoint, which has that `velocity` \[rad/s\], stands in this step of
+    /// `period` \[s\].
+    pub(super) fn step(
+        &mut self,
+        links: &impl Links,
+        period: f64,
+        measured: &Measurement,
+        velocity: &Joints<f64>,
+    ) -> bool {
+        self.stands -= period;
+        self.rests -= period;
+        if self.stamp_ns.is_none_or(|last| measured.stamp_ns > last) {
+            let against = self.against(links, measured, velocity);
+            if against > self.config.torque && self.rests < 0.0 {
+                self.stands = self.config.time;
+                self.rests = APART;
+            }
+        }
+        self.stands > 0.0
+    }
+
+    /// What has suddenly come up against the motion \[Nm\].
+    fn against(
+        &mut self,
+        links: &impl Links,
+        measured: &Measurement,
+        velocity: &Joints<f64>,
+    ) -> f64 {
+        let passed = self
+            .stamp_ns
+            .replace(measured.stamp_ns)
+            .map_or(f64::INFINITY, |last| seconds(measured.stamp_ns - last));
+        let torque = &measured.torque;
+        self.zeros = match torque.iter().all(|own| *own == 0.0) {
+            true => self.zeros.saturating_add(1),
+            false => 0,
+        };
+        if self.zeros > MOST_ZEROS {
+            self.stamp_ns = None;
+            return 0.0;
+        }
+        let link = Joints::from_fn(torque.count(), |joint| {
+            self.joints[joint].link_position(measured.position[joint], torque[joint])
+        });
+        if passed > LONGEST_GAP {
+            self.contact.reset(links, &link, torque);
+            self.rests = APART;
+        } else {
+            self.contact.step(passed, &link, torque);
+        }
+        let contact = self.contact.motion(links, passed).contact_torque;
+        if passed > LONGEST_GAP {
+            self.lately = contact;
+            return 0.0;
+        }
+        let share = passed / (passed + SUDDEN);
+        let (mut power, mut pressed) = (0.0, 0.0_f64);
+        for joint in 0..contact.len() {
+            let sudden = contact[joint] - self.lately[joint];
+            pressed = pressed.max(self.lately[joint].abs());
+            power += sudden * velocity[joint];
+            self.lately[joint] += share * sudden;
+        }
+        let speed = velocity.iter().map(|own| own * own).sum::<f64>().sqrt();
+        match speed > SLOW && pressed < FREE * self.config.torque {
+            true => -power / speed,
+            false => 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::servo::tests::{arm, joint};
+    use ferntast_model::Vector2;
+    use ferntast_model::arm::{Arm, solve_symmetric};
+
+    const MS: i64 = 1_000_000;
+    /// Noise of the torque sensors, standard deviation \[Nm\].
+    const NOISE: f64 = 0.02;
+
+    /// Links behind the gears of motors that turn as they should.
+    struct Plant {
+        links: Arm,
+        joints: [JointParameters; 2],
+        q: Vector2<f64>,
+        qd: Vector2<f64>,
+        /// Where joint 1 touches, and how stiff that is there \[rad, Nm/rad\].
+        wall: Option<(f64, f64)>,
+        noise: u64,
+    }
+
+    impl Plant {
+        fn new(wall: Option<(f64, f64)>) -> Plant {
+            Plant {
+                links: Arm::new(&arm()),
+                joints: [joint(), joint()],
+                q: Vector2::new(0.0, 1.2),
+                qd: Vector2::zeros(),
+                wall,
+                noise: 1,
+            }
+        }
+
+        /// Normal after the sum of twelve uniform numbers (Knuth's 64-bit congruence).
+        fn normal(&mut self) -> f64 {
+            let mut uniform = || {
+                self.noise = self.noise.wrapping_mul(6364136223846793005);
+                self.noise = self.noise.wrapping_add(1442695040888963407);
+                (self.noise >> 11) as f64 / (1_u64 << 53) as f64
+            };
+            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+        }
+
+        /// A millisecond later, the motor of joint 1 at `motor` with `speed`; the other stands.
+        fn measure(&mut self, stamp_ns: i64, motor: f64, speed: f64) -> Measurement {
+            const PARTS: usize = 20;
+            let dt = 1e-3 / PARTS as f64;
+            let motors = Vector2::new(motor, 1.2);
+            let mut torque = Vector2::zeros();
+            for part in 1..=PARTS {
+                let before = Vector2::new(speed * (1e-3 - dt * part as f64), 0.0);
+                let wound = motors - before - self.q;
+                torque = 4400.0 * wound + 5.0 * (Vector2::new(speed, 0.0) - self.qd);
+                let contact = self.wall.map_or(0.0, |(place, stiffness)| {
+                    (stiffness * (place - self.q.x)).min(0.0)
+                });
+                let (inertia, bias) = self.links.inertia_and_bias(&self.q, &self.qd);
+                let drive = torque + Vector2::new(contact, 0.0) - bias;
+                self.qd += solve_symmetric(&inertia, &drive) * dt;
+                self.q += self.qd * dt;
+            }
+            Measurement {
+                stamp_ns,
+                position: [motor, 1.2].into(),
+                velocity: [speed, 0.0].into(),
+                torque: [torque.x, torque.y]
+                    .map(|own| own + NOISE * self.normal())
+                    .into(),
+            }
+        }
+    }
+
+    /// From touching on until the setpoint stands, and for how long \[ms\]; the motor of joint 1
+    /// turns with `speed(t)` \[rad/s\] for three seconds. `sensors`: the torques are measured.
+    fn stands(
+        wall: Option<(f64, f64)>,
+        sensors: bool,
+        speed: impl Fn(f64) -> f64,
+    ) -> (Option<usize>, usize) {
+        let mut plant = Plant::new(wall);
+        let config = ContactStopConfig::default();
+        let count = JointCount::new(2).unwrap();
+        let mut own = ContactStop::new(&plant.joints, count, &config);
+        let (mut motor, mut touched, mut first, mut long) = (0.0, None, None, 0);
+        for k in 0..3000 {
+            let now = speed(1e-3 * k as f64);
+            motor += now * 1e-3;
+            let mut measured = plant.measure((k as i64 + 1) * MS, motor, now);
+            if !sensors {
+                measured.torque = [0.0; 2].into();
+            }
+            if wall.is_some_and(|(place, _)| plant.q.x > place) {
+                touched = touched.or(Some(k));
+            }
+            if own.step(&plant.links, 1e-3, &measured, &[now, 0.0].into()) {
+                long += 1;
+                first = first.or(touched.map(|touched| k - touched));
+            }
+        }
+        (first, long)
+    }
+
+    /// 20 kN/m at 0.35 m from the axis, met at 60 mm/s.
+    const STIFF: (f64, f64) = (0.2, 2450.0);
+    const SPEED: f64 = 0.17;
+
+    /// The torque sensors alone see 1 Nm, 3 N at the tip, after some 6 ms.
+    #[test]
+    fn it_stands_a_few_milliseconds_after_a_stiff_contact_began_and_once() {
+        let (first, long) = stands(Some(STIFF), true, |_| SPEED);
+        assert!((2..=6).contains(&first.unwrap()), "{first:?} ms");
+        assert_eq!(long, 20);
+    }
+
+    #[test]
+    fn what_is_soft_or_nothing_at_all_stops_nothing() {
+        let soft = (STIFF.0, 0.05 * STIFF.1);
+        assert_eq!(stands(Some(soft), true, |_| SPEED), (None, 0));
+        assert_eq!(stands(None, true, |_| SPEED), (None, 0));
+        // To and fro with up to 12 rad/s².
+        assert_eq!(stands(None, true, |t| 0.6 * (20.0 * t).sin()), (None, 0));
+    }
+
+    #[test]
+    fn an_arm_that_measures_no_torque_is_not_stopped() {
+        assert_eq!(stands(Some(STIFF), false, |_| SPEED), (None, 0));
+        // Nor would it see anything where it speeds up.
+        let (_, long) = stands(None, false, |t| 0.6 * (20.0 * t).sin());
+        assert_eq!(long, 0);
+    }
+}
