@@ -282,3 +282,34 @@ fn a_disabled_arm_does_not_fall() {
     let fallen = (bench.tip - bench.believed.home_tip().translation).norm();
     assert!(fallen < 5e-3, "{fallen} m");
 }
+
+/// Largest force \[N\] where the arm runs into the table with 0.1 m/s and is told to go on for 10 ms
+/// more, with a servo that stops where the contact's torque is more than `torque` \[Nm\].
+fn impact(stiffness: f64, sensors: &str, torque: f64) -> f64 {
+    let mut bench = Bench::new(Form::Direct, stiffness, sensors);
+    let mut config = servo_config(&bench.believed);
+    config.contact_stop.torque = torque;
+    bench.servo = Servo::serial(&bench.believed, &config).expect("valid");
+    for _ in 0..50 {
+        bench.tick(None, None);
+    }
+    bench.tick(Some(StateCommand::Enable), None);
+    let (none, deep) = (Vector3::zeros(), Vector3::z() * -(APART + 0.001));
+    bench.go(none, none, 1000);
+    bench.go(none, deep, 210);
+    bench.go(deep, none, 210);
+    bench.error(0)[1]
+}
+
+#[test]
+fn it_hits_what_it_runs_into_less_hard_where_it_stops() {
+    for (stiffness, sensors) in [(1e6, ""), (1e6, NOISY), (1.5e4, NOISY)] {
+        let [with, without] = [2.0, 0.0].map(|torque| impact(stiffness, sensors, torque));
+        println!("{stiffness} Nm/rad: {with:.1} N, {without:.1} N without stopping");
+        assert!(
+            (0.5..0.85).contains(&(with / without)),
+            "{with} of {without} N"
+        );
+        assert!((20.0..40.0).contains(&without), "{without} N");
+    }
+}

@@ -83,6 +83,12 @@ impl ContactStop {
         }
     }
 
+    /// Does not stop for a moment from now on.
+    pub(super) fn rest(&mut self) {
+        self.stands = 0.0;
+        self.rests = APART;
+    }
+
     /// Whether the setpoint, which has that `velocity` \[rad/s\], stands in this step of
     /// `period` \[s\].
     pub(super) fn step(
@@ -129,7 +135,7 @@ impl ContactStop {
         });
         if passed > LONGEST_GAP {
             self.contact.reset(links, &link, torque);
-            self.rests = APART;
+            self.rest();
         } else {
             self.contact.step(passed, &link, torque);
         }

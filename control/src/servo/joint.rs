@@ -122,6 +122,11 @@ impl JointServo {
         self.generator.setpoint()
     }
 
+    /// Whether it follows commands, after the way to the first one.
+    pub(super) fn is_following(&self) -> bool {
+        self.generator.is_following()
+    }
+
     /// Whether its setpoint is where the commands are.
     pub(super) fn is_near(&self) -> bool {
         self.generator.is_near()

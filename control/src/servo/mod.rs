@@ -526,9 +526,14 @@ impl Servo {
     /// Whether the arm has just run into something that its torque sensors feel.
     fn runs_into_something(&mut self, measured: &Measurement) -> bool {
         let velocity = self.setpoint().map(|own| own.velocity);
+        let follows = self.joints.iter().all(JointServo::is_following);
         let (Some(stop), period) = (&mut self.contact_stop, self.period) else {
             return false;
         };
+        if !follows {
+            // On its way to the first command it is slow, and its torque is led over.
+            stop.rest();
+        }
         match (&self.planar, &self.carried) {
             (Some(links), _) => stop.step(links, period, measured, &velocity),
             (None, Some(carried)) => stop.step(carried.arm(), period, measured, &velocity),

@@ -153,6 +153,11 @@ impl SetpointGenerator {
         self.target.is_some() && self.approaching
     }
 
+    /// Whether it follows commands, after the way to the first one.
+    pub fn is_following(&self) -> bool {
+        self.target.is_some() && !self.approaching
+    }
+
     /// Whether it is where the commands are.
     pub fn is_near(&self) -> bool {
         self.near
