@@ -12,7 +12,7 @@ use ferntast_control::{
         Uncertainty,
     },
     operating::{OperatingState, StateCommand},
-    servo::{Command, ContactStopConfig, Measurement, Servo, ServoConfig, ServoInput, Target},
+    servo::{Command, Measurement, Servo, ServoConfig, ServoInput, Target},
 };
 use ferntast_model::{
     Joints,
@@ -77,11 +77,6 @@ fn servo_config(arm: &Believed) -> ServoConfig {
         pressing_limit: vec![25.0, 25.0, 25.0, 25.0, 6.0, 6.0, 6.0],
         hold_stiffness: each(900.0),
         hold_damping: each(60.0),
-        // As configurations have it for serial arms.
-        contact_stop: ContactStopConfig {
-            torque: 0.0,
-            ..ContactStopConfig::default()
-        },
         ..ServoConfig::default()
     }
 }

@@ -6,7 +6,7 @@ use std::thread;
 use ferntast_control::{
     delay::Law,
     haptics::MasterConfig,
-    servo::{self, ServoConfig},
+    servo::{self, ContactStopConfig, ServoConfig},
 };
 use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig, Loss};
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
@@ -21,7 +21,14 @@ fn arm() -> ArmUnderTrial {
     let text = include_str!("../../config/arms/rokviss.toml");
     ArmUnderTrial {
         arm: toml::from_str::<ArmConfig>(text).expect("the shipped arm"),
-        servo: ServoConfig::default(),
+        servo: ServoConfig {
+            // As in the sweep that ships.
+            contact_stop: ContactStopConfig {
+                torque: 0.55,
+                ..ContactStopConfig::default()
+            },
+            ..ServoConfig::default()
+        },
     }
 }
 

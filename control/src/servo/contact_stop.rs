@@ -20,13 +20,14 @@ use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, parameters};
 
 parameters! {
-    /// How the setpoint stops where the arm runs into something. Every key may be left out.
+    /// How the setpoint stops where the arm runs into something. Every key may be left out:
+    /// it does not stop then, as the noise of an arm's sensors is not known.
     #[derive(Copy)]
     pub struct ContactStopConfig {
         /// Torque against the motion that is a contact's \[Nm\], as the joints' share in the
-        /// motion has it: some times the noise of the torque sensors, twice differentiated;
-        /// 0: it never stops.
-        pub torque: f64 [0.0..=1e4, "Nm"] = 0.55,
+        /// motion has it: some times the noise of the torque sensors, twice differentiated (ROKVISS:
+        /// 0.55 Nm); 0: it never stops.
+        pub torque: f64 [0.0..=1e4, "Nm"] = 0.0,
         /// For how long the setpoint stands \[s\].
         pub time: f64 [0.001..=0.1, "s"] = 0.02,
         /// Cut-off of the filters of motion and torque \[Hz\]: a contact is seen 2/(2π f) late.
@@ -241,7 +242,10 @@ mod tests {
         speed: impl Fn(f64) -> f64,
     ) -> (Option<usize>, usize) {
         let mut plant = Plant::new(wall);
-        let config = ContactStopConfig::default();
+        let config = ContactStopConfig {
+            torque: 0.55,
+            ..ContactStopConfig::default()
+        };
         let count = JointCount::new(2).unwrap();
         let mut own = ContactStop::new(&plant.joints, count, &config);
         let (mut motor, mut touched, mut first, mut long) = (0.0, None, None, 0);

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use ferntast_control::{
     estimator::{EstimatorParameters, Form, MotorCurrentParameters, Uncertainty},
-    servo::{ContactStopConfig, ServoConfig},
+    servo::ServoConfig,
 };
 use ferntast_model::{
     Joints, ParameterError,
@@ -127,11 +127,6 @@ impl Defaults {
             pressing_limit: each(&|_, own| PRESSING * own.motor_torque_limit),
             hold_stiffness: each(&|joint, own| 0.25 * STIFF * STIFF * moved(joint, own)),
             hold_damping: each(&|joint, own| STIFF * moved(joint, own)),
-            contact_stop: ContactStopConfig {
-                // How much noise the arm's sensors have is not known.
-                torque: 0.0,
-                ..own.contact_stop
-            },
             ..own
         })
     }
