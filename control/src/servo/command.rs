@@ -164,12 +164,6 @@ pub enum CartesianModel<'a> {
     Serial(&'a SerialArm),
 }
 
-impl From<Option<Kinematics>> for CartesianModel<'_> {
-    fn from(kinematics: Option<Kinematics>) -> Self {
-        kinematics.map_or(CartesianModel::None, CartesianModel::Planar)
-    }
-}
-
 impl CartesianModel<'_> {
     /// For an arm of so many joints.
     fn tip(self, joints: JointCount) -> Result<Option<Arc<dyn TipKinematics>>, ParameterError> {
@@ -224,13 +218,13 @@ impl CommandCheck {
     /// # Errors
     ///
     /// [`ParameterError::WrongCount`]: kinematics of another number of joints.
-    pub fn new<'a>(
-        kinematics: impl Into<CartesianModel<'a>>,
+    pub fn new(
+        kinematics: CartesianModel<'_>,
         limits: Joints<[f64; 2]>,
         config: &ServoConfig,
     ) -> Result<Self, ParameterError> {
         Ok(CommandCheck {
-            tip: kinematics.into().tip(limits.count())?,
+            tip: kinematics.tip(limits.count())?,
             limits,
             workspace: [config.workspace_lower, config.workspace_upper],
             age: config.command_age,
@@ -454,9 +448,9 @@ mod tests {
     const NOW: i64 = 1_700_000_000_000_000_000;
 
     fn check() -> CommandCheck {
-        let kinematics = Kinematics::new([0.25, 0.25]);
+        let kinematics = CartesianModel::Planar(Kinematics::new([0.25, 0.25]));
         let limits = [[-1.5, 1.5], [0.2, 2.5]].into();
-        CommandCheck::new(Some(kinematics), limits, &ServoConfig::default()).unwrap()
+        CommandCheck::new(kinematics, limits, &ServoConfig::default()).unwrap()
     }
 
     /// The elbow bent to the positive side.
@@ -568,7 +562,7 @@ mod tests {
 
     #[test]
     fn kinematics_of_another_number_of_joints_are_refused() {
-        let kinematics = Some(Kinematics::new([0.25, 0.25]));
+        let kinematics = CartesianModel::Planar(Kinematics::new([0.25, 0.25]));
         let limits = [[-1.0, 1.0]; 3].into();
         let error = CommandCheck::new(kinematics, limits, &ServoConfig::default()).unwrap_err();
         assert_eq!(

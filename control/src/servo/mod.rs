@@ -201,7 +201,7 @@ impl Servo {
     }
 
     /// A servo for a planar arm of those `links`: it takes tips as well as joint positions, and
-    /// stops at what it runs into.
+    /// stops at what it runs into where `config` says so.
     ///
     /// # Errors
     ///
@@ -525,15 +525,15 @@ impl Servo {
 
     /// Whether the arm has just run into something that its torque sensors feel.
     fn runs_into_something(&mut self, measured: &Measurement) -> bool {
-        let velocity = self.setpoint().map(|own| own.velocity);
-        let follows = self.joints.iter().all(JointServo::is_following);
-        let (Some(stop), period) = (&mut self.contact_stop, self.period) else {
+        let Some(stop) = &mut self.contact_stop else {
             return false;
         };
-        if !follows {
+        if !self.joints.iter().all(JointServo::is_following) {
             // On its way to the first command it is slow, and its torque is led over.
             stop.rest();
         }
+        let (joints, period) = (&self.joints, self.period);
+        let velocity = Joints::from_fn(self.count, |joint| joints[joint].setpoint().velocity);
         match (&self.planar, &self.carried) {
             (Some(links), _) => stop.step(links, period, measured, &velocity),
             (None, Some(carried)) => stop.step(carried.arm(), period, measured, &velocity),
