@@ -112,7 +112,6 @@ impl Bench {
             }),
             command: target.map(|target| Command { stamp_ns, target }),
             state_command: state,
-            weight: None,
         };
         let (output, allocated) = allocations(|| self.servo.step(self.now, &input));
         self.allocations += allocated;

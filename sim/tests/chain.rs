@@ -247,8 +247,6 @@ impl Chain {
                 }),
                 command: self.command,
                 state_command,
-                // In orbit nothing weighs anything.
-                weight: Some([0.0; 2].into()),
             },
         );
         assert_eq!(servo.refused, None);

@@ -183,7 +183,6 @@ impl Bench {
                     target: Target::Tip((home + own).into()),
                 }),
                 state_command,
-                weight: None,
             },
         );
         self.torque = output.torque;

@@ -56,7 +56,6 @@ impl Bench {
                 measurement: Some(self.measured),
                 command,
                 state_command: state,
-                weight: None,
             },
         );
         self.arm.advance([self.torque[0], self.torque[1]], TICK);

@@ -7,10 +7,13 @@ mod filter;
 mod filtered_motion;
 mod form;
 mod links;
+mod measured;
 mod observer;
 
 pub use filter::DerivativeFilter;
 pub(crate) use filtered_motion::FilteredMotion;
 pub use form::Form;
-pub(crate) use form::{TorqueOfContact, half_as_late};
+use form::TorqueOfContact;
+pub(crate) use form::half_as_late;
 pub(crate) use links::Links;
+pub(crate) use measured::MeasuredContact;

@@ -3,7 +3,7 @@
 
 use super::sensors::{SensorState, SensorWatch};
 use super::{EstimatorParameters, Form, JointMeasurement};
-use crate::contact_torque::{FilteredMotion, Links, TorqueOfContact};
+use crate::contact_torque::{FilteredMotion, Links, MeasuredContact};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, ParameterError};
 
@@ -34,13 +34,12 @@ pub(super) struct Intake {
     joints: Vec<JointParameters>,
     cut_off: f64,
     longest_gap: f64,
-    contact: TorqueOfContact,
+    contact: MeasuredContact,
     sensors: SensorWatch,
     /// Time since the filters were last moved on \[s\].
     gap: f64,
     /// Time until the filters have forgotten a start or a sensor that failed \[s\].
     settling: f64,
-    started: bool,
 }
 
 impl Intake {
@@ -67,11 +66,16 @@ impl Intake {
             joints: joints.to_vec(),
             cut_off: parameters.cut_off,
             longest_gap: parameters.longest_gap,
-            contact: TorqueOfContact::new(parameters.form, parameters.cut_off, count),
+            contact: MeasuredContact::new(
+                joints,
+                count,
+                parameters.form,
+                parameters.cut_off,
+                parameters.longest_gap,
+            ),
             sensors: SensorWatch::new(count),
             gap: 0.0,
             settling: 0.0,
-            started: false,
         };
         Ok((intake, parameters))
     }
@@ -116,48 +120,24 @@ impl Intake {
         }
         let passed = self.gap + dt;
         self.gap = 0.0;
-        let link = self.filter(links, passed, measurement);
+        let (position, torque) = (&measurement.motor_position, &measurement.joint_torque);
+        let contact = self.contact.step(links, passed, position, torque);
         let memory = self.settling_time();
+        self.settling = match contact.anew {
+            true => memory,
+            false => (self.settling - passed).max(0.0),
+        };
         let sensors = self.sensors.step(passed, memory, &self.joints, measurement);
         if sensors.stuck.contains(&true) {
             self.settling = memory;
         }
         Some(Taken {
             passed,
-            link,
-            motion: self.contact.motion(links, passed),
+            link: contact.link,
+            motion: contact.motion,
             sensors,
             settled: self.settling <= 0.0,
         })
-    }
-
-    /// Filters all channels; gives the newest link-side position \[rad\].
-    fn filter(
-        &mut self,
-        links: &impl Links,
-        dt: f64,
-        measurement: &JointMeasurement,
-    ) -> Joints<f64> {
-        let anew = !self.started || dt > self.longest_gap;
-        self.settling = if anew {
-            self.settling_time()
-        } else {
-            (self.settling - dt).max(0.0)
-        };
-        self.started = true;
-        let torque = measurement.joint_torque;
-        let link = Joints::from_fn(self.count, |joint| {
-            let (own, motor) = (&self.joints[joint], measurement.motor_position[joint]);
-            // Beyond its range a sensor says nothing, least of all how far the gear is wound.
-            let range = own.torque_sensor_range;
-            own.link_position(motor, torque[joint].clamp(-range, range))
-        });
-        if anew {
-            self.contact.reset(links, &link, &torque);
-        } else {
-            self.contact.step(dt, &link, &torque);
-        }
-        link
     }
 }
 

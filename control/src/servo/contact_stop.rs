@@ -14,7 +14,7 @@
 //! changes in a contact. An arm without torque sensors, which tells zeros, has none of this.
 
 use super::Measurement;
-use crate::contact_torque::{Form, Links, TorqueOfContact};
+use crate::contact_torque::{Form, Links, MeasuredContact};
 use crate::seconds;
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, parameters};
@@ -52,8 +52,7 @@ const LONGEST_GAP: f64 = 0.005;
 #[derive(Clone, Debug)]
 pub(super) struct ContactStop {
     config: ContactStopConfig,
-    joints: Vec<JointParameters>,
-    contact: TorqueOfContact,
+    contact: MeasuredContact,
     /// When it was measured last [ns].
     stamp_ns: Option<i64>,
     /// Mean of the contact's torque over the time that is sudden [Nm].
@@ -74,8 +73,7 @@ impl ContactStop {
     ) -> ContactStop {
         ContactStop {
             config: *config,
-            joints: joints.to_vec(),
-            contact: TorqueOfContact::new(Form::Direct, config.cut_off, count),
+            contact: MeasuredContact::new(joints, count, Form::Direct, config.cut_off, LONGEST_GAP),
             stamp_ns: None,
             lately: Joints::filled(count, 0.0),
             zeros: 0,
@@ -121,27 +119,20 @@ impl ContactStop {
         let passed = self
             .stamp_ns
             .replace(measured.stamp_ns)
-            .map_or(f64::INFINITY, |last| seconds(measured.stamp_ns - last));
+            .map_or(0.0, |last| seconds(measured.stamp_ns - last));
         let torque = &measured.torque;
         self.zeros = match torque.iter().all(|own| *own == 0.0) {
             true => self.zeros.saturating_add(1),
             false => 0,
         };
         if self.zeros > MOST_ZEROS {
-            self.stamp_ns = None;
+            self.contact.forget();
             return 0.0;
         }
-        let link = Joints::from_fn(torque.count(), |joint| {
-            self.joints[joint].link_position(measured.position[joint], torque[joint])
-        });
-        if passed > LONGEST_GAP {
-            self.contact.reset(links, &link, torque);
+        let seen = self.contact.step(links, passed, &measured.position, torque);
+        let contact = seen.motion.contact_torque;
+        if seen.anew {
             self.rest();
-        } else {
-            self.contact.step(passed, &link, torque);
-        }
-        let contact = self.contact.motion(links, passed).contact_torque;
-        if passed > LONGEST_GAP {
             self.lately = contact;
             return 0.0;
         }

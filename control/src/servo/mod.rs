@@ -63,6 +63,7 @@ use crate::planted::{Planted, Rule};
 use crate::{nanoseconds, seconds};
 use ferntast_model::arm::{Arm, ArmParameters};
 use ferntast_model::joint::JointParameters;
+use ferntast_model::kinematics::planar;
 use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, ParameterError};
 
@@ -96,7 +97,8 @@ impl Measurement {
             .all(|own| own.count() == count && own.iter().all(|value| value.is_finite()))
     }
 
-    /// What each joint measures, of which `weight` \[Nm\] is the arm's own.
+    /// What each joint measures, of which `weight` \[Nm\] is the arm's own; `None` where that is
+    /// not known: then a paused arm keeps what it presses with.
     fn joints(&self, weight: Option<Joints<f64>>) -> impl Iterator<Item = Seen> + '_ {
         let both = self.position.iter().zip(self.velocity.iter());
         let all = both.zip(self.torque.iter()).enumerate();
@@ -120,9 +122,6 @@ pub struct ServoInput {
     pub command: Option<Command>,
     /// A state command that came since the last step.
     pub state_command: Option<StateCommand>,
-    /// What the joints carry of the arm's own weight where they are \[Nm\]; `None` where
-    /// that is not known: then a paused arm keeps what it presses with.
-    pub weight: Option<Joints<f64>>,
 }
 
 /// What a step of the servo gives.
@@ -394,7 +393,10 @@ impl Servo {
             Ok(measured) => {
                 let carried = self.carried.as_ref();
                 let posture = carried.map(|own| own.posture(&measured.position));
-                let weight = posture.map_or(input.weight, |(_, weight)| Some(weight));
+                let weight = match &posture {
+                    Some((_, weight)) => Some(*weight),
+                    None => self.planar_weight(&measured.position),
+                };
                 self.drive(&measured, weight, &mut output);
                 if let (Some(carried), Some(posture)) = (&self.carried, posture) {
                     let setpoint = self.setpoint();
@@ -521,6 +523,12 @@ impl Servo {
 
     fn setpoint(&self) -> Joints<Setpoint> {
         Joints::from_fn(self.count, |joint| self.joints[joint].setpoint())
+    }
+
+    /// What the joints of a planar arm carry of its links' weight at `position` \[rad\], in Nm.
+    fn planar_weight(&self, position: &Joints<f64>) -> Option<Joints<f64>> {
+        let links = self.planar.as_ref()?;
+        planar(position).map(|q| links.gravity(&q).into())
     }
 
     /// Whether the arm has just run into something that its torque sensors feel.

@@ -111,8 +111,17 @@ struct Bench {
 impl Bench {
     fn new(position: [f64; 2]) -> Bench {
         let joints = [joint(), joint()];
+        // It keeps what it presses with: giving way is tested for itself (`release.rs`).
+        let release = ReleaseConfig {
+            distance: 0.0,
+            ..ReleaseConfig::default()
+        };
+        let config = ServoConfig {
+            release,
+            ..ServoConfig::default()
+        };
         let mut bench = Bench {
-            servo: Servo::planar(&joints, &arm(), &ServoConfig::default()).unwrap(),
+            servo: Servo::planar(&joints, &arm(), &config).unwrap(),
             joints: position.map(|q| Joint {
                 motor: [q, 0.0],
                 link: [q, 0.0],
@@ -156,7 +165,6 @@ impl Bench {
             measurement,
             command,
             state_command,
-            weight: None,
         };
         let output = self.servo.step(self.now, &input);
         self.torques.push_back(output.torque);

@@ -15,7 +15,7 @@ use ferntast_nodes::config::Believed;
 use serde::Serialize;
 
 use super::finding::{Finding, Severity};
-use crate::{driver::Reading, weight::Weight};
+use crate::driver::Reading;
 
 /// How far a joint goes to each side: \[rad\], and \[m\].
 const AMPLITUDE: f64 = 0.03;
@@ -76,7 +76,6 @@ pub struct Mover {
     servo: Servo,
     ranges: Joints<[f64; 2]>,
     amplitudes: Joints<f64>,
-    weight: Weight,
     measured: Option<Measurement>,
     joint: usize,
     /// Where the joints were when this one's motion began, and since when it goes on \[s\].
@@ -128,7 +127,6 @@ impl Mover {
                 true => AMPLITUDE_LINEAR,
                 false => AMPLITUDE,
             }),
-            weight: Weight::new(believed, count),
             measured: None,
             joint: 0,
             motion: None,
@@ -187,7 +185,6 @@ impl Mover {
                 measurement: Some(measured),
                 command,
                 state_command,
-                weight: Some(self.weight.at(&measured.position)),
             },
         );
         if output.state == OperatingState::Fault {

@@ -18,7 +18,7 @@ use ferntast_control::{
         ServoOutput as LawOutput, Target,
     },
 };
-use ferntast_model::{JointCount, Joints, ParameterError, Vector2, arm::Arm};
+use ferntast_model::{JointCount, Joints, ParameterError};
 use ferntast_msgs::{
     Text, Time,
     sample::{
@@ -83,8 +83,6 @@ pub fn make(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
 /// The joint servo.
 pub struct ServoNode {
     joints: JointNames,
-    /// What a planar arm weighs; of a serial one the servo knows it.
-    arm: Option<Arm>,
     servo: Servo,
     states: StatePublisher,
     friction: FrictionCommands,
@@ -102,16 +100,12 @@ impl ServoNode {
     ///
     /// A parameter out of its bounds.
     pub fn new(model: &Believed, config: &ServoConfig) -> Result<ServoNode, ParameterError> {
-        let (arm, servo) = match model {
-            Believed::Planar(model) => (
-                Some(Arm::new(&model.arm)),
-                Servo::planar(&model.joint, &model.arm, config)?,
-            ),
-            Believed::Serial(serial) => (None, Servo::serial(&serial.arm, config)?),
+        let servo = match model {
+            Believed::Planar(model) => Servo::planar(&model.joint, &model.arm, config)?,
+            Believed::Serial(serial) => Servo::serial(&serial.arm, config)?,
         };
         Ok(ServoNode {
             joints: model.joint_names(),
-            arm,
             servo,
             states: StatePublisher::default(),
             friction: FrictionCommands::new(model.joint_names()),
@@ -175,7 +169,6 @@ impl Node for ServoNode {
             }),
             command: command(input, servo_jp.as_deref(), joints),
             state_command: self.state_command(input, output),
-            weight: measured.and_then(|sample| self.weight(sample)),
         };
         self.feed_forward(now, input, output);
         let was_enabled = self.servo.state() == operating::OperatingState::Enabled;
@@ -223,14 +216,6 @@ impl ServoNode {
         told(operating::StateCommand::Disable)
             .or_else(|| told(operating::StateCommand::Pause))
             .or_else(|| all().last())
-    }
-
-    /// What the joints of a planar arm carry of its own weight \[Nm\], where it has no more
-    /// joints than the model has links.
-    fn weight(&self, measured: &JointSample) -> Option<Joints<f64>> {
-        let q = Vector2::new(measured.position[0], measured.position[1]);
-        let own = self.arm.as_ref()?.gravity(&q);
-        (self.servo.joints().get() == own.len()).then(|| [own[0], own[1]].into())
     }
 
     /// What became of the commands: ten times a second.

@@ -22,8 +22,6 @@ pub trait TrialArm {
     fn measure(&mut self, now_ns: i64) -> Option<Measurement>;
     /// Temperatures of its gears \[degC\], where they are measured.
     fn temperature(&self) -> Option<Joints<f64>>;
-    /// What the joints carry of its own weight \[Nm\], where the servo does not know it.
-    fn weight(&self) -> Option<Joints<f64>>;
     /// What the estimator makes of the measurement before the last one that was read.
     fn estimate(&mut self, measured: &Measurement) -> Estimated;
     /// What is true now.
@@ -96,7 +94,6 @@ impl<A: TrialArm> Servoed<A> {
             measurement: self.measured,
             command: self.command,
             state_command: self.measured.and_then(|_| self.word(now_ns)),
-            weight: self.arm.weight(),
         };
         let output = self.servo.step(now_ns, &input);
         self.state = output.state;
@@ -157,10 +154,6 @@ impl<A: TrialArm + ?Sized> TrialArm for &mut A {
 
     fn temperature(&self) -> Option<Joints<f64>> {
         (**self).temperature()
-    }
-
-    fn weight(&self) -> Option<Joints<f64>> {
-        (**self).weight()
     }
 
     fn estimate(&mut self, measured: &Measurement) -> Estimated {

@@ -102,10 +102,6 @@ impl TrialArm for WholeArm {
         Some(self.temperature.into())
     }
 
-    fn weight(&self) -> Option<Joints<f64>> {
-        Some([0.0; JOINTS].into())
-    }
-
     fn estimate(&mut self, measured: &Measurement) -> Estimated {
         let estimate = self.estimator.step(
             TICK,

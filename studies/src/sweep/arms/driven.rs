@@ -169,10 +169,6 @@ impl TrialArm for DrivenArm {
         self.readings[0].and_then(|own| own.temperature)
     }
 
-    fn weight(&self) -> Option<Joints<f64>> {
-        None
-    }
-
     fn estimate(&mut self, measured: &Measurement) -> Estimated {
         let estimate = self.step_estimator(measured);
         Estimated {
