@@ -75,7 +75,8 @@ pub fn load_scenario(name: &str, load_arm: LoadArm) -> Result<Loaded, ConfigErro
         loaded.leader = Some(load_leader(&leader.arm, load_arm)?);
     }
     if let Believed::Serial(serial) = &loaded.arm.model {
-        serial::fit(&mut loaded.scenario, serial, false);
+        serial::fit(&mut loaded.scenario, serial, false)
+            .map_err(|error| (loaded.path.as_str(), error))?;
     }
     Ok(loaded)
 }
@@ -133,7 +134,7 @@ impl Loaded {
         name.clone_into(&mut self.scenario.arm);
         if let Believed::Serial(serial) = &self.arm.model {
             self.scenario.servo = ServoConfig::default();
-            serial::fit(&mut self.scenario, serial, true);
+            serial::fit(&mut self.scenario, serial, true).map_err(|error| (name, error))?;
             self.scenario.name.clone_from(&serial.name);
             self.scenario.description = format!("A hand drives {}.", serial.name);
         }

@@ -197,7 +197,7 @@ fn which(arm: &Arm, number: usize, entry: &toml::Table) -> Result<usize, SerialE
 }
 
 /// `own` with what `entry` says in its place, key by key.
-fn merged<T: Serialize + DeserializeOwned>(
+pub(super) fn merged<T: Serialize + DeserializeOwned>(
     own: &T,
     entry: toml::Table,
     section: &str,

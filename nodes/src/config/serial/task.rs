@@ -4,23 +4,31 @@ use ferntast_control::{delay::Mapping, servo::ServoConfig};
 use ferntast_emulation::hand::{Motion, Phase, Point, Script};
 use ferntast_model::{rigid_body::Vector3, serial_arm::Plane};
 
-use super::{Serial, written};
+use super::{Serial, SerialError, file::merged, written};
 use crate::config::Scenario;
 
 /// Tip positions are in the middle of the hand's where this stands: nobody gave another one.
 const NOT_GIVEN: [f64; 3] = [0.35355, 0.0, 0.0];
+/// The section of the servo's tuning.
+const SERVO: &str = "servo";
 /// An arm that reaches less than this \[m\] moves less than the hand does.
 const SMALL: f64 = 0.3;
 /// How far the hand goes beyond a surface \[m\] at the tip, and along it.
 const DEEP: f64 = 0.003;
 const ALONG: f64 = 0.02;
 
-/// Takes the servo's tuning and the tip's place from the arm, where the scenario gives none;
-/// with `hand`, or where the script is empty, also what the scripted hand does.
-pub(in crate::config) fn fit(scenario: &mut Scenario, serial: &Serial, hand: bool) {
-    if scenario.servo == ServoConfig::default() {
-        scenario.servo = serial.servo.clone();
-    }
+/// Takes the servo's tuning, key by key, and the tip's place from the arm, where the scenario
+/// gives none; with `hand`, or where the script is empty, also what the scripted hand does.
+///
+/// # Errors
+///
+/// A list of the scenario's `[servo]` that is not of one entry for each joint.
+pub(in crate::config) fn fit(
+    scenario: &mut Scenario,
+    serial: &Serial,
+    hand: bool,
+) -> Result<(), SerialError> {
+    scenario.servo = tuned(&serial.servo, &scenario.servo)?;
     let mapping = scenario.law.mapping();
     if hand || mapping.workspace_offset == NOT_GIVEN {
         let tip = serial.arm.home_tip().translation.map(written);
@@ -38,6 +46,21 @@ pub(in crate::config) fn fit(scenario: &mut Scenario, serial: &Serial, hand: boo
     if let Some(own) = scripted.filter(|own| hand || own.script.phase.is_empty()) {
         own.script = script(serial, scenario.law.mapping().position_scale);
     }
+    Ok(())
+}
+
+/// The arm's tuning with the `scenario`'s in its place, key by key: what is by default was not given.
+fn tuned(arm: &ServoConfig, scenario: &ServoConfig) -> Result<ServoConfig, SerialError> {
+    let keys = |own: &ServoConfig| {
+        toml::Table::try_from(own).map_err(|error| SerialError::Section {
+            section: SERVO.to_owned(),
+            message: error.to_string(),
+        })
+    };
+    let default = keys(&ServoConfig::default())?;
+    let mut given = keys(scenario)?;
+    given.retain(|key, value| default.get(key) != Some(value));
+    merged(arm, given, SERVO)
 }
 
 /// The scripted hand touches one surface after the other, presses and slides, again and again.
@@ -117,5 +140,37 @@ fn wander(scale: f64) -> Script {
             sine("left and right", [0.0, 0.03, 0.0]),
             sine("up and down", [0.0, 0.0, 0.03]),
         ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::serial::load_serial;
+    use ferntast_control::servo::ContactStopConfig;
+
+    #[test]
+    fn what_a_scenario_says_of_the_servo_stands_in_the_place_of_the_arms() {
+        let arm = load_serial("panda").unwrap().unwrap();
+        let serial = arm.model.serial().unwrap();
+        let contact_stop = ContactStopConfig {
+            torque: 1.5,
+            ..ContactStopConfig::default()
+        };
+        let mut scenario = Scenario::without_operator(
+            ServoConfig {
+                contact_stop,
+                ..ServoConfig::default()
+            },
+            1,
+        );
+        let tuned = ServoConfig {
+            contact_stop,
+            ..serial.servo.clone()
+        };
+        for _ in 0..2 {
+            fit(&mut scenario, serial, false).unwrap();
+            assert_eq!(scenario.servo, tuned);
+        }
     }
 }
