@@ -50,7 +50,7 @@ pub struct LockstepOutcome {
     pub contact: ContactSummary,
     /// The tip.
     pub tip: TipSummary,
-    /// Stiffness felt in the hand \[N/m\]; `null` where nothing is pressed.
+    /// As in a session's summary.
     #[serde(rename = "felt_stiffness_N_per_m")]
     pub felt_stiffness: Option<f64>,
     /// The hand.

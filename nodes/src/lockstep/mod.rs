@@ -27,6 +27,8 @@ pub use virtual_time::{VirtualTime, VirtualTimeError};
 
 /// When the arm is armed, after the start \[ns\].
 const ENABLE_AT_NANOS: i64 = 20_000_000;
+/// The monitor looks so often [s], as in a session.
+const MONITOR_PERIOD: f64 = 0.02;
 
 /// Why lockstep cannot run.
 #[derive(Debug, thiserror::Error)]
@@ -183,9 +185,8 @@ impl LockstepSession {
     /// [`finish`](Self::finish) tells then.
     pub fn run(&mut self, seconds: f64) {
         let mut left = seconds;
-        // The monitor's queues hold half a second.
         while left > 1e-9 {
-            let slice = left.min(0.1);
+            let slice = left.min(MONITOR_PERIOD);
             self.time.run(slice);
             self.monitor.update(self.time.now());
             left -= slice;

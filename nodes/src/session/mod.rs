@@ -1,6 +1,7 @@
 //! A session: processes, their supervision, the live line, the summary.
 
 mod error;
+mod felt_stiffness;
 mod host_resources;
 mod live;
 mod monitor;

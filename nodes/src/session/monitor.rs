@@ -297,7 +297,9 @@ impl Monitor {
             .and_then(|view| view.last)
             .is_some_and(|last| last.state == OperatingState::ENABLED && last.is_busy == 0);
         if let Some(touch) = &mut self.touch {
-            touch.update(now, self.contact_state.as_ref(), follows);
+            let status = self.link_status.as_ref();
+            let round_trip = status.map_or(f64::NAN, |status| status.round_trip);
+            touch.update(now, self.contact_state.as_ref(), follows, round_trip);
         }
         self.twins.update(now);
         for (joint, told) in &mut self.friction {

@@ -31,8 +31,8 @@ pub struct Summary {
     pub contact: ContactSummary,
     /// The tip beside the hand.
     pub tip: TipSummary,
-    /// Slope of the force on the hand over its way into the first thing touched, both at the
-    /// tip's scale \[N/m\].
+    /// Force on the hand by how far it is beyond the surface of the first thing touched, where
+    /// it rests, both at the tip's scale \[N/m\]; `null` where it does not press and rest.
     #[serde(rename = "felt_stiffness_N_per_m")]
     pub felt_stiffness: Option<f64>,
     /// The operator's side.

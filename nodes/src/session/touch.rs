@@ -12,20 +12,36 @@ use ferntast_msgs::{
     topics,
 };
 
-/// A hand, or a tip, that went less than this from one look to the next rests \[m\].
+use super::felt_stiffness::{FeltStiffness, Look};
+
+/// A hand, or a tip, that stays within this \[m\]
 const REST: f64 = 2e-4;
-/// So many looks in a row have to find it at rest.
-const LOOKS: u32 = 3;
-/// A force on the tip below this is nothing that is pressed against \[N\].
-const FELT: f64 = 2.0;
-/// Forces further apart than that are of another surface: cosine of 30°.
-const ALIKE: f64 = 0.866;
-/// The hand has to go so far for a stiffness to be told \[m\].
-const WAY: f64 = 5e-4;
-/// Further to the side than this it slides \[m\].
-const ASIDE: f64 = 1e-3;
-/// Looks that are kept.
-const MOST: usize = 20_000;
+/// for so long, or for a round trip where that is longer, rests \[s\].
+const RESTING: f64 = 0.25;
+
+/// A tip slower than this has the contact force that is estimated a hundredth of a second later \[m/s\].
+const SLOW: f64 = 5e-3;
+
+/// How long something has been where it is.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    at: Vector3<f64>,
+    since: Time,
+}
+
+impl Place {
+    /// Of what is at `at` now; `before` is where it was.
+    fn new(now: Time, at: Vector3<f64>, before: Option<Place>) -> Place {
+        match before {
+            Some(before) if (at - before.at).norm() < REST => before,
+            _ => Place { at, since: now },
+        }
+    }
+
+    fn rests(&self, now: Time, duration: f64) -> bool {
+        now.seconds_since(self.since) >= duration
+    }
+}
 
 /// Looks at hand and tip.
 pub(super) struct TouchMeter {
@@ -33,11 +49,12 @@ pub(super) struct TouchMeter {
     hand: Subscriber<PoseSample>,
     tip: Subscriber<PoseSample>,
     hand_force: Subscriber<WrenchSample>,
-    before: Option<[Vector3<f64>; 2]>,
-    rested: u32,
+    /// Where hand and tip are.
+    places: [Option<Place>; 2],
+    /// When the tip was looked at last, and where it was.
+    last: Option<(Time, Vector3<f64>)>,
     drift: Option<f64>,
-    /// Hand \[m\] and force on it \[N\], both at the tip's scale, while it presses.
-    pressed: Vec<[Vector3<f64>; 2]>,
+    felt: FeltStiffness,
 }
 
 impl TouchMeter {
@@ -47,27 +64,29 @@ impl TouchMeter {
             hand: bus.subscriber(topics::LEADER_SETPOINT_CP, Depth::Newest)?,
             tip: bus.subscriber(topics::FOLLOWER_MEASURED_CP, Depth::Newest)?,
             hand_force: bus.subscriber(topics::LEADER_SERVO_CF, Depth::Newest)?,
-            before: None,
-            rested: 0,
+            places: [None; 2],
+            last: None,
             drift: None,
-            pressed: Vec::new(),
+            felt: FeltStiffness::default(),
         })
     }
 
     /// Forgets what was: what counts begins now.
     pub(super) fn begin(&mut self) {
-        self.before = None;
-        self.rested = 0;
+        self.places = [None; 2];
+        self.last = None;
         self.drift = None;
-        self.pressed.clear();
+        self.felt.clear();
     }
 
-    /// Looks, while the contact is as `contact` says and the arm follows.
+    /// Looks, while the contact is as `contact` says and the arm follows; over a link that
+    /// takes `round_trip` \[s\], forth and back: NaN before that was measured.
     pub(super) fn update(
         &mut self,
         now: Time,
         contact: Option<&ContactStateSample>,
         follows: bool,
+        round_trip: f64,
     ) {
         let hand = self.hand.newest(now).map(|own| own.message.position);
         let tip = self.tip.newest(now).map(|own| own.message.position);
@@ -79,30 +98,37 @@ impl TouchMeter {
         let offset = Vector3::from(mapping.workspace_offset);
         let hand = offset + Vector3::from(hand) * mapping.position_scale;
         let tip = Vector3::from(tip);
-        let before = self.before.replace([hand, tip]);
-        let rests = before.is_some_and(|[hand_before, tip_before]| {
-            (hand - hand_before).norm() < REST && (tip - tip_before).norm() < REST
-        });
-        let free = contact.touches == 0 && contact.valid == 1;
-        self.rested = if rests && free && follows {
-            self.rested + 1
-        } else {
-            0
+        let [hand_place, tip_place] = self.places;
+        let hand_place = Place::new(now, hand, hand_place);
+        let tip_place = Place::new(now, tip, tip_place);
+        self.places = [Some(hand_place), Some(tip_place)];
+        let last = self.last.replace((now, tip));
+        let tip_is_slow = last
+            .is_some_and(|(then, before)| (tip - before).norm() < SLOW * now.seconds_since(then));
+        let valid = contact.valid == 1;
+        let resting = match round_trip.is_nan() {
+            true => f64::INFINITY,
+            false => round_trip.max(RESTING),
         };
-        if self.rested >= LOOKS {
+        let hand_rests = hand_place.rests(now, resting);
+        let both_rest = hand_rests && tip_place.rests(now, resting);
+        if valid && contact.touches == 0 && follows && both_rest {
             let apart = (hand - tip).norm();
             self.drift = Some(self.drift.map_or(apart, |own| own.max(apart)));
         }
         if let Some(force) = force
+            && valid
             && contact.touches == 1
-            && contact.valid == 1
             && mapping.force_scale > 0.0
-            && self.pressed.len() < MOST
         {
-            let force = Vector3::from(force) / mapping.force_scale;
-            if force.norm() > FELT {
-                self.pressed.push([hand, force]);
-            }
+            self.felt.add(Look {
+                hand,
+                hand_force: Vector3::from(force) / mapping.force_scale,
+                hand_rests,
+                tip,
+                contact_force: contact.normal_force,
+                tip_is_slow,
+            });
         }
     }
 
@@ -111,39 +137,8 @@ impl TouchMeter {
         self.drift.map(|own| own * 1e3)
     }
 
-    /// How much more the force on the hand is for each metre that the hand goes further into
-    /// the first thing touched, both at the tip's scale \[N/m\].
+    /// What the hand feels of the first thing that the arm touches \[N/m\], at the tip's scale.
     pub(super) fn stiffness(&self) -> Option<f64> {
-        let [place, force] = self.pressed.first()?;
-        let first = force.normalize();
-        // Where it slides, friction tilts the force.
-        let alike = |own: &&[Vector3<f64>; 2]| {
-            let way = own[0] - place;
-            let aside = way - first * first.dot(&way);
-            aside.norm() < ASIDE && own[1].dot(&first) > ALIKE * own[1].norm()
-        };
-        let alike = || self.pressed.iter().filter(alike);
-        let normal = alike().map(|own| own[1]).sum::<Vector3<f64>>().normalize();
-        let points: Vec<[f64; 2]> = alike()
-            .map(|[hand, force]| [-hand.dot(&normal), force.dot(&normal)])
-            .collect();
-        let count = points.len() as f64;
-        let mean = |axis: usize| points.iter().map(|own| own[axis]).sum::<f64>() / count;
-        let [depth, force] = [mean(0), mean(1)];
-        let spread: f64 = points.iter().map(|own| (own[0] - depth).powi(2)).sum();
-        let slope: f64 = points
-            .iter()
-            .map(|own| (own[0] - depth) * (own[1] - force))
-            .sum();
-        let far = |least: f64, most: f64| most - least > WAY;
-        let least = points
-            .iter()
-            .map(|own| own[0])
-            .fold(f64::INFINITY, f64::min);
-        let most = points
-            .iter()
-            .map(|own| own[0])
-            .fold(f64::NEG_INFINITY, f64::max);
-        far(least, most).then(|| slope / spread)
+        self.felt.stiffness()
     }
 }

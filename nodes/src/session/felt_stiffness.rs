@@ -1,0 +1,269 @@
+//! What the hand feels of the first thing that the arm touches.
+//!
+//! F / d: the force on the hand by how far the hand is beyond the surface, where it rests, long
+//! enough for the force to be of that place. Where the surface is, the tip tells: it is pressed in
+//! as far as the contact force says, and stays in a plane where it goes to the side. Everything at
+//! the tip's scale, base frame.
+
+use ferntast_model::rigid_body::{Matrix3, Vector3};
+
+/// A force on the hand below this is nothing that is pressed against \[N\].
+const FELT: f64 = 2.0;
+/// Forces further apart than that are of another surface: cosine of 30°. Where it slides, friction
+/// tilts them.
+const ALIKE: f64 = 0.866;
+/// Further to the side than this is another place \[m\],
+const ASIDE: f64 = 1e-3;
+/// as is a tip that is further in or out than this \[m\].
+const APART: f64 = 0.01;
+/// How soft a surface may be \[m/N\], and how far the force may be tilted from its normal \[-\]:
+/// standard deviations, before anything is seen.
+const SOFT: f64 = 5e-3;
+const TILTED: f64 = 0.5;
+/// The least that a tip is measured wrong by, standard deviation \[m\].
+const NOISE: f64 = 5e-6;
+/// Share of the hand's depth that the surface's place may be wrong by, standard error \[-\].
+const ERROR: f64 = 0.1;
+/// Looks that are kept.
+const MOST: usize = 20_000;
+
+/// Hand and tip in a contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look {
+    /// The hand \[m\].
+    pub(super) hand: Vector3<f64>,
+    /// The force on it \[N\].
+    pub(super) hand_force: Vector3<f64>,
+    /// The hand rests, for longer than what it feels is late.
+    pub(super) hand_rests: bool,
+    /// The tip \[m\].
+    pub(super) tip: Vector3<f64>,
+    /// The normal force on it \[N\].
+    pub(super) contact_force: f64,
+    /// The tip moves so slowly that its force is of where it is.
+    pub(super) tip_is_slow: bool,
+}
+
+/// Keeps what was seen of contacts.
+#[derive(Debug, Default)]
+pub(super) struct FeltStiffness {
+    looks: Vec<Look>,
+}
+
+impl FeltStiffness {
+    /// Keeps a look at a contact.
+    pub(super) fn add(&mut self, look: Look) {
+        if self.looks.len() < MOST {
+            self.looks.push(look);
+        }
+    }
+
+    /// Forgets all.
+    pub(super) fn clear(&mut self) {
+        self.looks.clear();
+    }
+
+    /// The stiffness \[N/m\]; `None` where the hand did not press and rest, or where the
+    /// surface is cannot be told.
+    pub(super) fn stiffness(&self) -> Option<f64> {
+        let presses = |own: &&Look| own.hand_force.norm() > FELT;
+        let first = self.looks.iter().find(presses)?;
+        let along = first.hand_force.normalize();
+        let same_place = |own: &&Look| {
+            let aside = |way: Vector3<f64>| (way - along * along.dot(&way)).norm();
+            let near = along.dot(&(own.tip - first.tip)).abs() < APART;
+            near && aside(own.tip - first.tip) < ASIDE && aside(own.hand - first.hand) < ASIDE
+        };
+        let there = || self.looks.iter().filter(same_place);
+        let rests = |own: &&Look| {
+            let alike = own.hand_force.dot(&along) > ALIKE * own.hand_force.norm();
+            presses(own) && own.hand_rests && alike
+        };
+        let resting = || there().filter(rests);
+        let out = resting().map(|own| own.hand_force).sum::<Vector3<f64>>();
+        let surface = Surface::fit(
+            &out.try_normalize(0.0)?,
+            there().filter(|own| own.tip_is_slow),
+        )?;
+        let (mut moment, mut square, mut error) = (0.0, 0.0, 0.0);
+        for own in resting() {
+            let (depth, uncertain) = surface.depth(&own.hand);
+            moment += depth * own.hand_force.dot(&surface.normal);
+            square += depth * depth;
+            error += uncertain * depth.abs();
+        }
+        (moment > 0.0 && error < ERROR * square).then(|| moment / square)
+    }
+}
+
+/// The plane in which the tip would be without a contact force.
+struct Surface {
+    /// Out of it.
+    normal: Vector3<f64>,
+    /// Two directions aside, and the one in which it was looked for.
+    axes: [Vector3<f64>; 3],
+    /// Of the looks: contact force \[N\], and to the side \[m\].
+    mean: Vector3<f64>,
+    /// The tip there, along the last of the axes \[m\].
+    place: f64,
+    /// How that changes with the three.
+    slope: Vector3<f64>,
+    /// Variance of the slopes, and of the place.
+    covariance: Matrix3<f64>,
+    variance: f64,
+}
+
+impl Surface {
+    /// By least squares, surfaces that are too soft and too tilted to be taken for one left aside.
+    fn fit<'a>(
+        out: &Vector3<f64>,
+        looks: impl Iterator<Item = &'a Look> + Clone,
+    ) -> Option<Surface> {
+        let count = looks.clone().count() as f64;
+        if count < 4.0 {
+            return None;
+        }
+        let aside = match out.x.abs() < 0.9 {
+            true => out.cross(&Vector3::x()).normalize(),
+            false => out.cross(&Vector3::y()).normalize(),
+        };
+        let axes = [aside, out.cross(&aside), *out];
+        let of = |own: &Look| {
+            let [u, v, w] = axes.map(|axis| axis.dot(&own.tip));
+            (Vector3::new(own.contact_force, u, v), w)
+        };
+        let pairs = looks.map(of);
+        let mean = pairs.clone().map(|own| own.0).sum::<Vector3<f64>>() / count;
+        let place = pairs.clone().map(|own| own.1).sum::<f64>() / count;
+        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        for (at, there) in pairs.clone() {
+            matrix += (at - mean) * (at - mean).transpose();
+            right += (at - mean) * (there - place);
+        }
+        let prior = Vector3::new(SOFT, TILTED, TILTED).map(|own| own.powi(-2));
+        let solve = |variance: f64| {
+            let inverse = (matrix + variance * Matrix3::from_diagonal(&prior)).try_inverse()?;
+            Some((inverse * right, inverse))
+        };
+        let (slope, _) = solve(NOISE * NOISE)?;
+        let left = |own: (Vector3<f64>, f64)| (own.1 - place - slope.dot(&(own.0 - mean))).powi(2);
+        let variance = pairs.map(left).sum::<f64>() / (count - 3.0).max(1.0);
+        let variance = variance.max(NOISE * NOISE);
+        let (slope, inverse) = solve(variance)?;
+        Some(Surface {
+            normal: (axes[2] - axes[0] * slope.y - axes[1] * slope.z).normalize(),
+            axes,
+            mean,
+            place,
+            slope,
+            covariance: variance * inverse,
+            variance: variance / count,
+        })
+    }
+
+    /// How deep `hand` is in it, and the standard error of that \[m\].
+    fn depth(&self, hand: &Vector3<f64>) -> (f64, f64) {
+        let [u, v, w] = self.axes.map(|axis| axis.dot(hand));
+        let from = Vector3::new(0.0, u, v) - self.mean;
+        let cosine = self.axes[2].dot(&self.normal);
+        let depth = self.place + self.slope.dot(&from) - w;
+        let error = (self.variance + from.dot(&(self.covariance * from))).sqrt();
+        (depth * cosine, error * cosine)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SURFACE: f64 = 20e3;
+    const SERVO: f64 = 8e3;
+
+    /// A hand that goes 3 mm into a surface that is tilted by `tilt` \[rad\], rests there for `rest`
+    /// looks and slides away to the side; what it feels is `late` looks late, and was none before
+    /// the first one.
+    fn press(rest: usize, late: usize, tilt: f64) -> FeltStiffness {
+        let (out, aside) = (
+            Vector3::new(-tilt.cos(), tilt.sin(), 0.0),
+            Vector3::new(tilt.sin(), tilt.cos(), 0.0),
+        );
+        let depths = (1..=15).map(|look| 0.2e-3 * f64::from(look));
+        let depths = depths.chain(std::iter::repeat_n(3e-3, rest + 30));
+        let both = 1.0 / (1.0 / SURFACE + 1.0 / SERVO);
+        let forces: Vec<f64> = depths.clone().map(|depth| both * depth).collect();
+        let mut felt = FeltStiffness::default();
+        for (number, (depth, force)) in depths.zip(&forces).enumerate() {
+            let way = 0.1e-3 * number.saturating_sub(15 + rest) as f64;
+            let told = number
+                .checked_sub(late)
+                .map_or(0.0, |number| forces[number]);
+            // The finest that the tip is measured.
+            let noise = 2e-6 * [1.0, -1.0][number % 2];
+            felt.add(Look {
+                hand: way * aside - depth * out,
+                hand_force: told * out,
+                hand_rests: way == 0.0 && number > 15 + late,
+                tip: way * aside - (force / SURFACE + noise) * out,
+                contact_force: *force,
+                tip_is_slow: true,
+            });
+        }
+        felt
+    }
+
+    #[test]
+    fn it_is_that_of_surface_and_servo_one_behind_the_other() {
+        let both = 1.0 / (1.0 / SURFACE + 1.0 / SERVO);
+        for late in [0, 5, 15] {
+            for tilt in [0.0, 0.3, 1.5] {
+                let felt = press(20, late, tilt).stiffness().unwrap();
+                assert!(
+                    (felt / both - 1.0).abs() < 2e-3,
+                    "{felt}, {late} looks late"
+                );
+            }
+        }
+    }
+
+    /// Friction turns the force on the hand, not the plane in which the tip is.
+    #[test]
+    fn a_force_that_friction_tilts_is_taken_along_the_normal() {
+        let mut felt = press(20, 0, 0.2);
+        for own in &mut felt.looks {
+            let friction = 0.2 * own.hand_force.norm();
+            own.hand_force += friction * Vector3::new(0.2_f64.sin(), 0.2_f64.cos(), 0.0);
+        }
+        let both = 1.0 / (1.0 / SURFACE + 1.0 / SERVO);
+        let felt = felt.stiffness().unwrap();
+        assert!((felt / both - 1.0).abs() < 1e-2, "{felt}");
+    }
+
+    /// On the way from one to the other the tip is on the same line.
+    #[test]
+    fn what_is_touched_later_does_not_count() {
+        let mut felt = press(20, 0, 0.0);
+        let alone = felt.stiffness();
+        for mut own in press(20, 0, 0.0).looks {
+            own.hand.x += 0.05;
+            own.tip.x += 0.05;
+            own.hand_force *= 0.3;
+            felt.add(own);
+        }
+        assert_eq!(felt.stiffness(), alone);
+    }
+
+    #[test]
+    fn a_hand_that_does_not_rest_tells_nothing() {
+        assert_eq!(press(3, 5, 0.0).stiffness(), None);
+        assert_eq!(FeltStiffness::default().stiffness(), None);
+    }
+
+    #[test]
+    fn a_force_that_does_not_change_does_not_tell_where_the_surface_is() {
+        let mut felt = press(20, 0, 0.0);
+        felt.looks.retain(|own| own.hand_rests);
+        assert_eq!(felt.stiffness(), None);
+        felt.clear();
+        assert!(felt.looks.is_empty());
+    }
+}
