@@ -4,6 +4,7 @@ mod delay;
 mod estimator;
 mod experiments;
 mod faults;
+mod felt_stiffness;
 mod fleet;
 mod installed;
 mod lab;

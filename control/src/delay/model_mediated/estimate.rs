@@ -21,10 +21,11 @@ const MEMORY: f64 = 0.3;
 /// A contact tells its normal in its first moments, before friction bends the
 /// force aside [s];
 const ONSET: f64 = 0.05;
-/// a light one, whose force is mostly noise, takes longer to tell it, until it pushed so much [N s].
+/// a light one, whose force is mostly noise, takes longer to tell it, until it pushed the tip so
+/// much [N s].
 const TELLING: f64 = 0.3;
-/// A surface that is known keeps its normal until it was pushed so much from another
-/// direction [N s]: what an arm that shakes feigns is shorter.
+/// A surface that is known keeps its normal until the tip was pushed so much from another
+/// direction without a break [N s]: what an arm that shakes feigns is shorter.
 const OTHER: f64 = 0.1;
 /// Cosine of the angle within which a force belongs to the surface that is
 /// known: 40°, friction bends it aside by up to that.
@@ -78,6 +79,8 @@ pub(super) struct SurfaceEstimator {
     touching: f64,
     /// Impulse of the force in the first moments of the contact [N s].
     pushed: Vector3<f64>,
+    /// That of a force that is not of the surface that is known, since it last was [N s].
+    strange: Vector3<f64>,
     /// The normal is being found.
     settling: bool,
     /// Where the contact began [m].
@@ -107,6 +110,7 @@ impl SurfaceEstimator {
             noise: Noise::default(),
             touching: 0.0,
             pushed: Vector3::zeros(),
+            strange: Vector3::zeros(),
             settling: false,
             began: Vector3::zeros(),
             last: None,
@@ -121,6 +125,17 @@ impl SurfaceEstimator {
         chord
             .best
             .map_or(slope, |told| slope.with(told, chord.counts))
+    }
+
+    /// Whether `force` \[N\] has long enough been that of another surface than the `model` says,
+    /// whenever in a contact that began.
+    fn is_of_another(&mut self, dt: f64, model: &SurfaceModel, force: &Vector3<f64>) -> bool {
+        let known = model.normal.dot(force) >= SAME * force.norm();
+        self.strange = match known || self.settling {
+            true => Vector3::zeros(),
+            false => self.strange + force * dt,
+        };
+        self.strange.norm() > self.scale.force * OTHER
     }
 
     /// After `dt` \[s\], the tip at `tip` \[m\] under the contact's `force` \[N\].
@@ -146,28 +161,28 @@ impl SurfaceEstimator {
             stiffness_error: 1.0,
             ..SurfaceModel::default()
         });
+        let telling = self.scale.force * TELLING;
         if self.touching == 0.0 {
             self.slope = Slope::anew(self.known());
             self.chord = Chord::default();
             // A force about its threshold comes and goes.
-            if !self.settling || self.pushed.norm() >= TELLING {
+            if !self.settling {
                 self.pushed = Vector3::zeros();
                 self.settling = self.model.is_none();
             }
+            self.strange = Vector3::zeros();
             self.began = tip;
         }
-        if self.touching < ONSET || self.settling && self.pushed.norm() < TELLING {
+        if self.is_of_another(dt, &model, &force) {
+            self.pushed = self.strange - force * dt;
+            self.settling = true;
+            self.slope = Slope::UNKNOWN;
+            self.chord = Chord::default();
+        }
+        if self.settling {
             self.pushed += force * dt;
-            let impulse = self.pushed.norm();
-            let other = model.normal.dot(&self.pushed) < SAME * impulse;
-            if other && impulse > OTHER && !self.settling {
-                self.settling = true;
-                self.slope = Slope::UNKNOWN;
-                self.chord = Chord::default();
-            }
-            if self.settling {
-                model.normal = self.pushed.try_normalize(1e-9).unwrap_or(force / size);
-            }
+            model.normal = self.pushed.try_normalize(1e-9).unwrap_or(force / size);
+            self.settling = self.touching < ONSET || self.pushed.norm() < telling;
         }
         self.touching += dt;
         let depth = -model.normal.dot(&tip);
@@ -294,5 +309,30 @@ mod tests {
         assert!((touch([0.0, 8.0, 0.0], 10) + Vector3::x()).norm() < 1e-9);
         // 0.16 N s.
         assert!((touch([0.0, 8.0, 0.0], 20) - Vector3::y()).norm() < 1e-9);
+    }
+
+    /// A second wall takes over without a break, and so gently that after 50 ms the tip has felt
+    /// half of what tells another surface.
+    #[test]
+    fn a_wall_that_is_met_slowly_or_in_a_contact_is_another() {
+        for force_scale in [1.0, 0.05] {
+            let mut estimator = SurfaceEstimator::new(Scale {
+                force: force_scale,
+                threshold: 0.1 * force_scale,
+                searched: 2.4 * force_scale,
+            });
+            let mut model = None;
+            for k in 0..500 {
+                let first = if k < 200 { 10.0 } else { 0.0 };
+                let second = 0.04 * f64::from((k - 200_i32).max(0));
+                let force = Vector3::new(-second, first, 0.0) * force_scale;
+                model = estimator.step(1e-3, Vector3::zeros(), force);
+                if k == 199 {
+                    assert!((model.unwrap().normal - Vector3::y()).norm() < 1e-9);
+                }
+            }
+            let normal = model.unwrap().normal;
+            assert!((normal + Vector3::x()).norm() < 1e-9, "{normal}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Where the surface is, as the arm's end follows it.
 
 use super::SurfaceModel;
+use super::estimate::SAME;
 use super::even::Even;
 use nalgebra::Vector3;
 
@@ -37,6 +38,10 @@ impl Place {
         touches: bool,
     ) -> Place {
         let depth = -model.normal.dot(tip);
+        if self.normal.dot(&model.normal) < SAME {
+            let anew = Place::of(model);
+            return Place { touches, ..anew };
+        }
         // A normal that turns, turns about the tip.
         let mut place = self.even.value + depth + self.normal.dot(tip);
         if touches {
@@ -121,6 +126,19 @@ mod tests {
         let place = Place::of(&at(40_000.0)).step(1e-3, 12.0, &at(40_000.0), &tip, true);
         let own = place.step(1e-3, 12.0, &at(200.0), &tip, true);
         assert!(own.even.value.abs() < 1e-9, "{own:?}");
+    }
+
+    #[test]
+    fn another_surface_is_where_it_is() {
+        let tip = Vector3::new(0.01, 0.03, 0.0);
+        let place = Place::of(&WALL).step(1e-3, 12.0, &WALL, &tip, true);
+        let other = SurfaceModel {
+            normal: Vector3::new(0.0, -1.0, 0.0),
+            place: 0.029,
+            ..WALL
+        };
+        let own = place.step(1e-3, 12.0, &other, &tip, true);
+        assert_eq!((own.even.value, own.touches), (0.029, true));
     }
 
     #[test]
