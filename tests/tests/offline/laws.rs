@@ -75,7 +75,7 @@ fn every_preset_runs_by_its_own_law() {
     for (scenario, law) in [
         ("rokviss", "position_force"),
         ("kontur_2", "tdpa"),
-        ("relay", "tdpa"),
+        ("relay", "auto"),
         ("ku_band", "wave"),
     ] {
         let session = Session::new();
