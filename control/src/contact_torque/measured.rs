@@ -42,6 +42,11 @@ impl MeasuredContact {
         }
     }
 
+    /// The joints as they are believed to be.
+    pub(crate) fn joints(&self) -> &[JointParameters] {
+        &self.joints
+    }
+
     /// How late everything filtered is \[s\].
     pub(crate) fn delay(&self) -> f64 {
         self.contact.delay()

@@ -30,8 +30,6 @@ pub(super) struct Taken {
 #[derive(Clone, Debug)]
 pub(super) struct Intake {
     count: JointCount,
-    /// As many as `count` says.
-    joints: Vec<JointParameters>,
     cut_off: f64,
     longest_gap: f64,
     contact: MeasuredContact,
@@ -63,7 +61,6 @@ impl Intake {
         }
         let intake = Intake {
             count,
-            joints: joints.to_vec(),
             cut_off: parameters.cut_off,
             longest_gap: parameters.longest_gap,
             contact: MeasuredContact::new(
@@ -127,7 +124,8 @@ impl Intake {
             true => memory,
             false => (self.settling - passed).max(0.0),
         };
-        let sensors = self.sensors.step(passed, memory, &self.joints, measurement);
+        let joints = self.contact.joints();
+        let sensors = (self.sensors).step(passed, memory, joints, measurement);
         if sensors.stuck.contains(&true) {
             self.settling = memory;
         }

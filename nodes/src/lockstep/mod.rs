@@ -20,15 +20,13 @@ use crate::{
     },
     graph::Graph,
     process::{NodeError, SessionContext},
-    session::Monitor,
+    session::{Monitor, ROUND_NANOS},
 };
 
 pub use virtual_time::{VirtualTime, VirtualTimeError};
 
 /// When the arm is armed, after the start \[ns\].
 const ENABLE_AT_NANOS: i64 = 20_000_000;
-/// The monitor looks so often [s], as in a session.
-const MONITOR_PERIOD: f64 = 0.02;
 
 /// Why lockstep cannot run.
 #[derive(Debug, thiserror::Error)]
@@ -184,9 +182,11 @@ impl LockstepSession {
     /// Runs `seconds` \[s\] of virtual time, less where a node fails on the way:
     /// [`finish`](Self::finish) tells then.
     pub fn run(&mut self, seconds: f64) {
+        // The monitor looks as often as in a session.
+        let round = ROUND_NANOS as f64 / 1e9;
         let mut left = seconds;
         while left > 1e-9 {
-            let slice = left.min(MONITOR_PERIOD);
+            let slice = left.min(round);
             self.time.run(slice);
             self.monitor.update(self.time.now());
             left -= slice;

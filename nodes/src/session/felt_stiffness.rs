@@ -5,7 +5,8 @@
 //! as far as the contact force says, and stays in a plane where it goes to the side. Everything at
 //! the tip's scale, base frame.
 
-use ferntast_model::rigid_body::{Matrix3, Vector3};
+use ferntast_identification::numerics::regression::least_squares;
+use ferntast_model::rigid_body::Vector3;
 
 /// A force on the hand below this is nothing that is pressed against \[N\].
 const FELT: f64 = 2.0;
@@ -16,12 +17,8 @@ const ALIKE: f64 = 0.866;
 const ASIDE: f64 = 1e-3;
 /// as is a tip that is further in or out than this \[m\].
 const APART: f64 = 0.01;
-/// How soft a surface may be \[m/N\], and how far the force may be tilted from its normal \[-\]:
-/// standard deviations, before anything is seen.
-const SOFT: f64 = 5e-3;
-const TILTED: f64 = 0.5;
-/// The least that a tip is measured wrong by, standard deviation \[m\].
-const NOISE: f64 = 5e-6;
+/// A contact force that changes by less than this does not tell how far the tip is pressed in \[N\].
+const CHANGE: f64 = 1.0;
 /// Share of the hand's depth that the surface's place may be wrong by, standard error \[-\].
 const ERROR: f64 = 0.1;
 /// Looks that are kept.
@@ -81,18 +78,18 @@ impl FeltStiffness {
         };
         let resting = || there().filter(rests);
         let out = resting().map(|own| own.hand_force).sum::<Vector3<f64>>();
-        let surface = Surface::fit(
-            &out.try_normalize(0.0)?,
-            there().filter(|own| own.tip_is_slow),
-        )?;
-        let (mut moment, mut square, mut error) = (0.0, 0.0, 0.0);
+        let out = out.try_normalize(0.0)?;
+        let hand = resting().map(|own| own.hand).sum::<Vector3<f64>>() / resting().count() as f64;
+        let slow: Vec<&Look> = there().filter(|own| own.tip_is_slow).collect();
+        let surface = Surface::fit(&out, &hand, &slow)?;
+        let (mut moment, mut square) = (0.0, 0.0);
         for own in resting() {
-            let (depth, uncertain) = surface.depth(&own.hand);
+            let depth = surface.depth(&own.hand);
             moment += depth * own.hand_force.dot(&surface.normal);
             square += depth * depth;
-            error += uncertain * depth.abs();
         }
-        (moment > 0.0 && error < ERROR * square).then(|| moment / square)
+        let known = surface.error < ERROR * surface.depth(&hand);
+        (known && moment > 0.0).then(|| moment / square)
     }
 }
 
@@ -100,75 +97,43 @@ impl FeltStiffness {
 struct Surface {
     /// Out of it.
     normal: Vector3<f64>,
-    /// Two directions aside, and the one in which it was looked for.
-    axes: [Vector3<f64>; 3],
-    /// Of the looks: contact force \[N\], and to the side \[m\].
-    mean: Vector3<f64>,
-    /// The tip there, along the last of the axes \[m\].
-    place: f64,
-    /// How that changes with the three.
-    slope: Vector3<f64>,
-    /// Variance of the slopes, and of the place.
-    covariance: Matrix3<f64>,
-    variance: f64,
+    /// Where it is before or behind the hand \[m\], and the standard error of that along the
+    /// normal \[m\].
+    place: Vector3<f64>,
+    error: f64,
 }
 
 impl Surface {
-    /// By least squares, surfaces that are too soft and too tilted to be taken for one left aside.
-    fn fit<'a>(
-        out: &Vector3<f64>,
-        looks: impl Iterator<Item = &'a Look> + Clone,
-    ) -> Option<Surface> {
-        let count = looks.clone().count() as f64;
-        if count < 4.0 {
+    /// Through the tips of `looks`, about the `hand` \[m\]; `out` is roughly out of it.
+    fn fit(out: &Vector3<f64>, hand: &Vector3<f64>, looks: &[&Look]) -> Option<Surface> {
+        let column =
+            |of: &dyn Fn(&Look) -> f64| looks.iter().map(|own| of(own)).collect::<Vec<_>>();
+        let along = |axis: Vector3<f64>| column(&|own| axis.dot(&(own.tip - hand)));
+        let force = column(&|own| own.contact_force);
+        let least = force.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = force.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if most - least < CHANGE {
             return None;
         }
         let aside = match out.x.abs() < 0.9 {
             true => out.cross(&Vector3::x()).normalize(),
             false => out.cross(&Vector3::y()).normalize(),
         };
-        let axes = [aside, out.cross(&aside), *out];
-        let of = |own: &Look| {
-            let [u, v, w] = axes.map(|axis| axis.dot(&own.tip));
-            (Vector3::new(own.contact_force, u, v), w)
-        };
-        let pairs = looks.map(of);
-        let mean = pairs.clone().map(|own| own.0).sum::<Vector3<f64>>() / count;
-        let place = pairs.clone().map(|own| own.1).sum::<f64>() / count;
-        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
-        for (at, there) in pairs.clone() {
-            matrix += (at - mean) * (at - mean).transpose();
-            right += (at - mean) * (there - place);
-        }
-        let prior = Vector3::new(SOFT, TILTED, TILTED).map(|own| own.powi(-2));
-        let solve = |variance: f64| {
-            let inverse = (matrix + variance * Matrix3::from_diagonal(&prior)).try_inverse()?;
-            Some((inverse * right, inverse))
-        };
-        let (slope, _) = solve(NOISE * NOISE)?;
-        let left = |own: (Vector3<f64>, f64)| (own.1 - place - slope.dot(&(own.0 - mean))).powi(2);
-        let variance = pairs.map(left).sum::<f64>() / (count - 3.0).max(1.0);
-        let variance = variance.max(NOISE * NOISE);
-        let (slope, inverse) = solve(variance)?;
+        let axes = [aside, out.cross(&aside)];
+        let [u, v] = axes.map(along);
+        let columns = [&column(&|_| 1.0)[..], &force, &u, &v];
+        let fit = least_squares(&columns, &along(*out))?;
+        let tilts = axes[0] * fit.values[2] + axes[1] * fit.values[3];
         Some(Surface {
-            normal: (axes[2] - axes[0] * slope.y - axes[1] * slope.z).normalize(),
-            axes,
-            mean,
-            place,
-            slope,
-            covariance: variance * inverse,
-            variance: variance / count,
+            normal: (out - tilts).normalize(),
+            place: hand + out * fit.values[0],
+            error: fit.errors[0],
         })
     }
 
-    /// How deep `hand` is in it, and the standard error of that \[m\].
-    fn depth(&self, hand: &Vector3<f64>) -> (f64, f64) {
-        let [u, v, w] = self.axes.map(|axis| axis.dot(hand));
-        let from = Vector3::new(0.0, u, v) - self.mean;
-        let cosine = self.axes[2].dot(&self.normal);
-        let depth = self.place + self.slope.dot(&from) - w;
-        let error = (self.variance + from.dot(&(self.covariance * from))).sqrt();
-        (depth * cosine, error * cosine)
+    /// How deep `hand` is in it \[m\].
+    fn depth(&self, hand: &Vector3<f64>) -> f64 {
+        self.normal.dot(&(self.place - hand))
     }
 }
 

@@ -22,6 +22,7 @@ pub use host_resources::{Visit, runtime_folder};
 pub use monitor::Monitor;
 pub use play::{Played, play, recorded_joints};
 pub use private_folder::PrivateFolderError;
+pub(crate) use run::ROUND_NANOS;
 pub use run::{SessionOptions, run};
 pub use summary::{
     ArmSummary, ContactSummary, LeaderSummary, LinkSummary, StateSummary, Summary, TipSummary,

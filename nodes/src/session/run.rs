@@ -29,7 +29,7 @@ use crate::{
 };
 
 /// How often the supervisor looks \[ns\].
-const ROUND_NANOS: i64 = 20_000_000;
+pub(crate) const ROUND_NANOS: i64 = 20_000_000;
 /// How often the newest event is said again \[ns\].
 const REPETITION_NANOS: i64 = 1_000_000_000;
 /// How long nothing may change until all nodes are alive and the arm is armed

@@ -29,7 +29,7 @@ const TELLING: f64 = 0.3;
 const OTHER: f64 = 0.1;
 /// Cosine of the angle within which a force belongs to the surface that is
 /// known: 40°, friction bends it aside by up to that.
-pub(super) const SAME: f64 = 0.77;
+const SAME: f64 = 0.77;
 /// Changes of the force by so many standard deviations of its noise are none of it [-].
 const CLEAR: f64 = 3.0;
 /// Slower than this the tip does not slide [m/s].
@@ -60,6 +60,11 @@ impl SurfaceModel {
     /// How far `position` \[m\] is behind the surface \[m\]; negative before it.
     pub(super) fn depth(&self, position: &Vector3<f64>) -> f64 {
         -self.normal.dot(position) - self.place
+    }
+
+    /// Whether what pushes along `direction`, or has it as its normal, may be this surface.
+    pub(super) fn pushes_along(&self, direction: &Vector3<f64>) -> bool {
+        self.normal.dot(direction) >= SAME * direction.norm()
     }
 
     /// How little is known of the stiffness, from 0 to 1 \[-\].
@@ -130,8 +135,7 @@ impl SurfaceEstimator {
     /// Whether `force` \[N\] has long enough been that of another surface than the `model` says,
     /// whenever in a contact that began.
     fn is_of_another(&mut self, dt: f64, model: &SurfaceModel, force: &Vector3<f64>) -> bool {
-        let known = model.normal.dot(force) >= SAME * force.norm();
-        self.strange = match known || self.settling {
+        self.strange = match model.pushes_along(force) {
             true => Vector3::zeros(),
             false => self.strange + force * dt,
         };
@@ -173,14 +177,15 @@ impl SurfaceEstimator {
             self.strange = Vector3::zeros();
             self.began = tip;
         }
-        if self.is_of_another(dt, &model, &force) {
-            self.pushed = self.strange - force * dt;
+        if self.settling {
+            self.pushed += force * dt;
+        } else if self.is_of_another(dt, &model, &force) {
+            self.pushed = std::mem::take(&mut self.strange);
             self.settling = true;
             self.slope = Slope::UNKNOWN;
             self.chord = Chord::default();
         }
         if self.settling {
-            self.pushed += force * dt;
             model.normal = self.pushed.try_normalize(1e-9).unwrap_or(force / size);
             self.settling = self.touching < ONSET || self.pushed.norm() < telling;
         }

@@ -1,7 +1,7 @@
 //! The leader's end: renders the surface that it was told of.
 
 use super::account::UpdateAccount;
-use super::estimate::{SAME, SurfaceModel};
+use super::estimate::SurfaceModel;
 use super::hand_damping::HandDamping;
 use super::told::Told;
 use super::{ModelMediated, PLACE_SPEED};
@@ -77,7 +77,7 @@ impl ModelMediatedLeader {
         };
         let before = self.surface.unwrap_or(anew);
         // Another surface has its place along another normal.
-        let known = (self.surface).filter(|own| own.normal.dot(&target.normal) >= SAME);
+        let known = (self.surface).filter(|own| own.pushes_along(&target.normal));
         self.emerges |= known.is_none();
         let mut surface = known.unwrap_or(anew);
         let normal = surface.normal + share * (target.normal - surface.normal);

@@ -1,7 +1,6 @@
 //! Where the surface is, as the arm's end follows it.
 
 use super::SurfaceModel;
-use super::estimate::SAME;
 use super::even::Even;
 use nalgebra::Vector3;
 
@@ -38,7 +37,7 @@ impl Place {
         touches: bool,
     ) -> Place {
         let depth = -model.normal.dot(tip);
-        if self.normal.dot(&model.normal) < SAME {
+        if !model.pushes_along(&self.normal) {
             let anew = Place::of(model);
             return Place { touches, ..anew };
         }

@@ -22,7 +22,7 @@ const ALONG: f64 = 0.02;
 ///
 /// # Errors
 ///
-/// A list of the scenario's `[servo]` that is not of one entry for each joint.
+/// [`SerialError::Section`]: a value of `[servo]` that is no number.
 pub(in crate::config) fn fit(
     scenario: &mut Scenario,
     serial: &Serial,
@@ -49,7 +49,8 @@ pub(in crate::config) fn fit(
     Ok(())
 }
 
-/// The arm's tuning with the `scenario`'s in its place, key by key: what is by default was not given.
+/// The arm's tuning with the `scenario`'s in its place, key by key, a section
+/// as a whole: what is by default was not given.
 fn tuned(arm: &ServoConfig, scenario: &ServoConfig) -> Result<ServoConfig, SerialError> {
     let keys = |own: &ServoConfig| {
         toml::Table::try_from(own).map_err(|error| SerialError::Section {
