@@ -16,7 +16,7 @@ const CASES: u64 = 120;
 
 fn trial(draw: &mut Draw, law: Law, outages: bool, seed: u64) -> Trial {
     let link = draw.link(outages);
-    let environment = Environment::ALL[(seed % 5) as usize];
+    let environment = Environment::ALL[seed as usize % Environment::ALL.len()];
     let mut trial = Trial::new(law, link, environment, seed);
     if outages && draw.chance(0.3) {
         trial.buffer = draw.between(0.0, 0.05);

@@ -292,6 +292,47 @@ fn two_layers_around_model_mediated_give_nothing_out_and_feel_what_is_there() {
     }
 }
 
+/// The hand presses on a wall, slides 20 mm along it, 15 of them into a second one, and back. Where only
+/// one surface was known at a time, it felt the first with 90 to 1500 N/m after that.
+#[test]
+fn in_a_corner_a_wall_is_felt_as_without_a_second_one() {
+    for name in ["two_layer", "auto"] {
+        for round_trip in ROUND_TRIPS {
+            let outcome = run(name, round_trip, Environment::Corner, Task::PressAndSlide);
+            let told = format!("{name} {round_trip} s: {outcome:?}");
+            assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
+            assert!((-BOUND..=0.0).contains(&outcome.energy_margin), "{told}");
+            assert!((0.0..=0.491).contains(&outcome.force_step), "{told}");
+            let felt = outcome.felt_stiffness.expect("it presses");
+            assert!((8000.0..10_500.0).contains(&felt), "{told}");
+            assert!((8.0..17.0).contains(&outcome.peak_force), "{told}");
+            assert!((0.5..2.0).contains(&outcome.force_rmse), "{told}");
+        }
+    }
+}
+
+/// At the scale of a session the arm presses with 90 N at most with two layers, and with 120 N without
+/// them; where only one surface was known at a time it did so with up to 100 and 170 N, and the hand
+/// felt down to a quarter of the first wall after that.
+#[test]
+fn at_the_scale_of_a_session_the_second_wall_of_a_corner_is_felt_too() {
+    const SCALE: f64 = 0.05;
+    for name in ["model_mediated", "two_layer", "auto"] {
+        for round_trip in ROUND_TRIPS {
+            let environment = Environment::Corner;
+            let mut own = trial(name, round_trip, environment, Task::PressAndSlide);
+            own.law = scaled(name, SCALE, &arm());
+            let outcome = own.run().expect("a valid trial");
+            let told = format!("{name} {round_trip} s: {outcome:?}");
+            assert!(outcome.stable && outcome.task_time.is_some(), "{told}");
+            // 0.05 · 20 kN/m.
+            let felt = outcome.felt_stiffness.expect("it presses");
+            assert!((970.0..1040.0).contains(&felt), "{told}");
+            assert!((3.0..6.5).contains(&outcome.peak_force), "{told}");
+        }
+    }
+}
+
 /// A hand pays for the arm that it brings along when it sets out, and is free then; what it meets
 /// afterwards it feels as ever.
 #[test]

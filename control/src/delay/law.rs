@@ -130,6 +130,12 @@ macro_rules! laws {
                 }
             }
 
+            fn given(&mut self, force: nalgebra::Vector3<f64>) {
+                match self {
+                    $($leaders::$law(law) => law.given(force),)*
+                }
+            }
+
             fn nearness(&self) -> f64 {
                 match self {
                     $($leaders::$law(law) => law.nearness(),)*

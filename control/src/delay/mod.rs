@@ -164,6 +164,10 @@ pub struct FollowerOutput {
 pub trait Leader {
     /// One step of `dt` \[s\]; `energy` is what went through this end's port.
     fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput;
+    /// Of the force of the last step `force` \[N\] was given, where that is not what the step said.
+    fn given(&mut self, force: Vector3<f64>) {
+        let _ = force;
+    }
     /// How much there is for the hand to touch, from 0, where nothing is near, to 1, at something
     /// stiff \[-\]. A law that does not know says 1.
     fn nearness(&self) -> f64 {

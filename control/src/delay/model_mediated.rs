@@ -13,9 +13,18 @@
 //! b is what a hand at a stiff surface needs (`damping`), less at a soft one, and `free_damping`
 //! where nothing is near (`hand_damping.rs`).
 //!
+//! **Corners.** Up to three surfaces are known at a time (`surfaces.rs`): the one that the tip touched last,
+//! and those that it touches with it or is near. The contact's force is shared out to their normals, what
+//! none of them explains becomes another surface, each is told in its turn, and the leader's end
+//! renders the sum of all that were told within 0.3 s. With one at a time a hand that slides along a wall
+//! into another one would lose the first. Ours; of an edge that bends away a plane that was left by 10 mm,
+//! or gone through, is forgotten.
+//!
 //! An update is blended in: the model rendered follows the one received by a first
 //! order lag, `blend_time`. Its place comes towards the hand no faster than `emerge_speed`; a
-//! surface that appears around the hand begins at the hand, so that it winds nothing up at once.
+//! surface that appears around the hand begins at the hand, so that it winds nothing up at once, and
+//! waits while a layer around the law gives the hand less than the law asks for: it would push with what
+//! the hand is held with elsewhere.
 //!
 //! **Updates are passive** (what the survey of Xu et al. asks of them): one that would wind up the
 //! spring under the hand goes on only as far as an energy account pays (`account.rs`, ours). The
@@ -39,7 +48,8 @@
 //! Under less than 0.8 f the tip goes on, evenly and with 30 mm/s at most, also where the surface
 //! is believed to be too stiff for that: so it goes after a surface that it lost, and shows
 //! what K a soft one has, which counts as a stiff one at first. This never takes the tip back, so
-//! it is no loop of force either.
+//! it is no loop of force either. To a surface that is known it comes with no more than that, braking
+//! over the last 10 mm.
 //!
 //! A surface that moves was elsewhere when the hand learned of it. Where it gives way the tip goes
 //! after it, s₀ + f/K, beyond the hand's position by as much as it moves in a round trip, where
@@ -66,16 +76,19 @@ mod hand_damping;
 mod leader;
 mod noise;
 mod place;
+mod rendered;
+mod surface;
+mod surfaces;
 mod told;
 
-pub use estimate::SurfaceModel;
 pub use follower::ModelMediatedFollower;
 pub use leader::ModelMediatedLeader;
+pub use surface::SurfaceModel;
 
 use super::Samples;
 use super::mapping::{law_ends, law_parameters};
 use compliance::STIFFEST;
-use estimate::SURE;
+use surface::SURE;
 
 /// A surface comes towards the hand no faster [m/s].
 const PLACE_SPEED: f64 = 0.05;

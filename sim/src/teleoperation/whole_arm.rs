@@ -1,7 +1,7 @@
 //! The simulated arm of two joints with the estimator that ships, before a surface.
 
 use super::TICK;
-use super::environment::{BRISTLE, Environment};
+use super::environment::{BRISTLE, Environment, SIDE, SIDE_LENGTH};
 use super::follower::TrueTip;
 use super::servoed::{Estimated, Servoed, TrialArm};
 use crate::arm::{ArmConfig, JOINTS, SimulatedArm, SimulatedArmError, TrueSurface};
@@ -130,7 +130,7 @@ impl TrialArm for WholeArm {
     }
 }
 
-/// The surface across x, free on the side of negative x.
+/// The surface across x, free on the side of negative x, and what comes out of it across y.
 fn contour(
     environment: Environment,
     origin: &Vector2<f64>,
@@ -138,25 +138,29 @@ fn contour(
     nominal_elbow: Elbow,
 ) -> Contour {
     let (stiffness, damping) = environment.surface();
-    let wall = EdgeParameters {
+    let wall = |from: [f64; 2], to: [f64; 2]| EdgeParameters {
         surface: Surface::Unlubricated,
-        // What is in the direction of negative x is on the left of y.
-        from: [origin.x, origin.y - HALF_LENGTH],
-        to: [origin.x, origin.y + HALF_LENGTH],
+        from: [origin.x + from[0], origin.y + from[1]],
+        to: [origin.x + to[0], origin.y + to[1]],
         contact: ContactParameters {
             stiffness: stiffness.max(1.0),
             damping,
             friction: environment.friction(),
         },
     };
+    let mut edge = Vec::new();
+    if stiffness > 0.0 {
+        // What is in the direction of negative x is on the left of y.
+        edge.push(wall([0.0, -HALF_LENGTH], [0.0, HALF_LENGTH]));
+    }
+    if environment.has_side() {
+        // What is in the direction of negative y is on the left of negative x.
+        edge.push(wall([HALF_LENGTH, SIDE], [-SIDE_LENGTH, SIDE]));
+    }
     Contour {
         nominal_tip: (*tip).into(),
         nominal_elbow,
-        edge: if stiffness > 0.0 {
-            vec![wall]
-        } else {
-            Vec::new()
-        },
+        edge,
         spring: Vec::new(),
     }
 }

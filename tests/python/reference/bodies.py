@@ -35,7 +35,14 @@ ENVIRONMENTS = {
     "hard_wall": (20_000.0, 50.0, 0.0, False),
     "wall_with_friction": (20_000.0, 50.0, 0.3, False),
     "moving_wall": (2000.0, 10.0, 0.0, True),
+    "corner": (20_000.0, 50.0, 0.0, False),
 }
+CORNERS = {"corner"}
+"""Where there is a second wall, across y, as stiff as the first:"""
+SIDE = 0.005
+"""its place [m],"""
+SIDE_LENGTH = 0.01
+"""and how far it comes out of the first one [m]."""
 
 
 def discretised(mass: float, damping: float, stiffness: float) -> tuple[np.ndarray, np.ndarray]:
@@ -78,6 +85,8 @@ class Tip:
         stiffness, damping, friction, moves = zip(*(ENVIRONMENTS[own] for own in environments), strict=True)
         self.stiffness, self.damping = np.array(stiffness), np.array(damping)
         self.friction, self.moves = np.array(friction), np.array(moves)
+        self.corner = np.array([own in CORNERS for own in environments])
+        self.at_side = np.zeros(len(environments), dtype=bool)
         self.position = start.copy()
         self.velocity = np.zeros_like(start)
         self.bend = np.zeros(len(environments))
@@ -114,4 +123,9 @@ class Tip:
         push = np.where(depth > 0.0, np.maximum(push, 0.0), 0.0)
         most = self.friction * push / BRISTLE
         self.bend = np.clip(self.bend + slid, -most, most)
-        self.force = np.stack([-push, -BRISTLE * self.bend])
+        beyond = self.position[1] - SIDE
+        behind = self.corner & (self.position[0] > -SIDE_LENGTH) & (beyond > 0.0)
+        # Who came round the end of the second wall is behind it and feels nothing.
+        self.at_side = behind & (self.at_side | (beyond <= slid))
+        side = np.maximum(self.stiffness * beyond + self.damping * self.velocity[1], 0.0)
+        self.force = np.stack([-push, -BRISTLE * self.bend - np.where(self.at_side, side, 0.0)])

@@ -14,6 +14,7 @@
 use super::chord::{CHORD_SPREAD, CHORD_WAIT, Chord};
 use super::compliance::{Known, SPREAD, STIFFEST, Slope};
 use super::noise::Noise;
+use super::surface::{SAME_TANGENT, SurfaceModel};
 use nalgebra::Vector3;
 
 /// Time constant of the window [s].
@@ -24,70 +25,33 @@ const ONSET: f64 = 0.05;
 /// a light one, whose force is mostly noise, takes longer to tell it, until it pushed the tip so
 /// much [N s].
 const TELLING: f64 = 0.3;
-/// A surface that is known keeps its normal until the tip was pushed so much from another
-/// direction without a break [N s]: what an arm that shakes feigns is shorter.
-const OTHER: f64 = 0.1;
-/// Cosine of the angle within which a force belongs to the surface that is
-/// known: 40°, friction bends it aside by up to that.
-const SAME: f64 = 0.77;
 /// Changes of the force by so many standard deviations of its noise are none of it [-].
 const CLEAR: f64 = 3.0;
 /// Slower than this the tip does not slide [m/s].
 const SLIDING: f64 = 5e-3;
+/// Friction at rest by that of a tip that slides, at most [-];
+const STICTION: f64 = 1.5;
+/// what normal and force are wrong by, of the force along the normal [-], and at the tip [N].
+const ASIDE: f64 = 0.25;
+const LEAST_ASIDE: f64 = 1.0;
 /// A tip that is free this far behind the surface shows that it has gone [m].
-const GONE: f64 = 1e-3;
-
-/// A stiffness is known well with the first relative standard error, and not with the second [-].
-pub(super) const SURE: f64 = 0.1;
-const UNSURE: f64 = 0.3;
-
-/// A plane with stiffness and friction.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SurfaceModel {
-    /// n: out of the surface, unit length.
-    pub normal: Vector3<f64>,
-    /// s₀: the surface is where −n·x = s₀ \[m\].
-    pub place: f64,
-    /// K \[N/m\]; zero: no surface is known.
-    pub stiffness: f64,
-    /// Its relative standard error, 1 at most: nothing is known of it then \[-\].
-    pub stiffness_error: f64,
-    /// Coulomb coefficient \[-\].
-    pub friction: f64,
-}
-
-impl SurfaceModel {
-    /// How far `position` \[m\] is behind the surface \[m\]; negative before it.
-    pub(super) fn depth(&self, position: &Vector3<f64>) -> f64 {
-        -self.normal.dot(position) - self.place
-    }
-
-    /// Whether what pushes along `direction`, or has it as its normal, may be this surface.
-    pub(super) fn pushes_along(&self, direction: &Vector3<f64>) -> bool {
-        self.normal.dot(direction) >= SAME * direction.norm()
-    }
-
-    /// How little is known of the stiffness, from 0 to 1 \[-\].
-    pub(super) fn doubt(&self) -> f64 {
-        ((self.stiffness_error - SURE) / (UNSURE - SURE)).clamp(0.0, 1.0)
-    }
-}
+pub(super) const GONE: f64 = 1e-3;
 
 /// Estimates a [`SurfaceModel`] from tip and contact force.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurfaceEstimator {
-    model: Option<SurfaceModel>,
+    model: SurfaceModel,
     slope: Slope,
     chord: Chord,
     noise: Noise,
     /// For how long [s].
     touching: f64,
-    /// Impulse of the force in the first moments of the contact [N s].
+    /// Impulse of the force in its first moments [N s].
     pushed: Vector3<f64>,
-    /// That of a force that is not of the surface that is known, since it last was [N s].
-    strange: Vector3<f64>,
     /// The normal is being found.
     settling: bool,
+    /// For how long the tip slid [s].
+    slid: f64,
     /// Where the contact began [m].
     began: Vector3<f64>,
     last: Option<Vector3<f64>>,
@@ -106,20 +70,45 @@ pub(super) struct Scale {
 }
 
 impl SurfaceEstimator {
-    /// Knows no surface; a new one counts as a stiff one.
-    pub fn new(scale: Scale) -> Self {
+    /// Of a surface that pushes along `normal` and `pushed` [N s] before; it counts as a stiff one.
+    pub fn of(scale: Scale, normal: Vector3<f64>, pushed: Vector3<f64>) -> Self {
         SurfaceEstimator {
-            model: None,
+            model: SurfaceModel {
+                normal,
+                stiffness: STIFFEST,
+                stiffness_error: 1.0,
+                ..SurfaceModel::default()
+            },
             slope: Slope::UNKNOWN,
             chord: Chord::default(),
             noise: Noise::default(),
             touching: 0.0,
-            pushed: Vector3::zeros(),
-            strange: Vector3::zeros(),
-            settling: false,
+            pushed,
+            settling: true,
+            slid: 0.0,
             began: Vector3::zeros(),
             last: None,
             scale,
+        }
+    }
+
+    /// The surface as it is known.
+    pub fn model(&self) -> &SurfaceModel {
+        &self.model
+    }
+
+    /// Whether its normal is being found.
+    pub fn settles(&self) -> bool {
+        self.settling
+    }
+
+    /// How far aside of its normal it may push, by its friction, where it pushes with `normal` along
+    /// that \[N\]. Where the tip slid on it for a while that is known.
+    pub fn aside(&self, normal: f64) -> f64 {
+        let known = STICTION * self.model.friction + ASIDE;
+        match self.slid > MEMORY {
+            true => (known * normal + self.scale.force * LEAST_ASIDE).min(SAME_TANGENT * normal),
+            false => SAME_TANGENT * normal,
         }
     }
 
@@ -132,63 +121,32 @@ impl SurfaceEstimator {
             .map_or(slope, |told| slope.with(told, chord.counts))
     }
 
-    /// Whether `force` \[N\] has long enough been that of another surface than the `model` says,
-    /// whenever in a contact that began.
-    fn is_of_another(&mut self, dt: f64, model: &SurfaceModel, force: &Vector3<f64>) -> bool {
-        self.strange = match model.pushes_along(force) {
-            true => Vector3::zeros(),
-            false => self.strange + force * dt,
-        };
-        self.strange.norm() > self.scale.force * OTHER
-    }
-
-    /// After `dt` \[s\], the tip at `tip` \[m\] under the contact's `force` \[N\].
-    pub fn step(
-        &mut self,
-        dt: f64,
-        tip: Vector3<f64>,
-        force: Vector3<f64>,
-    ) -> Option<SurfaceModel> {
-        let size = force.norm();
+    /// After `dt` \[s\], the tip at `tip` \[m\] under the `force` \[N\] of this surface, with
+    /// its friction; whether it touches.
+    pub fn step(&mut self, dt: f64, tip: Vector3<f64>, force: Vector3<f64>) -> bool {
         let moved = self.last.map_or(Vector3::zeros(), |last| tip - last);
         self.last = Some(tip);
-        if size < self.scale.threshold || dt <= 0.0 {
+        let model = &mut self.model;
+        if force.norm() < self.scale.threshold || dt <= 0.0 {
             self.touching = 0.0;
-            if let Some(model) = &mut self.model {
-                let depth = -model.normal.dot(&tip);
-                model.place = model.place.max(depth - GONE);
-            }
-            return self.model;
+            let depth = -model.normal.dot(&tip);
+            model.place = model.place.max(depth - GONE);
+            return false;
         }
-        let mut model = self.model.unwrap_or(SurfaceModel {
-            stiffness: STIFFEST,
-            stiffness_error: 1.0,
-            ..SurfaceModel::default()
-        });
-        let telling = self.scale.force * TELLING;
         if self.touching == 0.0 {
             self.slope = Slope::anew(self.known());
             self.chord = Chord::default();
-            // A force about its threshold comes and goes.
-            if !self.settling {
-                self.pushed = Vector3::zeros();
-                self.settling = self.model.is_none();
-            }
-            self.strange = Vector3::zeros();
             self.began = tip;
         }
+        // A force about its threshold comes and goes: what it pushed counts on.
         if self.settling {
             self.pushed += force * dt;
-        } else if self.is_of_another(dt, &model, &force) {
-            self.pushed = std::mem::take(&mut self.strange);
-            self.settling = true;
-            self.slope = Slope::UNKNOWN;
-            self.chord = Chord::default();
-        }
-        if self.settling {
-            model.normal = self.pushed.try_normalize(1e-9).unwrap_or(force / size);
+            let normal = self.pushed.try_normalize(1e-9);
+            let telling = self.scale.force * TELLING;
+            self.model.normal = normal.unwrap_or(self.model.normal);
             self.settling = self.touching < ONSET || self.pushed.norm() < telling;
         }
+        let mut model = self.model;
         self.touching += dt;
         let depth = -model.normal.dot(&tip);
         let normal_force = force.dot(&model.normal).max(0.0);
@@ -216,9 +174,10 @@ impl SurfaceEstimator {
             let ratio = -force.dot(&slid) / way / normal_force;
             let share = dt / (dt + MEMORY);
             model.friction += share * (ratio.clamp(0.0, 2.0) - model.friction);
+            self.slid += dt;
         }
-        self.model = Some(model);
-        self.model
+        self.model = model;
+        true
     }
 }
 
@@ -232,14 +191,18 @@ mod tests {
         searched: 2.4,
     };
 
+    /// Of a surface of which nothing is known.
+    fn untold() -> SurfaceEstimator {
+        SurfaceEstimator::of(SCALE, Vector3::zeros(), Vector3::zeros())
+    }
+
     #[test]
     fn it_finds_place_stiffness_normal_and_friction() {
         // A plane through (0, 0.01, 0), its normal at 30°, 1500 N/m, μ = 0.2.
         let normal = Vector3::new(0.5, 0.75_f64.sqrt(), 0.0);
         let along = Vector3::new(normal.y, -normal.x, 0.0);
-        let mut estimator = SurfaceEstimator::new(SCALE);
+        let mut estimator = untold();
         let place = -normal.y * 0.01;
-        let mut model = None;
         for k in 0..3000 {
             let time = f64::from(k) * 1e-3;
             let depth = 0.004 * (2.0 * time).sin().abs();
@@ -249,9 +212,9 @@ mod tests {
             if time > 0.5 {
                 force -= along * 0.2 * 1500.0 * depth;
             }
-            model = estimator.step(1e-3, tip, force);
+            estimator.step(1e-3, tip, force);
         }
-        let model = model.unwrap();
+        let model = *estimator.model();
         assert!((model.normal - normal).norm() < 0.02, "{model:?}");
         assert!((model.stiffness / 1500.0 - 1.0).abs() < 0.1, "{model:?}");
         // It knows how well it knows that.
@@ -264,80 +227,40 @@ mod tests {
 
     #[test]
     fn a_surface_that_gives_way_is_followed() {
-        let mut estimator = SurfaceEstimator::new(SCALE);
+        let mut estimator = untold();
         let at = |depth: f64| Vector3::new(depth, 0.0, 0.0);
         let force = |size: f64| Vector3::new(-size, 0.0, 0.0);
         for k in 0..1000 {
             let depth = 5e-6 * f64::from(k);
             estimator.step(1e-3, at(depth), force(1000.0 * depth));
         }
-        let model = estimator.step(1e-3, at(0.005), force(5.0)).unwrap();
+        assert!(estimator.step(1e-3, at(0.005), force(5.0)));
+        let model = *estimator.model();
         assert!(model.place.abs() < 1e-4, "{model:?}");
         // Now the tip is free 2 cm behind.
-        let model = estimator.step(1e-3, at(0.02), Vector3::zeros()).unwrap();
+        assert!(!estimator.step(1e-3, at(0.02), Vector3::zeros()));
+        let model = *estimator.model();
         assert!((model.place - 0.019).abs() < 1e-9, "{model:?}");
     }
 
     /// The tip goes into a soft spring at 30 mm/s for half a second, then rests.
     #[test]
     fn a_soft_surface_is_known_from_a_tip_that_goes_in_evenly() {
-        let mut estimator = SurfaceEstimator::new(SCALE);
-        let mut model = None;
+        let mut estimator = untold();
         for k in 0..2000 {
             let time = 1e-3 * f64::from(k);
             let depth = 0.01 + 0.03 * time.min(0.5);
             let noise = 0.08 * (400.0 * time).sin();
             let force = 100.0 * depth + noise;
             let (tip, force) = (Vector3::x() * depth, Vector3::x() * -force);
-            model = estimator.step(1e-3, tip, force);
+            estimator.step(1e-3, tip, force);
+            let model = estimator.model();
             if k == 0 {
-                let told = model.map(|own| (own.stiffness, own.stiffness_error));
-                assert_eq!(told, Some((STIFFEST, 1.0)));
+                assert_eq!((model.stiffness, model.stiffness_error), (STIFFEST, 1.0));
             }
         }
-        let model = model.unwrap();
+        let model = *estimator.model();
         // Noise of the force makes it stiffer.
         assert!((98.0..115.0).contains(&model.stiffness), "{model:?}");
-    }
-
-    #[test]
-    fn a_known_surface_keeps_its_normal_until_it_is_pushed_from_elsewhere_for_long() {
-        let mut estimator = SurfaceEstimator::new(SCALE);
-        let tip = Vector3::zeros();
-        let mut touch = |force: [f64; 3], steps: usize| {
-            estimator.step(1e-3, tip, Vector3::zeros());
-            let models = (0..steps).map(|_| estimator.step(1e-3, tip, force.into()));
-            models.last().flatten().unwrap().normal
-        };
-        assert!((touch([-5.0, 0.0, 0.0], 100) + Vector3::x()).norm() < 1e-9);
-        // 0.08 N s, as of an arm that shakes.
-        assert!((touch([0.0, 8.0, 0.0], 10) + Vector3::x()).norm() < 1e-9);
-        // 0.16 N s.
-        assert!((touch([0.0, 8.0, 0.0], 20) - Vector3::y()).norm() < 1e-9);
-    }
-
-    /// A second wall takes over without a break, and so gently that after 50 ms the tip has felt
-    /// half of what tells another surface.
-    #[test]
-    fn a_wall_that_is_met_slowly_or_in_a_contact_is_another() {
-        for force_scale in [1.0, 0.05] {
-            let mut estimator = SurfaceEstimator::new(Scale {
-                force: force_scale,
-                threshold: 0.1 * force_scale,
-                searched: 2.4 * force_scale,
-            });
-            let mut model = None;
-            for k in 0..500 {
-                let first = if k < 200 { 10.0 } else { 0.0 };
-                let second = 0.04 * f64::from((k - 200_i32).max(0));
-                let force = Vector3::new(-second, first, 0.0) * force_scale;
-                model = estimator.step(1e-3, Vector3::zeros(), force);
-                if k == 199 {
-                    assert!((model.unwrap().normal - Vector3::y()).norm() < 1e-9);
-                }
-            }
-            let normal = model.unwrap().normal;
-            assert!((normal + Vector3::x()).norm() < 1e-9, "{normal}");
-        }
     }
 }

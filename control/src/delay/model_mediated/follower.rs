@@ -2,8 +2,9 @@
 
 use super::ModelMediated;
 use super::chase::Chase;
-use super::estimate::{Scale, SurfaceEstimator, SurfaceModel};
-use super::place::Place;
+use super::estimate::Scale;
+use super::surface::SurfaceModel;
+use super::surfaces::Surfaces;
 use super::told::Told;
 use crate::delay::contact::{LastCommand, Late, TouchingTip};
 use crate::delay::mapping::shortened;
@@ -31,53 +32,120 @@ const DEEPER: f64 = 0.15;
 /// From so far before the surface on the tip searches it [m].
 const SEARCH_BEFORE: f64 = 0.01;
 
-/// The follower's end: sends the surface in hand units: place \[m\], friction \[-\] and, where that is to
-/// be felt, the contact's force in the position; normal times stiffness \[N/m\] in the vector
-/// (`told.rs`).
+/// The follower's end: sends a surface in hand units, of several one after the other: place \[m\],
+/// friction \[-\] and, where that is to be felt, the contact's force in the position; normal times
+/// stiffness \[N/m\] in the vector (`told.rs`).
 #[derive(Clone, Debug)]
 pub struct ModelMediatedFollower {
     parameters: ModelMediated,
-    estimator: SurfaceEstimator,
+    surfaces: Surfaces,
     /// The tip as late as the force.
     late: Late,
-    model: Option<SurfaceModel>,
-    place: Option<Place>,
     command: LastCommand,
-    /// Of the command into the surface, since one is known [m/s].
-    speed: f64,
     chase: Chase,
-    /// The contact's own force is to be felt.
-    told: bool,
 }
 
 impl ModelMediatedFollower {
     pub(super) fn new(law: &ModelMediated) -> Self {
         ModelMediatedFollower {
             parameters: law.clone(),
-            estimator: SurfaceEstimator::new(Scale {
+            surfaces: Surfaces::new(Scale {
                 force: law.force_scale,
                 threshold: threshold(law),
                 searched: SEARCHED * law.force_scale * law.search_force,
             }),
             late: Late::default(),
-            model: None,
-            place: None,
             command: LastCommand::default(),
-            speed: 0.0,
             chase: Chase::default(),
-            told: false,
         }
     }
 
-    /// Whether the contact's own force is to be felt of `model`, a round trip of `round_trip` \[s\]
-    /// away: with a spring K in it, a loop that is late by τ wants a damping of some K τ. What may
-    /// be soft counts as soft: a model that is too stiff pushes the hand away.
-    fn tells_force(&self, model: &SurfaceModel, round_trip: f64) -> bool {
+    /// Whether the contact's own force is to be felt of `model`, or still is where it `was`, a round
+    /// trip of `round_trip` \[s\] away: with a spring K in it, a loop that is late by τ wants a
+    /// damping of some K τ. What may be soft counts as soft: a model that is too stiff pushes the
+    /// hand away.
+    fn feels_force(&self, model: &SurfaceModel, round_trip: f64, was: bool) -> bool {
         let soft = model.stiffness.min(MAYBE);
         let stiffness = model.stiffness + model.doubt() * (soft - model.stiffness);
         let needed = stiffness * (round_trip + LOOP_LAG);
-        let damping = HAND_DAMPING * if self.told { 1.5 } else { 1.0 };
+        let damping = HAND_DAMPING * if was { 1.5 } else { 1.0 };
         self.parameters.contact_force && needed <= damping
+    }
+
+    /// How fast the command at `here` \[m\] may go, `dt` \[s\] after it did before, with the hand at
+    /// `target` \[m\], which gives `asked` \[N\] into the surfaces; beyond the hand by `furthest`
+    /// \[m\] at most. The tip at `touching` \[m\], where its contact is known, is a tip that
+    /// searches \[m/s\].
+    fn velocity(
+        &mut self,
+        dt: f64,
+        [here, target]: [Vector3<f64>; 2],
+        touching: Option<Vector3<f64>>,
+        asked: Vector3<f64>,
+        furthest: f64,
+    ) -> Vector3<f64> {
+        let own = &self.parameters;
+        let least = own.force_scale * own.search_force;
+        let threshold = threshold(own);
+        let towards = |target: Vector3<f64>| {
+            shortened((target - here) / own.position_time, own.largest_speed)
+        };
+        let mut goal = target;
+        let mut after = target;
+        for (latest, asked, surface) in self.surfaces.iter_mut(&-asked) {
+            let model = surface.model();
+            // A hand that presses on what was here a while ago means what is here now.
+            let pressed = surface.place.deepest(asked, model.stiffness);
+            let gone = match latest && asked > threshold {
+                true => (pressed - surface.inward(&target)).clamp(0.0, furthest),
+                false => 0.0,
+            };
+            after -= gone * model.normal;
+            if surface.place.touches {
+                goal -= gone * model.normal;
+            }
+            let most = surface.place.deepest(asked.max(least), model.stiffness);
+            goal += (surface.inward(&goal) - most).max(0.0) * model.normal;
+        }
+        let (mut velocity, after) = (towards(goal), towards(after));
+        for (_, asked, surface) in self.surfaces.iter_mut(&-asked) {
+            let into = surface.inward(&velocity);
+            let mut speed = into;
+            let ahead = surface.place.even.value - surface.inward(&here);
+            if surface.place.touches {
+                speed = speed.min(DEEPER);
+            } else if ahead > 0.0 {
+                speed = speed.min(SEARCH_SPEED.hypot((2.0 * SEARCH_BRAKE * ahead).sqrt()));
+            }
+            let near = surface.inward(&here) + SEARCH_BEFORE > surface.place.even.value;
+            if let Some(tip) = touching
+                && near
+                && surface.force.norm() < SEARCHED * asked.max(least)
+            {
+                let lead = surface.inward(&(here - tip));
+                let most = search_speed(dt, surface.speed, lead, own.position_time);
+                speed = speed.max(surface.inward(&after).min(most));
+            }
+            surface.speed = speed;
+            velocity -= (speed - into) * surface.model().normal;
+        }
+        velocity
+    }
+
+    /// What the other end is told, a round trip of `round_trip` \[s\] away while it is heard.
+    fn told(&mut self, dt: f64, round_trip: Option<f64>) -> Option<Told> {
+        let surface = *self.surfaces.whose_turn(dt)?;
+        let model = surface.model();
+        let felt = round_trip.is_some_and(|own| self.feels_force(model, own, surface.felt));
+        self.surfaces.felt(felt);
+        Some(Told {
+            surface: SurfaceModel {
+                place: surface.place.even.value,
+                stiffness: self.parameters.sure_stiffness(model),
+                ..*model
+            },
+            force: felt.then(|| surface.force.dot(&model.normal).max(0.0)),
+        })
     }
 }
 
@@ -108,79 +176,28 @@ impl Follower for ModelMediatedFollower {
         } = TouchingTip::new(&mapping, input, &self.command);
         if let (Some(tip), Some(contact)) = (tip, contact) {
             let tip = self.late.step(dt, own.force_lag, tip);
-            self.model = self.estimator.step(dt, tip, contact);
-            let touches = contact.norm() >= threshold(own);
-            self.place = self.model.map(|model| {
-                let place = self.place.unwrap_or(Place::of(&model));
-                place.step(dt, own.place_frequency, &model, &tip, touches)
-            });
+            (self.surfaces).step(dt, own.place_frequency, tip, contact);
         }
-        let touched = self.model.zip(self.place.filter(|own| own.touches));
-        let touched = touched.map(|(model, own)| (model.normal, own.even.rate));
+        let touched = self.surfaces.latest().filter(|own| own.place.touches);
+        let touched = touched.map(|own| (own.model().normal, own.place.even.rate));
         let round_trip = live.map(|own| own.round_trip);
         let furthest = self
             .chase
             .step(dt, own.largest_chase, tip, touched, round_trip);
         let command = live.zip(here).map(|(received, here)| {
-            let target = vector(received.packet.position);
-            let asked = vector(received.packet.vector).norm();
-            let allowed = asked.max(own.force_scale * own.search_force);
-            let towards = |target: Vector3<f64>| {
-                shortened((target - here) / own.position_time, own.largest_speed)
-            };
-            let free = towards(target);
-            let velocity = self.model.zip(self.place).map_or(free, |(model, place)| {
-                let into = |own: &Vector3<f64>| -model.normal.dot(own);
-                // A hand that presses on what was here a while ago means what is here now.
-                let pressed = place.deepest(asked, model.stiffness);
-                let gone = match asked > threshold(own) {
-                    true => (pressed - into(&target)).clamp(0.0, furthest),
-                    false => 0.0,
-                };
-                let after = target - gone * model.normal;
-                let goal = if place.touches { after } else { target };
-                let most = place.deepest(allowed, model.stiffness);
-                let over = (into(&goal) - most).max(0.0);
-                let bound = towards(goal + over * model.normal);
-                let mut speed = into(&bound);
-                if place.touches {
-                    speed = speed.min(DEEPER);
-                }
-                let near = into(&here) + SEARCH_BEFORE > place.even.value;
-                let little = contact.is_some_and(|own| own.norm() < SEARCHED * allowed);
-                if near && little {
-                    let lead = tip.map_or(0.0, |tip| into(&(here - tip)));
-                    let most = search_speed(dt, self.speed, lead, own.position_time);
-                    speed = speed.max(into(&towards(after)).min(most));
-                }
-                self.speed = speed;
-                bound - (speed - into(&bound)) * model.normal
-            });
+            let [target, asked] = [received.packet.position, received.packet.vector].map(vector);
+            let touching = tip.filter(|_| contact.is_some());
+            let velocity = self.velocity(dt, [here, target], touching, asked, furthest);
             (here + velocity * dt, velocity)
         });
         let given = command.map(|(position, _)| position);
-        self.command.step(dt, given, input.connected, own.deadline);
-        self.told = self
-            .model
-            .zip(live)
-            .is_some_and(|(model, received)| self.tells_force(&model, received.round_trip));
+        self.command
+            .step(dt, given, input.connected, self.parameters.deadline);
+        let told = self.told(dt, round_trip);
         FollowerOutput {
             command: command.map(|(position, velocity)| mapping.command(position, velocity)),
             packet: match (input.tip, input.contact_force) {
-                (Some(_), Some(_)) => {
-                    let told = self.model.zip(self.place).map(|(model, own)| Told {
-                        surface: SurfaceModel {
-                            place: own.even.value,
-                            stiffness: self.parameters.sure_stiffness(&model),
-                            ..model
-                        },
-                        force: self.told.then(|| {
-                            let along = contact.map_or(0.0, |force| force.dot(&model.normal));
-                            along.max(0.0)
-                        }),
-                    });
-                    told.unwrap_or_default().packed(energy)
-                }
+                (Some(_), Some(_)) => told.unwrap_or_default().packed(energy),
                 _ => Packet::empty(energy),
             },
         }

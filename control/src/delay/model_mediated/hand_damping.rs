@@ -40,14 +40,20 @@ impl HandDamping {
         self.free + self.nearness * (self.contact - self.free)
     }
 
-    /// After `dt` \[s\] with the hand at `hand` \[m\], where `surface` is known. What damps a hand
+    /// After `dt` \[s\] with the hand at `hand` \[m\], where `surfaces` are known. What damps a hand
     /// on a spring by the same share goes with the root of its stiffness.
-    pub fn step(&mut self, dt: f64, surface: Option<&SurfaceModel>, hand: &Vector3<f64>) {
-        let needed = surface.map_or(0.0, |own| {
+    pub fn step<'a>(
+        &mut self,
+        dt: f64,
+        surfaces: impl IntoIterator<Item = &'a SurfaceModel>,
+        hand: &Vector3<f64>,
+    ) {
+        let needed = surfaces.into_iter().map(|own| {
             let near = (1.0 + own.depth(hand) / BEFORE).clamp(0.0, 1.0);
             let stiffness = (own.stiffness / STIFF).clamp(0.0, 1.0);
             near * stiffness.sqrt()
         });
+        let needed = needed.fold(0.0, f64::max);
         self.nearness += dt / (dt + CHANGE) * (needed - self.nearness);
     }
 }

@@ -1,19 +1,17 @@
-//! The leader's end: renders the surface that it was told of.
+//! The leader's end: renders the surfaces that it was told of.
 
+use super::ModelMediated;
 use super::account::UpdateAccount;
-use super::estimate::SurfaceModel;
 use super::hand_damping::HandDamping;
+use super::rendered::Rendered;
+use super::surface::{SURFACES, SurfaceModel};
 use super::told::Told;
-use super::{ModelMediated, PLACE_SPEED};
 use crate::delay::mapping::{ForceRamp, Mapping, shortened};
 use crate::delay::{Energy, Leader, LeaderInput, LeaderOutput, Packet};
 use nalgebra::Vector3;
 
-/// v_0: below this speed friction is viscous [m/s].
-const FRICTION_SPEED: f64 = 0.01;
-
-/// Within this the contact's own force takes the place of the rendered one, and back [s].
-const CHANGE_OVER: f64 = 0.3;
+/// A surface that is not told while others are is forgotten after this [s]: some turns of each.
+const UNTOLD: f64 = 0.3;
 
 /// The leader's end: sends position of the hand and the force that it gives into
 /// the surface \[N\].
@@ -23,17 +21,14 @@ pub struct ModelMediatedLeader {
     mapping: Mapping,
     fade: ForceRamp,
     /// What is rendered.
-    surface: Option<SurfaceModel>,
-    /// It appeared behind the hand and is not yet where it was told to be.
-    emerges: bool,
-    received: Option<Told>,
-    /// The contact's own force as it was told last \[N\], and its share in what is felt.
-    contact: f64,
-    felt: ForceRamp,
+    surfaces: [Option<Rendered>; SURFACES],
     /// Time since the other end was heard, once it was [s].
     unheard: Option<f64>,
     account: UpdateAccount,
     damping: HandDamping,
+    /// Of the last step: what the hand should have felt, and what of it was not given [N].
+    wanted: Vector3<f64>,
+    lacking: Vector3<f64>,
 }
 
 impl ModelMediatedLeader {
@@ -42,91 +37,70 @@ impl ModelMediatedLeader {
             parameters: law.clone(),
             mapping: law.mapping(),
             fade: ForceRamp::default(),
-            surface: None,
-            emerges: false,
-            received: None,
-            contact: 0.0,
-            felt: ForceRamp::default(),
+            surfaces: [None; SURFACES],
             unheard: None,
             account: UpdateAccount::new(law.update_reserve),
             damping: HandDamping::new(law.free_damping, law.damping),
+            wanted: Vector3::zeros(),
+            lacking: Vector3::zeros(),
         }
     }
 
-    /// What is rendered of the follower's surface now.
-    pub fn surface(&self) -> Option<SurfaceModel> {
-        self.surface
+    /// What is rendered now of the surfaces at the follower's end.
+    pub fn surfaces(&self) -> impl Iterator<Item = &SurfaceModel> {
+        self.surfaces.iter().flatten().filter_map(Rendered::surface)
     }
 
-    /// Blends the received model in, with the hand at `hand` \[m\]. A surface that comes towards
-    /// the hand winds its spring up, so it comes slowly, and begins at the hand where it appears
-    /// behind it; one that gives way does so at once.
-    fn blend(&mut self, dt: f64, hand: &Vector3<f64>) {
-        let Some(Told {
-            surface: target, ..
-        }) = self.received
-        else {
-            return;
-        };
-        let share = dt / (dt + self.parameters.blend_time);
-        let stiffness = target.stiffness.min(self.parameters.largest_stiffness);
-        let anew = SurfaceModel {
-            place: target.place.max(-target.normal.dot(hand)),
-            stiffness,
-            ..target
-        };
-        let before = self.surface.unwrap_or(anew);
-        // Another surface has its place along another normal.
-        let known = (self.surface).filter(|own| own.pushes_along(&target.normal));
-        self.emerges |= known.is_none();
-        let mut surface = known.unwrap_or(anew);
-        let normal = surface.normal + share * (target.normal - surface.normal);
-        surface.normal = normal.try_normalize(1e-6).unwrap_or(target.normal);
-        let speed = match self.emerges {
-            true => self.parameters.emerge_speed,
-            false => PLACE_SPEED,
-        };
-        surface.place += (target.place - surface.place).max(-speed * dt);
-        surface.stiffness += share * (stiffness - surface.stiffness);
-        surface.friction += share * (target.friction - surface.friction);
-        if self.parameters.paid_updates {
-            surface = self.account.paid(&before, &surface, hand);
+    /// Takes what was told `dt` \[s\] after the last step: of one that is known, or of another, in
+    /// place of the one that was not told for longest.
+    fn hear(&mut self, dt: f64, told: Told) {
+        for own in self.surfaces.iter_mut().flatten() {
+            own.untold += dt;
         }
-        self.emerges &= surface.place > target.place;
-        self.surface = Some(surface);
+        let alone = self.surfaces.iter().all(Option::is_none);
+        let known = self.surfaces.iter_mut().flatten();
+        match known.into_iter().find(|own| own.is(&told)) {
+            Some(own) => own.tell(told),
+            None => {
+                let untold = |own: &Option<Rendered>| own.map_or(f64::INFINITY, |own| own.untold);
+                let slots = self.surfaces.iter_mut();
+                if let Some(slot) = slots.max_by(|a, b| untold(a).total_cmp(&untold(b))) {
+                    *slot = Some(Rendered::of(told, alone));
+                }
+            }
+        }
+        for slot in &mut self.surfaces {
+            *slot = slot.filter(|own| own.untold < UNTOLD);
+        }
     }
-}
-
-/// Force with which `surface` is pressed by a hand at `position` \[m\] \[N\].
-fn pressed(surface: &SurfaceModel, position: &Vector3<f64>) -> f64 {
-    surface.stiffness * surface.depth(position).max(0.0)
-}
-
-/// Force of `surface`, which is `pressed` \[N\], on a hand with `velocity` \[m/s\].
-fn rendered(surface: &SurfaceModel, pressed: f64, velocity: &Vector3<f64>) -> Vector3<f64> {
-    if pressed <= 0.0 {
-        return Vector3::zeros();
-    }
-    let slide = velocity - surface.normal * surface.normal.dot(velocity);
-    let grip = surface.friction * pressed / slide.norm().max(FRICTION_SPEED);
-    surface.normal * pressed - slide * grip
 }
 
 impl Leader for ModelMediatedLeader {
     fn step(&mut self, dt: f64, input: &LeaderInput, energy: Energy) -> LeaderOutput {
         let live = self.mapping.live(input.connected, input.received);
         if let Some(received) = live {
-            self.received = Told::unpacked(&received.packet);
+            if let Some(told) = Told::unpacked(&received.packet) {
+                self.hear(dt, told);
+            }
             let entered = f64::from(received.packet.energy[0]);
             self.account.came_in(self.mapping.power_scale() * entered);
         }
-        let appears = self.surface.is_none();
         if let Some(hand) = input.hand {
             let position = hand.position.into();
-            self.damping.step(dt, self.surface.as_ref(), &position);
+            let surfaces = self.surfaces.iter().flatten();
+            self.damping
+                .step(dt, surfaces.filter_map(Rendered::surface), &position);
             let square = Vector3::from(hand.velocity).norm_squared();
             self.account.add(self.damping.value() * square * dt);
-            self.blend(dt, &position);
+            for own in self.surfaces.iter_mut().flatten() {
+                own.blend(
+                    dt,
+                    &self.parameters,
+                    &mut self.account,
+                    &position,
+                    &self.lacking,
+                );
+            }
         }
         self.unheard = match live {
             Some(_) => Some(0.0),
@@ -143,25 +117,27 @@ impl Leader for ModelMediatedLeader {
             };
         };
         let velocity = Vector3::from(hand.velocity);
-        let told = self.received.and_then(|own| own.force);
-        self.contact = told.unwrap_or(self.contact);
-        if appears {
-            // Nothing was felt before: nothing is led over.
-            self.felt = ForceRamp::at(if told.is_some() { 1.0 } else { 0.0 });
+        let position = hand.position.into();
+        let [mut model, mut felt] = [Vector3::zeros(); 2];
+        for own in self.surfaces.iter_mut().flatten() {
+            let [its_model, its_felt] = own.forces(dt, &position, &velocity);
+            model += its_model;
+            felt += its_felt;
         }
-        let own = self.felt.step(dt, CHANGE_OVER, told.is_some());
         let limit = self.parameters.largest_force;
-        let [model, felt] = self.surface.map_or(Default::default(), |surface| {
-            let model = pressed(&surface, &hand.position.into());
-            [model, model + own * (self.contact - model)]
-                .map(|force| shortened(rendered(&surface, force, &velocity), limit))
-        });
+        let [model, felt] = [model, felt].map(|force| shortened(force, limit));
         let felt = share * felt - self.damping.value() * velocity;
+        self.wanted = felt;
+        self.lacking = Vector3::zeros();
         LeaderOutput {
             force: felt.into(),
             // Whatever is felt, the tip goes as deep as the hand.
             packet: Packet::new(hand.position, (-share * model).into(), energy),
         }
+    }
+
+    fn given(&mut self, force: Vector3<f64>) {
+        self.lacking = self.wanted - force;
     }
 
     fn nearness(&self) -> f64 {
@@ -173,25 +149,6 @@ impl Leader for ModelMediatedLeader {
 mod tests {
     use super::*;
     use crate::delay::model_mediated::tests::WALL;
-
-    #[test]
-    fn the_rendered_surface_pushes_out_and_brakes() {
-        let surface = SurfaceModel {
-            normal: Vector3::new(-1.0, 0.0, 0.0),
-            place: 0.01,
-            stiffness: 500.0,
-            stiffness_error: 0.0,
-            friction: 0.3,
-        };
-        let at = |x| pressed(&surface, &Vector3::new(x, 0.0, 0.0));
-        let force = rendered(&surface, at(0.012), &Vector3::new(0.0, 0.05, 0.0));
-        assert!(
-            (force - Vector3::new(-1.0, -0.3, 0.0)).norm() < 1e-12,
-            "{force}"
-        );
-        let free = rendered(&surface, at(0.009), &Vector3::zeros());
-        assert_eq!(free, Vector3::zeros());
-    }
 
     /// The leader with the hand at rest at `x` \[m\], after each step; `surface` comes from the arm.
     fn rendering(x: f64, surface: SurfaceModel) -> impl Iterator<Item = SurfaceModel> {
@@ -222,7 +179,7 @@ mod tests {
                 connected: true,
             };
             leader.step(1e-3, &input, Energy::default());
-            leader.surface().unwrap()
+            *leader.surfaces().next().unwrap()
         })
     }
 

@@ -1,7 +1,7 @@
 //! What the follower says of what it touches, and how that goes into a packet.
 
 use super::compliance::SOFTEST;
-use super::estimate::SurfaceModel;
+use super::surface::SurfaceModel;
 use crate::delay::{Energy, Packet, vector};
 
 /// Stiffer than what is rendered, and within what a packet holds [N/m].

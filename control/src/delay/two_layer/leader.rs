@@ -64,6 +64,7 @@ impl Leader for TwoLayerLeader {
         let damping = filling * lacking * Vector3::from(hand.velocity);
         let wanted = wanted.force.into();
         let force = self.force.step(dt, wanted, damping, &velocity, &self.tank);
+        self.inner.given(force + damping);
         LeaderOutput {
             force: force.into(),
             packet,
