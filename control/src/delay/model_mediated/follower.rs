@@ -60,18 +60,6 @@ impl ModelMediatedFollower {
         }
     }
 
-    /// Whether the contact's own force is to be felt of `model`, or still is where it `was`, a round
-    /// trip of `round_trip` \[s\] away: with a spring K in it, a loop that is late by τ wants a
-    /// damping of some K τ. What may be soft counts as soft: a model that is too stiff pushes the
-    /// hand away.
-    fn feels_force(&self, model: &SurfaceModel, round_trip: f64, was: bool) -> bool {
-        let soft = model.stiffness.min(MAYBE);
-        let stiffness = model.stiffness + model.doubt() * (soft - model.stiffness);
-        let needed = stiffness * (round_trip + LOOP_LAG);
-        let damping = HAND_DAMPING * if was { 1.5 } else { 1.0 };
-        self.parameters.contact_force && needed <= damping
-    }
-
     /// How fast the command at `here` \[m\] may go, `dt` \[s\] after it did before, with the hand at
     /// `target` \[m\], which gives `asked` \[N\] into the surfaces; beyond the hand by `furthest`
     /// \[m\] at most. The tip at `touching` \[m\], where its contact is known, is a tip that
@@ -115,11 +103,11 @@ impl ModelMediatedFollower {
             if surface.place.touches {
                 speed = speed.min(DEEPER);
             } else if ahead > 0.0 {
+                // It comes with what it searches with: v² = v_s² + 2 a s.
                 speed = speed.min(SEARCH_SPEED.hypot((2.0 * SEARCH_BRAKE * ahead).sqrt()));
             }
-            let near = surface.inward(&here) + SEARCH_BEFORE > surface.place.even.value;
             if let Some(tip) = touching
-                && near
+                && ahead < SEARCH_BEFORE
                 && surface.force.norm() < SEARCHED * asked.max(least)
             {
                 let lead = surface.inward(&(here - tip));
@@ -134,19 +122,32 @@ impl ModelMediatedFollower {
 
     /// What the other end is told, a round trip of `round_trip` \[s\] away while it is heard.
     fn told(&mut self, dt: f64, round_trip: Option<f64>) -> Option<Told> {
-        let surface = *self.surfaces.whose_turn(dt)?;
+        let law = &self.parameters;
+        let surface = self.surfaces.whose_turn(dt)?;
+        surface.felt =
+            round_trip.is_some_and(|own| feels_force(law, surface.model(), own, surface.felt));
         let model = surface.model();
-        let felt = round_trip.is_some_and(|own| self.feels_force(model, own, surface.felt));
-        self.surfaces.felt(felt);
         Some(Told {
             surface: SurfaceModel {
                 place: surface.place.even.value,
-                stiffness: self.parameters.sure_stiffness(model),
+                stiffness: law.sure_stiffness(model),
                 ..*model
             },
-            force: felt.then(|| surface.force.dot(&model.normal).max(0.0)),
+            force: (surface.felt).then(|| surface.force.dot(&model.normal).max(0.0)),
         })
     }
+}
+
+/// Whether the contact's own force is to be felt of `model`, or still is where it `was`, a round
+/// trip of `round_trip` \[s\] away: with a spring K in it, a loop that is late by τ wants a
+/// damping of some K τ. What may be soft counts as soft: a model that is too stiff pushes the
+/// hand away.
+fn feels_force(law: &ModelMediated, model: &SurfaceModel, round_trip: f64, was: bool) -> bool {
+    let soft = model.stiffness.min(MAYBE);
+    let stiffness = model.stiffness + model.doubt() * (soft - model.stiffness);
+    let needed = stiffness * (round_trip + LOOP_LAG);
+    let damping = HAND_DAMPING * if was { 1.5 } else { 1.0 };
+    law.contact_force && needed <= damping
 }
 
 /// How fast the command may go into the surface where the tip is to go on \[m/s\], `dt` \[s\] after

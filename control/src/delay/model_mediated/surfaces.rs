@@ -110,7 +110,7 @@ impl Surfaces {
     }
 
     /// The one whose turn it is to be told, `dt` \[s\] after the last was.
-    pub fn whose_turn(&mut self, dt: f64) -> Option<&KnownSurface> {
+    pub fn whose_turn(&mut self, dt: f64) -> Option<&mut KnownSurface> {
         self.told += dt;
         if self.told > TURN || self.known[self.turn].is_none() {
             let others = (1..=SURFACES).map(|on| (self.turn + on) % SURFACES);
@@ -118,14 +118,7 @@ impl Surfaces {
             self.turn = next.unwrap_or(self.latest);
             self.told = 0.0;
         }
-        self.known[self.turn].as_ref()
-    }
-
-    /// Whether the own force of the one that is told is to be felt.
-    pub fn felt(&mut self, felt: bool) {
-        if let Some(known) = &mut self.known[self.turn] {
-            known.felt = felt;
-        }
+        self.known[self.turn].as_mut()
     }
 
     fn normals(
