@@ -138,13 +138,18 @@ pub struct Nearest {
 
 /// The feature that `tip` faces and that pushes it hardest, going by
 /// stiffness and penetration; outside of all, the one that is nearest.
-/// Fronts that lie more than `reach` \[m\] ahead of the tip are left out;
-/// `None` when it faces none.
-pub fn nearest(features: &[Feature], tip: &Vector2<f64>, reach: f64) -> Option<Nearest> {
+/// Fronts that lie more than `reach` \[m\] ahead of the tip are left out, and those that do not
+/// `count`, by their index; `None` when it faces none.
+pub fn nearest(
+    features: &[Feature],
+    tip: &Vector2<f64>,
+    reach: f64,
+    count: impl Fn(usize, &Feature) -> bool,
+) -> Option<Nearest> {
     let mut best: Option<(f64, Nearest)> = None;
     for (index, feature) in features.iter().enumerate() {
         let distance = feature.distance(tip);
-        if !feature.faces(tip) || distance < -reach {
+        if !feature.faces(tip) || distance < -reach || !count(index, feature) {
             continue;
         }
         let penetration = (-distance).max(0.0);
@@ -271,12 +276,16 @@ mod tests {
             edge([0.0, 0.0], [1.0, 0.0]).feature(),
             edge([0.5, 1.0], [0.5, -1.0]).feature(),
         ];
-        let found = nearest(&features, &Vector2::new(0.495, -0.001), 0.05).unwrap();
+        let all = |_: usize, _: &Feature| true;
+        let found = nearest(&features, &Vector2::new(0.495, -0.001), 0.05, all).unwrap();
         assert_eq!(found.index, 1);
+        let first = |index: usize, _: &Feature| index == 0;
+        let found = nearest(&features, &Vector2::new(0.495, -0.001), 0.05, first).unwrap();
+        assert_eq!(found.index, 0);
         // Right of the second edge, so out of its front: it is behind.
-        let found = nearest(&features, &Vector2::new(0.7, -0.001), 0.05).unwrap();
+        let found = nearest(&features, &Vector2::new(0.7, -0.001), 0.05, all).unwrap();
         assert_eq!((found.index, found.penetration), (0, 0.001));
-        assert!(nearest(&features, &Vector2::new(-0.1, 2.0), 0.05).is_none());
+        assert!(nearest(&features, &Vector2::new(-0.1, 2.0), 0.05, all).is_none());
     }
 
     #[test]

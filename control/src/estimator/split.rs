@@ -88,16 +88,22 @@ impl Split {
         estimate: &mut ContactEstimate,
     ) {
         let tip = &motion.tip;
-        let near = nearest(&self.features, tip, REACH)
-            .filter(|near| near.distance <= parameters.contact_distance);
         let threshold = threshold(parameters, last.in_contact);
-        let touched = near.and_then(|near| {
-            let feature = motion.turned(near.index, self.features.get(near.index)?);
-            (force.dot(&feature.normal) > threshold).then_some((near.index, feature))
+        let near = |pressed: bool| {
+            let counts = |index, feature: &Feature| {
+                !pressed || force.dot(&motion.turned(index, feature).normal) > threshold
+            };
+            nearest(&self.features, tip, REACH, counts)
+                .filter(|near| near.distance <= parameters.contact_distance)
+        };
+        // Behind the corner of a block the deepest front is the one that the tip did not come through.
+        let touched = near(true).and_then(|near| {
+            let feature = self.features.get(near.index)?;
+            Some((near.index, motion.turned(near.index, feature)))
         });
-        let known = near.map(|_| touched.is_some());
+        let known = near(false).map(|_| touched.is_some());
         let size = force.norm();
-        estimate.touches = self.touch.step(parameters, dt, size, known, last.touches);
+        estimate.touches = (self.touch).step(parameters.contact_on, dt, size, known, last.touches);
         let Some((index, feature)) = touched else {
             self.slide.end();
             return;

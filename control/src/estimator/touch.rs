@@ -33,28 +33,35 @@ pub(super) struct Touch {
     unknown_for: f64,
     /// It has pushed less than a contact does for so long \[s\].
     faint_for: f64,
+    /// It is touched.
+    unknown: bool,
 }
 
 impl Touch {
     /// Whether something is touched `dt` \[s\] after it was (`before`) or was not, by a force of
-    /// `size` \[N\]. `near`: of a known surface near the tip, whether that is touched.
+    /// `size` \[N\]. `near`: of a known surface near the tip, whether that is touched. What that
+    /// does not push with, something else may. A force of `contact_on` \[N\] along a known surface is a
+    /// contact.
     pub(super) fn step(
         &mut self,
-        parameters: &EstimatorParameters,
+        contact_on: f64,
         dt: f64,
         size: f64,
         near: Option<bool>,
         before: bool,
     ) -> bool {
         let lasts = |is: bool, so_far: f64| if is { so_far + dt } else { 0.0 };
-        let unknown = near.is_none() && size > UNKNOWN_SURFACE * parameters.contact_on;
+        let known = near == Some(true);
+        let unknown = !known && size > UNKNOWN_SURFACE * contact_on;
         self.unknown_for = lasts(unknown, self.unknown_for);
-        self.faint_for = lasts(size <= parameters.contact_on, self.faint_for);
-        match near {
-            Some(touched) => touched,
-            None if before => self.faint_for < FAINT_TIME,
-            None => self.unknown_for >= UNKNOWN_TIME,
-        }
+        self.faint_for = lasts(size <= contact_on, self.faint_for);
+        let goes_on = before && (self.unknown || near.is_none());
+        self.unknown = !known
+            && match goes_on {
+                true => self.faint_for < FAINT_TIME,
+                false => self.unknown_for >= UNKNOWN_TIME,
+            };
+        known || self.unknown
     }
 }
 
@@ -83,5 +90,48 @@ impl Slide {
     /// the other way, then the filters follow.
     pub(super) fn turned_lately(&self, parameters: &EstimatorParameters, delay: f64) -> bool {
         self.travel <= parameters.rest_travel || self.time <= TURN_DELAYS * delay
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONTACT_ON: f64 = 1.0;
+
+    /// Whether something is touched, after each millisecond with a force of `size` \[N\] and a
+    /// surface near by that is touched, or not.
+    fn touched(touch: &mut Touch, steps: u32, size: f64, near: Option<bool>, before: bool) -> bool {
+        (0..steps).fold(before, |before, _| {
+            touch.step(CONTACT_ON, 1e-3, size, near, before)
+        })
+    }
+
+    #[test]
+    fn what_a_surface_near_by_does_not_push_with_something_else_does() {
+        let size = 2.0 * UNKNOWN_SURFACE * CONTACT_ON;
+        for near in [None, Some(false)] {
+            let mut touch = Touch::default();
+            let steps = (1e3 * UNKNOWN_TIME) as u32;
+            assert!(
+                !touched(&mut touch, steps - 2, size, near, false),
+                "{near:?}"
+            );
+            assert!(touched(&mut touch, 4, size, near, false), "{near:?}");
+            // It may push less for a while.
+            assert!(touched(&mut touch, 150, 0.0, near, true), "{near:?}");
+            assert!(!touched(&mut touch, 100, 0.0, near, true), "{near:?}");
+        }
+    }
+
+    #[test]
+    fn a_surface_that_is_left_is_not_touched_any_more_while_it_is_near() {
+        let mut touch = Touch::default();
+        assert!(touched(&mut touch, 10, 5.0, Some(true), false));
+        assert!(!touched(&mut touch, 1, 0.5, Some(false), true));
+        // And for a while where the tip left what is near.
+        assert!(touched(&mut touch, 10, 5.0, Some(true), false));
+        assert!(touched(&mut touch, 100, 0.0, None, true));
+        assert!(!touched(&mut touch, 150, 0.0, None, true));
     }
 }

@@ -1,5 +1,5 @@
-//! What the tip meets: a surface across x, free on the side of negative x, and in a corner a
-//! second one across y.
+//! What the tip meets: a surface across x, free on the side of negative x, and in a corner a block
+//! on it, whose side is a second one across y.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 pub(super) const BRISTLE: f64 = 3000.0;
 /// Where along y the second wall of a corner is [m].
 pub(super) const SIDE: f64 = 0.005;
-/// How far the second wall comes out of the first one [m]: a hand that roams passes it.
+/// How far that comes out of the first one [m]: a hand that roams passes it. Beyond it the block
+/// has its front.
 pub(super) const SIDE_LENGTH: f64 = 0.01;
 
 /// What the tip meets beyond x = 0.
@@ -28,7 +29,7 @@ pub enum Environment {
     WallWithFriction,
     /// 2 kN/m, 10 N·s/m, that comes up by 10 mm and goes back, twice.
     MovingWall,
-    /// The hard wall and another one like it across y: who slides along the one runs into the
+    /// The hard wall and a block on it, as hard: who slides along the one runs into the side of the
     /// other.
     Corner,
 }
@@ -92,8 +93,8 @@ impl Environment {
         matches!(self, Environment::MovingWall)
     }
 
-    /// Whether there is a second wall, across y.
-    pub const fn has_side(self) -> bool {
+    /// Whether there is a block with a second wall, across y.
+    pub const fn has_block(self) -> bool {
         matches!(self, Environment::Corner)
     }
 
@@ -117,10 +118,37 @@ pub(super) struct Surface {
     environment: Environment,
     /// How far the bristle of friction is bent along y [m].
     bend: f64,
-    /// The tip came to the second wall from the free side and has not left since.
-    touches_side: bool,
-    /// Place of the tip along y a step ago [m].
-    along: f64,
+    /// Of the block, where there is one.
+    side: Face,
+    front: Face,
+}
+
+/// A face that ends somewhere: who comes round its end is behind it and feels nothing.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    /// The tip came to it from the free side and has not left since.
+    touches: bool,
+    /// How deep the tip was a step ago, along the whole plane [m].
+    depth: f64,
+}
+
+impl Face {
+    const NEW: Face = Face {
+        touches: false,
+        depth: f64::NEG_INFINITY,
+    };
+
+    /// How deep the tip is in it \[m\], zero where it is not, at `depth` \[m\] of the whole plane;
+    /// whether the face is `there`.
+    fn step(&mut self, depth: f64, there: bool) -> f64 {
+        let came_from_outside = self.depth <= 0.0;
+        self.depth = depth;
+        self.touches = there && depth > 0.0 && (self.touches || came_from_outside);
+        match self.touches {
+            true => depth,
+            false => 0.0,
+        }
+    }
 }
 
 impl Surface {
@@ -128,8 +156,8 @@ impl Surface {
         Surface {
             environment,
             bend: 0.0,
-            touches_side: false,
-            along: f64::NEG_INFINITY,
+            side: Face::NEW,
+            front: Face::NEW,
         }
     }
 
@@ -144,36 +172,34 @@ impl Surface {
     ) -> [f64; 2] {
         let (stiffness, damping) = self.environment.surface();
         let (place, speed) = self.environment.place(time);
-        let side = self.side(tip, velocity[1]);
+        let block = self.block(tip, velocity);
         let depth = tip[0] - place;
         if depth <= 0.0 || stiffness == 0.0 {
             self.bend = 0.0;
-            return [0.0, -side];
+            return block;
         }
         // It never pulls.
         let normal = (stiffness * depth + damping * (velocity[0] - speed)).max(0.0);
         let limit = self.environment.friction() * normal / BRISTLE;
         self.bend = (self.bend + velocity[1] * dt).clamp(-limit, limit);
-        [-normal, -BRISTLE * self.bend - side]
+        [block[0] - normal, block[1] - BRISTLE * self.bend]
     }
 
-    /// What the second wall pushes the tip with, along negative y \[N\]. Who comes round its
-    /// end is behind it and feels nothing.
-    fn side(&mut self, tip: [f64; 2], speed: f64) -> f64 {
-        let came_from_outside = self.along < SIDE;
-        self.along = tip[1];
-        let depth = tip[1] - SIDE;
-        let is_before = self.environment.has_side() && tip[0] > -SIDE_LENGTH;
-        if depth <= 0.0 || !is_before {
-            self.touches_side = false;
-            return 0.0;
+    /// Force of the block on the tip \[N\].
+    fn block(&mut self, tip: [f64; 2], velocity: [f64; 2]) -> [f64; 2] {
+        if !self.environment.has_block() {
+            return [0.0; 2];
         }
-        self.touches_side |= came_from_outside;
-        if !self.touches_side {
-            return 0.0;
-        }
+        let [out, aside] = [tip[0] + SIDE_LENGTH, tip[1] - SIDE];
+        let depths = [
+            self.front.step(out, aside > 0.0),
+            self.side.step(aside, out > 0.0),
+        ];
         let (stiffness, damping) = self.environment.surface();
-        (stiffness * depth + damping * speed).max(0.0)
+        std::array::from_fn(|axis| match depths[axis] > 0.0 {
+            true => -(stiffness * depths[axis] + damping * velocity[axis]).max(0.0),
+            false => 0.0,
+        })
     }
 }
 
@@ -194,16 +220,21 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_pushes_back_along_both_axes_who_did_not_come_round_its_end() {
+    fn a_corner_pushes_back_along_both_axes_and_is_a_block_from_outside() {
         let mut surface = Surface::new(Environment::Corner);
-        let mut at = |x: f64, y: f64| surface.step(1e-3, -1.0, [x, SIDE + y], [0.0; 2]);
-        assert_eq!(at(1e-3, -1e-4), [-20.0, 0.0]);
-        let [normal, side] = at(1e-3, 1e-4);
-        assert!((normal + 20.0).abs() < 1e-9 && (side + 2.0).abs() < 1e-9);
-        let [normal, side] = at(-1e-3, 1e-4);
-        assert!(normal == 0.0 && (side + 2.0).abs() < 1e-9);
-        assert_eq!(at(-2.0 * SIDE_LENGTH, 1e-4), [0.0; 2]);
-        assert_eq!(at(-1e-3, 1e-4), [0.0; 2]);
+        let mut at = |x: f64, y: f64, force: [f64; 2]| {
+            let own = surface.step(1e-3, -1.0, [x, SIDE + y], [0.0; 2]);
+            let near = (0..2).all(|axis| (own[axis] - force[axis]).abs() < 1e-9);
+            assert!(near, "{x}, {y}: {own:?}");
+        };
+        at(1e-3, -1e-4, [-20.0, 0.0]);
+        at(1e-3, 1e-4, [-20.0, -2.0]);
+        at(-1e-3, 1e-4, [0.0, -2.0]);
+        // Round the end of the side, and into the front.
+        at(-SIDE_LENGTH - 1e-4, 1e-4, [0.0, 0.0]);
+        at(-SIDE_LENGTH + 1e-4, 1e-4, [-2.0, 0.0]);
+        // Along the front back before the side.
+        at(-SIDE_LENGTH + 1e-4, -1e-4, [0.0, 0.0]);
     }
 
     #[test]

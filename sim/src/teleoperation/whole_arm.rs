@@ -153,9 +153,10 @@ fn contour(
         // What is in the direction of negative x is on the left of y.
         edge.push(wall([0.0, -HALF_LENGTH], [0.0, HALF_LENGTH]));
     }
-    if environment.has_side() {
+    if environment.has_block() {
         // What is in the direction of negative y is on the left of negative x.
         edge.push(wall([HALF_LENGTH, SIDE], [-SIDE_LENGTH, SIDE]));
+        edge.push(wall([-SIDE_LENGTH, SIDE], [-SIDE_LENGTH, HALF_LENGTH]));
     }
     Contour {
         nominal_tip: (*tip).into(),

@@ -38,11 +38,11 @@ ENVIRONMENTS = {
     "corner": (20_000.0, 50.0, 0.0, False),
 }
 CORNERS = {"corner"}
-"""Where there is a second wall, across y, as stiff as the first:"""
+"""Where there is a block on the wall, as stiff:"""
 SIDE = 0.005
-"""its place [m],"""
+"""the place of its side, across y [m],"""
 SIDE_LENGTH = 0.01
-"""and how far it comes out of the first one [m]."""
+"""and how far its front is before the wall [m]."""
 
 
 def discretised(mass: float, damping: float, stiffness: float) -> tuple[np.ndarray, np.ndarray]:
@@ -87,6 +87,7 @@ class Tip:
         self.friction, self.moves = np.array(friction), np.array(moves)
         self.corner = np.array([own in CORNERS for own in environments])
         self.at_side = np.zeros(len(environments), dtype=bool)
+        self.at_front = self.at_side.copy()
         self.position = start.copy()
         self.velocity = np.zeros_like(start)
         self.bend = np.zeros(len(environments))
@@ -114,18 +115,23 @@ class Tip:
             self.position = self.position + way
             self.work += (self.force * way).sum(axis=0)
             place = place + dt * speed
-            self.contact(place, speed, way[1])
+            self.contact(place, speed, way)
 
-    def contact(self, place: np.ndarray, speed: np.ndarray, slid: np.ndarray) -> None:
+    def contact(self, place: np.ndarray, speed: np.ndarray, way: np.ndarray) -> None:
         """The surface's force on the tip: spring and damper that never pull, sticking friction."""
         depth = self.position[0] - place
         push = self.stiffness * depth + self.damping * (self.velocity[0] - speed)
         push = np.where(depth > 0.0, np.maximum(push, 0.0), 0.0)
         most = self.friction * push / BRISTLE
-        self.bend = np.clip(self.bend + slid, -most, most)
-        beyond = self.position[1] - SIDE
-        behind = self.corner & (self.position[0] > -SIDE_LENGTH) & (beyond > 0.0)
-        # Who came round the end of the second wall is behind it and feels nothing.
-        self.at_side = behind & (self.at_side | (beyond <= slid))
-        side = np.maximum(self.stiffness * beyond + self.damping * self.velocity[1], 0.0)
-        self.force = np.stack([-push, -BRISTLE * self.bend - np.where(self.at_side, side, 0.0)])
+        self.bend = np.clip(self.bend + way[1], -most, most)
+        self.force = np.stack([-push, -BRISTLE * self.bend]) - self.block(way)
+
+    def block(self, way: np.ndarray) -> np.ndarray:
+        """What the block pushes back with along both axes: its front and its side."""
+        depth = np.stack([self.position[0] + SIDE_LENGTH, self.position[1] - SIDE])
+        inside = self.corner & (depth > 0.0).all(axis=0)
+        # Who comes round the end of a face is behind that one.
+        self.at_front = inside & (self.at_front | (depth[0] <= way[0]))
+        self.at_side = inside & (self.at_side | (depth[1] <= way[1]))
+        push = np.maximum(self.stiffness * depth + self.damping * self.velocity, 0.0)
+        return np.where(np.stack([self.at_front, self.at_side]), push, 0.0)

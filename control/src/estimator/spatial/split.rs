@@ -95,7 +95,7 @@ impl Split {
 
         let known = near.map(|_| touched.is_some());
         let size = force.norm();
-        estimate.touches = self.touch.step(parameters, dt, size, known, last.touches);
+        estimate.touches = (self.touch).step(parameters.contact_on, dt, size, known, last.touches);
         if !estimate.touches {
             self.slide.end();
             return;

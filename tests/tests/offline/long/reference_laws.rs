@@ -13,7 +13,7 @@ description = "The light tip, whose contact force is known at once."
 rtt_ms = [20, 100, 300]
 jitter_ms = [0]
 loss = [0]
-environments = ["soft_spring", "hard_wall"]
+environments = ["soft_spring", "hard_wall", "corner"]
 seeds = [1]
 hand = { mass = 0.5, damping = 20.0, stiffness = 300.0 }
 laws = [
@@ -35,7 +35,7 @@ fn reference() -> Value {
     let script = ferntast_tests::root().join("tests/python/reference_laws.py");
     let input = json!({
         "rtt_ms": ROUND_TRIPS,
-        "environments": ["soft_spring", "hard_wall"],
+        "environments": ["soft_spring", "hard_wall", "corner"],
         "tasks": ["press_and_slide"],
         "laws": [
             {"kind": "position_force"},
@@ -95,6 +95,39 @@ fn the_laws_are_those_of_their_papers_or_differ_as_told() {
     four_channel_has_the_servo_in_series(&ours, &theirs);
     waves_are_as_soft_as_their_delay(&ours, &theirs);
     tdpa_pays_for_its_passivity_on_stiff_walls(&ours, &theirs);
+    in_a_corner_the_first_wall_is_felt_as_before(&ours, &theirs);
+}
+
+/// Laws without a state that both walls share feel the first wall after the second as before it, here
+/// as there. The plain model-mediated law, which knows both walls beforehand, jumps as at a single one.
+fn in_a_corner_the_first_wall_is_felt_as_before(ours: &Rows, theirs: &Rows) {
+    for rtt_ms in ROUND_TRIPS {
+        for (law, other) in [
+            ("position_position", "position_position"),
+            ("four_channel", "four_channel_commanded"),
+            ("model_mediated", "model_mediated"),
+        ] {
+            let felt = ours.felt(law, "corner", rtt_ms);
+            for expected in [
+                theirs.felt(other, "corner", rtt_ms),
+                ours.felt(law, "hard_wall", rtt_ms),
+            ] {
+                assert!(
+                    near(felt, expected, 0.12),
+                    "{law} {rtt_ms}: {felt}, {expected}"
+                );
+            }
+        }
+        let peak = |rows: &Rows, law| number(rows.row(law, "corner", rtt_ms), "peak_force_N");
+        let (own, other) = (peak(ours, "model_mediated"), peak(theirs, "model_mediated"));
+        assert!(
+            (4.0..9.0).contains(&own) && other > 60.0,
+            "{rtt_ms}: {own}, {other} N"
+        );
+        // The hand comes to the second wall with what it reaches for 15 mm beyond it.
+        let both = [ours, theirs].map(|rows| peak(rows, "position_position"));
+        assert!(near(both[0], both[1], 0.2), "{rtt_ms}: {both:?} N");
+    }
 }
 
 /// Where ours is what the paper says: stable alike, felt stiffness and drag within some percent.
