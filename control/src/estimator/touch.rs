@@ -33,15 +33,12 @@ pub(super) struct Touch {
     unknown_for: f64,
     /// It has pushed less than a contact does for so long \[s\].
     faint_for: f64,
-    /// It is touched.
-    unknown: bool,
 }
 
 impl Touch {
     /// Whether something is touched `dt` \[s\] after it was (`before`) or was not, by a force of
-    /// `size` \[N\]. `near`: of a known surface near the tip, whether that is touched. What that
-    /// does not push with, something else may. A force of `contact_on` \[N\] along a known surface is a
-    /// contact.
+    /// `size` \[N\]. `near`: of a known surface near the tip, whether that is touched. A force of
+    /// `contact_on` \[N\] along a known surface is a contact.
     pub(super) fn step(
         &mut self,
         contact_on: f64,
@@ -51,17 +48,14 @@ impl Touch {
         before: bool,
     ) -> bool {
         let lasts = |is: bool, so_far: f64| if is { so_far + dt } else { 0.0 };
-        let known = near == Some(true);
-        let unknown = !known && size > UNKNOWN_SURFACE * contact_on;
+        let unknown = near.is_none() && size > UNKNOWN_SURFACE * contact_on;
         self.unknown_for = lasts(unknown, self.unknown_for);
         self.faint_for = lasts(size <= contact_on, self.faint_for);
-        let goes_on = before && (self.unknown || near.is_none());
-        self.unknown = !known
-            && match goes_on {
-                true => self.faint_for < FAINT_TIME,
-                false => self.unknown_for >= UNKNOWN_TIME,
-            };
-        known || self.unknown
+        match near {
+            Some(touched) => touched,
+            None if before => self.faint_for < FAINT_TIME,
+            None => self.unknown_for >= UNKNOWN_TIME,
+        }
     }
 }
 
@@ -108,20 +102,15 @@ mod tests {
     }
 
     #[test]
-    fn what_a_surface_near_by_does_not_push_with_something_else_does() {
+    fn what_is_nowhere_near_is_touched_by_a_larger_force_that_lasts() {
         let size = 2.0 * UNKNOWN_SURFACE * CONTACT_ON;
-        for near in [None, Some(false)] {
-            let mut touch = Touch::default();
-            let steps = (1e3 * UNKNOWN_TIME) as u32;
-            assert!(
-                !touched(&mut touch, steps - 2, size, near, false),
-                "{near:?}"
-            );
-            assert!(touched(&mut touch, 4, size, near, false), "{near:?}");
-            // It may push less for a while.
-            assert!(touched(&mut touch, 150, 0.0, near, true), "{near:?}");
-            assert!(!touched(&mut touch, 100, 0.0, near, true), "{near:?}");
-        }
+        let mut touch = Touch::default();
+        let steps = (1e3 * UNKNOWN_TIME) as u32;
+        assert!(!touched(&mut touch, steps - 2, size, None, false));
+        assert!(touched(&mut touch, 4, size, None, false));
+        // It may push less for a while.
+        assert!(touched(&mut touch, 150, 0.0, None, true));
+        assert!(!touched(&mut touch, 100, 0.0, None, true));
     }
 
     #[test]
