@@ -101,7 +101,10 @@ impl Split {
             let feature = self.features.get(near.index)?;
             Some((near.index, motion.turned(near.index, feature)))
         });
-        let known = near(false).map(|_| touched.is_some());
+        let known = match touched {
+            Some(_) => Some(true),
+            None => near(false).map(|_| false),
+        };
         let size = force.norm();
         estimate.touches = (self.touch).step(parameters.contact_on, dt, size, known, last.touches);
         let Some((index, feature)) = touched else {

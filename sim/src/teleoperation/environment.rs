@@ -80,6 +80,16 @@ impl Environment {
         }
     }
 
+    /// What it pushes a tip with that is `depth` \[m\] in it and goes deeper with `speed` \[m/s\]
+    /// \[N\]: it never pulls.
+    fn push(self, depth: f64, speed: f64) -> f64 {
+        let (stiffness, damping) = self.surface();
+        match depth > 0.0 {
+            true => (stiffness * depth + damping * speed).max(0.0),
+            false => 0.0,
+        }
+    }
+
     /// Coulomb coefficient \[-\].
     pub const fn friction(self) -> f64 {
         match self {
@@ -170,16 +180,9 @@ impl Surface {
         tip: [f64; 2],
         velocity: [f64; 2],
     ) -> [f64; 2] {
-        let (stiffness, damping) = self.environment.surface();
         let (place, speed) = self.environment.place(time);
         let block = self.block(tip, velocity);
-        let depth = tip[0] - place;
-        if depth <= 0.0 || stiffness == 0.0 {
-            self.bend = 0.0;
-            return block;
-        }
-        // It never pulls.
-        let normal = (stiffness * depth + damping * (velocity[0] - speed)).max(0.0);
+        let normal = self.environment.push(tip[0] - place, velocity[0] - speed);
         let limit = self.environment.friction() * normal / BRISTLE;
         self.bend = (self.bend + velocity[1] * dt).clamp(-limit, limit);
         [block[0] - normal, block[1] - BRISTLE * self.bend]
@@ -195,11 +198,7 @@ impl Surface {
             self.front.step(out, aside > 0.0),
             self.side.step(aside, out > 0.0),
         ];
-        let (stiffness, damping) = self.environment.surface();
-        std::array::from_fn(|axis| match depths[axis] > 0.0 {
-            true => -(stiffness * depths[axis] + damping * velocity[axis]).max(0.0),
-            false => 0.0,
-        })
+        std::array::from_fn(|axis| -self.environment.push(depths[axis], velocity[axis]))
     }
 }
 

@@ -78,10 +78,11 @@ impl ModelMediatedFollower {
         let towards = |target: Vector3<f64>| {
             shortened((target - here) / own.position_time, own.largest_speed)
         };
+        self.surfaces.ask(&asked);
         let mut goal = target;
         let mut after = target;
-        for (latest, asked, surface) in self.surfaces.iter_mut(&-asked) {
-            let model = surface.model();
+        for (latest, surface) in self.surfaces.iter_mut() {
+            let (model, asked) = (surface.model(), surface.asked);
             // A hand that presses on what was here a while ago means what is here now.
             let pressed = surface.place.deepest(asked, model.stiffness);
             let gone = match latest && asked > threshold {
@@ -96,7 +97,7 @@ impl ModelMediatedFollower {
             goal += (surface.inward(&goal) - most).max(0.0) * model.normal;
         }
         let (mut velocity, after) = (towards(goal), towards(after));
-        for (_, asked, surface) in self.surfaces.iter_mut(&-asked) {
+        for (_, surface) in self.surfaces.iter_mut() {
             let into = surface.inward(&velocity);
             let mut speed = into;
             let ahead = surface.place.even.value - surface.inward(&here);
@@ -108,7 +109,7 @@ impl ModelMediatedFollower {
             }
             if let Some(tip) = touching
                 && ahead < SEARCH_BEFORE
-                && surface.force.norm() < SEARCHED * asked.max(least)
+                && surface.force.norm() < SEARCHED * surface.asked.max(least)
             {
                 let lead = surface.inward(&(here - tip));
                 let most = search_speed(dt, surface.speed, lead, own.position_time);

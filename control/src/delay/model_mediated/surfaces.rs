@@ -33,6 +33,8 @@ pub(super) struct KnownSurface {
     pub force: Vector3<f64>,
     /// What it pushed with before another one did [N].
     calm: f64,
+    /// What the hand gives into it [N].
+    pub asked: f64,
     /// Of the command into it [m/s].
     pub speed: f64,
     /// Its own force is to be felt.
@@ -47,6 +49,7 @@ impl KnownSurface {
             estimator,
             force: Vector3::zeros(),
             calm: 0.0,
+            asked: 0.0,
             speed: 0.0,
             felt: false,
         }
@@ -90,18 +93,21 @@ impl Surfaces {
         }
     }
 
-    /// Each of them: whether it was touched last, and what of `force` \[N\] is its own \[N\].
-    pub fn iter_mut(
-        &mut self,
-        force: &Vector3<f64>,
-    ) -> impl Iterator<Item = (bool, f64, &mut KnownSurface)> {
-        let own = shares(&self.normals(|_, _| true), force);
+    /// The hand gives `force` \[N\] into them.
+    pub fn ask(&mut self, force: &Vector3<f64>) {
+        let own = shares(&self.normals(|_, _| true), &-force);
+        for (known, share) in self.known.iter_mut().zip(own) {
+            if let Some(known) = known {
+                known.asked = share;
+            }
+        }
+    }
+
+    /// Each of them, and whether it was touched last.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (bool, &mut KnownSurface)> {
         let latest = self.latest;
-        let all = self.known.iter_mut().zip(own).enumerate();
-        all.filter_map(move |(at, (known, share))| {
-            let known = known.as_mut()?;
-            Some((at == latest, share, known))
-        })
+        let all = self.known.iter_mut().enumerate();
+        all.filter_map(move |(at, known)| Some((at == latest, known.as_mut()?)))
     }
 
     /// The one that was touched last.
