@@ -7,7 +7,7 @@ use std::{
     process::ExitCode,
 };
 
-use ferntast_nodes::config::shipped;
+use ferntast_config::shipped;
 use serde_json::json;
 
 use super::{Failure, output::print_json};

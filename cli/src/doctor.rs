@@ -2,8 +2,9 @@
 
 use std::{io::IsTerminal, path::PathBuf, process::ExitCode, thread, time::Duration};
 
+use ferntast_config::Middleware;
 use ferntast_doctor::{self as doctor, DoctorOptions, Peer, RosMiddleware, TcpEndpoint};
-use ferntast_nodes::{bridge::gateway, config::Middleware};
+use ferntast_nodes::bridge::gateway;
 
 use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
 

@@ -3,13 +3,11 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::Args;
+use ferntast_config::{Changes, HandSource, Loaded, Middleware};
 use ferntast_control::codec::Codec;
 use ferntast_drivers::{Choice, UnknownDriver, simulated};
 use ferntast_msgs::sample::JointNames;
-use ferntast_nodes::{
-    config::{self, Changes, HandSource, Loaded, Middleware},
-    twin,
-};
+use ferntast_nodes::twin;
 
 use super::Failure;
 
@@ -123,8 +121,8 @@ impl ScenarioOptions {
     ///
     /// What is wrong with it, where, and how to correct it.
     pub fn load(&self) -> Result<Loaded, Failure> {
-        let mut loaded =
-            config::load_scenario(&self.scenario, simulated::load_arm).map_err(Failure::refused)?;
+        let mut loaded = ferntast_config::load_scenario(&self.scenario, simulated::load_arm)
+            .map_err(Failure::refused)?;
         if let Some(arm) = &self.arm {
             loaded
                 .set_arm(arm, simulated::load_arm)

@@ -4,7 +4,7 @@
 use std::{path::Path, time::Instant};
 
 use ferntast_drivers::simulated;
-use ferntast_nodes::{config, lockstep::LockstepSession, process::SessionContext, session_graph};
+use ferntast_nodes::{lockstep::LockstepSession, process::SessionContext, session_graph};
 
 /// Virtual time of one run \[s\].
 const SECONDS: f64 = 20.0;
@@ -40,8 +40,8 @@ fn report(name: &str, mut run: impl FnMut() -> Result<f64, String>) {
 
 /// Virtual seconds per second.
 fn run(scenario: &str, record: Option<&Path>) -> Result<f64, String> {
-    let mut loaded =
-        config::load_scenario(scenario, simulated::load_arm).map_err(|error| error.to_string())?;
+    let mut loaded = ferntast_config::load_scenario(scenario, simulated::load_arm)
+        .map_err(|error| error.to_string())?;
     loaded.complete().map_err(|error| error.to_string())?;
     let mut context = SessionContext::in_virtual_time(loaded);
     context.bag = record.map(Path::to_owned);

@@ -1,8 +1,8 @@
 //! The rows of the graph behind which there is a driver.
 
+use ferntast_config::HandSource;
 use ferntast_nodes::{
     DrivenRows,
-    config::HandSource,
     graph::{Build, NodeRow},
     node::Ticking,
     process::{NodeError, Priority},

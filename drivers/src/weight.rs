@@ -1,7 +1,7 @@
 //! What the joints carry of the arm's own weight.
 
+use ferntast_config::Believed;
 use ferntast_model::{JointCount, Joints, Vector2, arm::Arm};
-use ferntast_nodes::config::Believed;
 
 /// The arm as it is believed to weigh.
 pub struct Weight {

@@ -3,6 +3,7 @@
 
 use std::{cell::RefCell, rc::Rc};
 
+use ferntast_config::{ArmFile, Axes, serial::Serial};
 use ferntast_drivers::{
     Driver, DriverCommand, Measures, Reading,
     leader::{Device, HeldArm, LeaderInput, LeaderNode, LeaderOutput, SOURCE},
@@ -16,10 +17,7 @@ use ferntast_msgs::{
         AuthoritySample, Frame, JointNames, OperatingState, OperatingStateSample, WrenchSample,
     },
 };
-use ferntast_nodes::{
-    config::{ArmFile, Axes, serial::Serial},
-    node::{Newest, Node, NodeHealth, Output},
-};
+use ferntast_nodes::node::{Newest, Node, NodeHealth, Output};
 
 const TICK_NANOS: i64 = 1_000_000;
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);

@@ -9,6 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use ferntast_config::serial::load_serial;
 use ferntast_drivers::{
     Driver, DriverCommand, Reading,
     dynamixel::Dynamixel,
@@ -20,7 +21,7 @@ use ferntast_drivers::{
 };
 use ferntast_model::Joints;
 use ferntast_msgs::sample::{Fault, JointNames, Level};
-use ferntast_nodes::{config::serial::load_serial, node::NodeHealth};
+use ferntast_nodes::node::NodeHealth;
 use motor_bus::MotorBus;
 use serde_json::{Value, json};
 

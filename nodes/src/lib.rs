@@ -1,7 +1,6 @@
-//! The nodes, their configuration, and what runs them: supervisor, lockstep, replay.
+//! The nodes, and what runs them: supervisor, lockstep, replay.
 
 pub mod bridge;
-pub mod config;
 mod console;
 pub mod estimator;
 pub mod events;
@@ -19,7 +18,7 @@ pub mod session;
 pub mod twin;
 
 use bridge::{foxglove, gateway, player, recorder};
-use config::HandSource;
+use ferntast_config::HandSource;
 use graph::{Graph, NodeRow, always, never};
 use process::Priority;
 

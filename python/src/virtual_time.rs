@@ -5,12 +5,9 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
+use ferntast_config::Changes;
 use ferntast_drivers::simulated;
-use ferntast_nodes::{
-    config::{self, Changes},
-    process::SessionContext,
-    session_graph,
-};
+use ferntast_nodes::{process::SessionContext, session_graph};
 use ferntast_studies::{
     lockstep::{self as alone, LockstepPlan},
     shard::{Shard, values},
@@ -60,7 +57,8 @@ pub fn lockstep(
         give_back,
     };
     interrupt::run(py, progress, move |watch| {
-        let mut loaded = config::load_scenario(&scenario, simulated::load_arm).map_err(refused)?;
+        let mut loaded =
+            ferntast_config::load_scenario(&scenario, simulated::load_arm).map_err(refused)?;
         changes.apply(&mut loaded).map_err(refused)?;
         let mut context = SessionContext::in_virtual_time(loaded);
         context.twins = twin;

@@ -2,7 +2,7 @@
 //! of 1 ms with measurements. It is the processor's time that counts, so that other programs
 //! do not.
 
-#[path = "../tests/serial_arm/arms.rs"]
+#[path = "../tests/simulated/serial_arm/arms.rs"]
 mod arms;
 
 use ferntast_model::Joints;

@@ -2,7 +2,7 @@
 
 #[path = "../../tests/shared/allocations.rs"]
 mod allocations;
-#[path = "serial_arm/arms.rs"]
+#[path = "simulated/serial_arm/arms.rs"]
 mod arms;
 
 use ferntast_model::Joints;

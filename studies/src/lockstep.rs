@@ -2,10 +2,10 @@
 
 use std::{collections::BTreeMap, time::Instant};
 
+use ferntast_config::UnknownLaw;
 use ferntast_control::delay::Law;
 use ferntast_msgs::sample::FrictionCommand;
 use ferntast_nodes::{
-    config::UnknownLaw,
     graph::Graph,
     lockstep::{LockstepSession, RunError},
     process::SessionContext,

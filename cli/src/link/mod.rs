@@ -6,13 +6,14 @@ use std::{process::ExitCode, thread, time::Duration};
 
 use clap::Subcommand;
 use ferntast_bus::{Bus, Depth, Subscriber};
+use ferntast_config::UnknownLaw;
 use ferntast_control::delay::Law;
 use ferntast_msgs::{
     Text,
     sample::{LawCommandSample, LinkStatusSample},
     topics,
 };
-use ferntast_nodes::{config::UnknownLaw, process::Clock, session::Visit};
+use ferntast_nodes::{process::Clock, session::Visit};
 use serde_json::json;
 
 use super::{Failure, output::print_json};

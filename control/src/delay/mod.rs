@@ -200,7 +200,7 @@ pub trait Follower {
 /// A law's own books take the servo for a spring with a damper and the estimated contact
 /// force for the true one; at the hand they have the force that the master rendered. With a
 /// whole arm, its servo and its estimator each of the laws that are passive by these makes
-/// energy (`sim/tests/whole_arm.rs`).
+/// energy (`sim/tests/simulated/long/whole_arm.rs`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guarantee {
     /// Nothing.

@@ -33,7 +33,7 @@
 //!
 //! **What it guarantees.** With `model_mediated` inside it gives out no more at hand and tip than
 //! came in there, to within 0.02 J, as measured: on the arm, the servo and the estimator that ship, in none
-//! of 1000 cases drawn at random (`sim/tests/true_ports.rs`, `ferntast sweep --random 10000 --law
+//! of 1000 cases drawn at random (`sim/tests/simulated/long/true_ports.rs`, `ferntast sweep --random 10000 --law
 //! two_layer`). No proof stands behind that: where the tank is empty, the servo's spring still lets the tip
 //! creep along a wall with friction, and the books are those of an estimate.
 //! Around the other laws it takes nearly all of what

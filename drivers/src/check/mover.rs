@@ -5,13 +5,13 @@
 //! paused and stands; held again, it goes on. A joint that goes elsewhere
 //! than it is told, or another one that goes along, ends it at once, with the drives off.
 
+use ferntast_config::Believed;
 use ferntast_control::{
     operating::{OperatingState, StateCommand},
     servo::{Command, Measurement, Servo, ServoConfig, ServoInput, Target},
 };
 use ferntast_model::{JointCount, Joints, ParameterError, rigid_body::JointKind};
 use ferntast_msgs::{Time, sample::JointNames};
-use ferntast_nodes::config::Believed;
 use serde::Serialize;
 
 use super::finding::{Finding, Severity};

@@ -5,9 +5,10 @@ use std::{
     f64::consts::{FRAC_PI_2, FRAC_PI_4},
 };
 
+use ferntast_config::load_scenario;
 use ferntast_model::{JointCount, Joints};
 use ferntast_msgs::Time;
-use ferntast_nodes::{config::load_scenario, node::NodeHealth, process::SessionContext};
+use ferntast_nodes::{node::NodeHealth, process::SessionContext};
 
 use super::*;
 use crate::{

@@ -1,13 +1,10 @@
 //! A simulated leader arm in a simulated hand, to be tried and tested without hardware.
 
+use ferntast_config::{ArmFile, Axes, serial::Serial};
 use ferntast_emulation::hand::{ImpedanceParameters, ScriptedHand, ScriptedHandConfig};
 use ferntast_model::rigid_body::{Placement, Vector3};
 use ferntast_msgs::sample::JointNames;
-use ferntast_nodes::{
-    config::{ArmFile, Axes, serial::Serial},
-    node::NodeHealth,
-    process::NodeError,
-};
+use ferntast_nodes::{node::NodeHealth, process::NodeError};
 use ferntast_sim::serial_arm::Grip;
 
 use crate::{

@@ -16,8 +16,8 @@ pub use device::Device;
 pub use held::HeldArm;
 pub use node::{LeaderInput, LeaderNode, LeaderOutput, LeaderPorts, SOURCE};
 
+use ferntast_config::{ConfigError, LeaderConfig, Loaded};
 use ferntast_nodes::{
-    config::{ConfigError, LeaderConfig, Loaded},
     graph::Build,
     node::Ticking,
     process::{NodeError, SessionContext},

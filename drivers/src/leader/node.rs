@@ -1,5 +1,6 @@
 //! The leader arm's node: topics of the master on one side, a driver on the other.
 
+use ferntast_config::Axes;
 use ferntast_control::haptics::LeaderArm;
 use ferntast_model::{Joints, serial_arm::SerialArm};
 use ferntast_msgs::{
@@ -9,10 +10,7 @@ use ferntast_msgs::{
         WrenchSample,
     },
 };
-use ferntast_nodes::{
-    config::Axes,
-    node::{Node, NodeHealth, ports},
-};
+use ferntast_nodes::node::{Node, NodeHealth, ports};
 
 use super::device::Device;
 use crate::driver::{DriverCommand, Reading};

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use ferntast_config::{ArmFile, serial::SerialFile};
 use ferntast_msgs::sample::JointNames;
-use ferntast_nodes::config::{ArmFile, serial::SerialFile};
 use serde::Deserialize;
 
 use super::error::{MotorError, MotorName};

@@ -19,16 +19,14 @@ use ferntast_bus::{
     Bus, DdsBus, DdsConfig, Depth, OpenError, Publisher, Subscriber, ZenohBus, ZenohConfig,
     ZenohMode,
 };
+use ferntast_config::{GatewaySection, Middleware};
 use ferntast_model::{JointCount, Joints};
 use ferntast_msgs::{
     Text, Time,
     sample::{ControllerCommandSample, JointNames, RobotJointsSample},
     topics::{Delivery, Topic, TopicName},
 };
-use ferntast_nodes::{
-    config::{GatewaySection, Middleware},
-    process::{Clock, Priority, end_after_a_stop, periodic},
-};
+use ferntast_nodes::process::{Clock, Priority, end_after_a_stop, periodic};
 
 use super::states::JointState;
 

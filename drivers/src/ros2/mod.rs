@@ -13,6 +13,7 @@ mod states;
 
 pub use settings::{Effort, Interface, Settings, SettingsError};
 
+use ferntast_config::{ArmFile, ConfigError, serial::SerialFile};
 use ferntast_control::estimator::Form;
 use ferntast_model::{JointCount, Joints};
 use ferntast_msgs::{
@@ -20,7 +21,6 @@ use ferntast_msgs::{
     sample::{Fault, JointNames, Level, RobotDescriptionSample},
 };
 use ferntast_nodes::{
-    config::{ArmFile, ConfigError, serial::SerialFile},
     node::NodeHealth,
     process::{Clock, NodeError, SessionContext},
 };

@@ -1,6 +1,6 @@
 //! The simulated arm's file: what is believed of it, and what is true.
 
-use ferntast_nodes::config::{ARM, ArmFile, ConfigError, load, serial::load_serial};
+use ferntast_config::{ARM, ArmFile, ConfigError, load, serial::load_serial};
 use ferntast_sim::arm::ArmConfig;
 
 /// Loads the arm `name`, shipped or a file.

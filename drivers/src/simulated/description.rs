@@ -12,7 +12,7 @@ use ferntast_msgs::{
     sample::{ARM_FRAMES, LONGEST_DESCRIPTION, RobotDescriptionSample},
 };
 
-use ferntast_nodes::config::joint_names;
+use ferntast_config::joint_names;
 
 /// Radius of a link as drawn \[m\].
 const LINK_RADIUS: f64 = 0.02;

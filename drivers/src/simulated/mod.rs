@@ -8,10 +8,10 @@ mod serial_description;
 pub use config::{arm_file, load_arm, load_config};
 pub(crate) use serial_description::describe_serial;
 
+use ferntast_config::joint_names;
 use ferntast_model::{ArmModel, Joints};
 use ferntast_msgs::sample::{Fault, JointNames, Level, RobotDescriptionSample};
 use ferntast_nodes::{
-    config::joint_names,
     node::NodeHealth,
     process::{NodeError, SessionContext},
 };

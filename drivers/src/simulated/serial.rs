@@ -1,14 +1,12 @@
 //! What is true of a simulated serial arm: what its file says, else what is believed of it.
 
+use ferntast_config::{
+    ArmFile, ConfigError,
+    serial::{Serial, SerialFile},
+};
 use ferntast_control::estimator::Form;
 use ferntast_model::{Joints, joint::JointParameters, serial_arm::Plane};
-use ferntast_nodes::{
-    config::{
-        ArmFile, ConfigError,
-        serial::{Serial, SerialFile},
-    },
-    process::NodeError,
-};
+use ferntast_nodes::process::NodeError;
 use ferntast_sim::{
     arm::{SensorParameters, TrueSurface},
     serial_arm::{ObjectParameters, SerialArmParameters, SerialJointParameters, Shape},

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use ferntast_config::serial::{BASE_FRAME, Serial, TIP_FRAME};
 use ferntast_model::{
     Joints,
     rigid_body::{JointKind, Placement, Vector3},
@@ -11,7 +12,6 @@ use ferntast_msgs::{
     Text,
     sample::{LONGEST_DESCRIPTION, RobotDescriptionSample},
 };
-use ferntast_nodes::config::serial::{BASE_FRAME, Serial, TIP_FRAME};
 
 /// Radius of a link as drawn \[m\].
 const LINK_RADIUS: f64 = 0.03;

@@ -15,10 +15,8 @@ use super::{
     forwarding_loop::ForwardingLoop,
     state_services::StateServices,
 };
-use crate::{
-    config::{GatewaySection, HandSource, Middleware, Scenario},
-    process::{NodeError, ProcessContext, end_after_a_stop},
-};
+use crate::process::{NodeError, ProcessContext, end_after_a_stop};
+use ferntast_config::{GatewaySection, HandSource, Middleware, Scenario};
 
 /// How often it looks for what is said seldom: states, events, calls of services \[ns\].
 const SELDOM_NANOS: i64 = 5_000_000;

@@ -18,7 +18,7 @@ use serde::Serialize;
 use ferntast_lab::experiment::RECORD;
 
 use super::gateway;
-use crate::config::{GatewaySection, Middleware};
+use ferntast_config::{GatewaySection, Middleware};
 
 /// Topics of the table that other people's recordings have, too: they go as bytes there, since
 /// what others say on them need not be what we can say.

@@ -19,10 +19,8 @@ use super::{
     forwarder::{Forwarder, Forwarding, Stamp},
     forwarding_loop::ForwardingLoop,
 };
-use crate::{
-    config::Loaded,
-    process::{NodeError, ProcessContext},
-};
+use crate::process::{NodeError, ProcessContext};
+use ferntast_config::Loaded;
 
 /// Name of the node.
 pub const NAME: &str = "recorder";
@@ -33,16 +31,14 @@ const STATUS_NANOS: i64 = 500_000_000;
 /// Options of a recording that tell what it was made of: `mode` is `session`
 /// or `lockstep`; scenario, arm and link are kept as JSON.
 pub fn bag_options(loaded: &Loaded, mode: &str) -> BagOptions {
-    let json = |value: Result<String, serde_json::Error>| value.unwrap_or_default();
-    let record: BTreeMap<String, String> = [
+    let own = [
         ("mode", mode.to_owned()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("scenario", json(serde_json::to_string(&loaded.scenario))),
-        ("arm", json(serde_json::to_string(&loaded.arm))),
-        ("link", json(serde_json::to_string(&loaded.link))),
-    ]
-    .map(|(key, value)| (key.to_owned(), value))
-    .into();
+    ];
+    let entries = own.into_iter().chain(loaded.entries());
+    let record: BTreeMap<String, String> = entries
+        .map(|(key, value)| (key.to_owned(), value))
+        .collect();
     BagOptions {
         custom: [(RECORD.to_owned(), record)].into(),
         ..BagOptions::default()

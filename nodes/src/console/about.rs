@@ -5,7 +5,7 @@ use ferntast_emulation::channel::LinkConfig;
 use serde_json::{Value, json};
 
 use super::spatial::spatial;
-use crate::config::{HandSource, Loaded, known_links};
+use ferntast_config::{HandSource, Loaded, known_links};
 
 /// Of the session of that name; its hand goes as far as `reach` from the middle. Lengths
 /// \[m\], times \[s\], forces \[N\].

@@ -20,11 +20,11 @@ use ferntast_msgs::{
 };
 
 use crate::{
-    config::Believed,
     events::TELLER,
     node::{InputWatch, NodeHealth},
     process::{NodeError, Priority, ProcessContext},
 };
+use ferntast_config::Believed;
 
 /// How far the hand goes from the middle \[m\].
 const REACH: f64 = 0.06;

@@ -12,7 +12,7 @@ use ferntast_model::{
 use ferntast_urdf::{Placed, Robot, Solid};
 use serde_json::Value;
 
-use crate::config::{
+use ferntast_config::{
     ArmFile, Believed,
     serial::{Serial, SerialFile},
 };
@@ -179,7 +179,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::config::{load_model_only, serial::load_serial};
+    use ferntast_config::{load_model_only, serial::load_serial};
 
     fn panda() -> ArmFile {
         load_serial("panda").unwrap().unwrap()

@@ -10,7 +10,7 @@ use ferntast_msgs::{
     sample::{Edge, TransformsSample},
 };
 
-use crate::config::{Believed, serial::Serial};
+use ferntast_config::{Believed, serial::Serial};
 
 /// The estimator of either kind of arm.
 pub(super) enum Estimator {

@@ -17,11 +17,11 @@ use ferntast_msgs::{
 };
 
 use crate::{
-    config::Believed,
     graph::Build,
     node::{Newest, Node, NodeHealth, Ticking, ports},
     process::NodeError,
 };
+use ferntast_config::Believed;
 
 /// No measurement for this long \[s\] is a fault.
 const MEASUREMENT_WATCHDOG: f64 = 0.010;

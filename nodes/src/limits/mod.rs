@@ -15,11 +15,11 @@ use ferntast_msgs::{
 };
 
 use crate::{
-    config::{Believed, LimitsSection},
     graph::Build,
     node::{Newest, Node, Ticking, ports},
     process::NodeError,
 };
+use ferntast_config::{Believed, LimitsSection};
 
 /// Measurements older than this \[s\] say nothing of where the arm is.
 const MEASUREMENT_LIFE: f64 = 0.1;

@@ -7,12 +7,12 @@ use ferntast_msgs::topics;
 
 use super::*;
 use crate::{
-    config::{Loaded, load_model_only},
     graph::NodeRow,
     lockstep::VirtualTime,
     node::{Newest, Output, PerJoint},
     process::{Priority, SessionContext},
 };
+use ferntast_config::{Loaded, load_model_only};
 
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
 

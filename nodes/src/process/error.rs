@@ -6,7 +6,7 @@ use ferntast_bus::{CreateError, OpenError};
 use ferntast_model::ParameterError;
 
 use super::link_keys::LinkKeyError;
-use crate::config::ConfigError;
+use ferntast_config::ConfigError;
 
 /// Why a node cannot be made, or stopped running.
 #[derive(Debug, thiserror::Error)]

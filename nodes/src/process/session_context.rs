@@ -13,7 +13,7 @@ use ferntast_msgs::sample::JointNames;
 use serde::{Deserialize, Serialize};
 
 use super::{Clock, link_end::LinkAccess};
-use crate::config::Loaded;
+use ferntast_config::Loaded;
 
 /// What every process of a session needs to know. The supervisor writes it to
 /// a file; each node reads that.
@@ -25,6 +25,7 @@ pub struct SessionContext {
     /// UNIX time minus monotonic time \[ns\], the same in all processes.
     pub clock_offset_nanos: i64,
     /// The scenario with all that it names.
+    #[serde(with = "ferntast_config::json")]
     pub loaded: Loaded,
     /// Folder of the recording to be written, or to be played.
     pub bag: Option<PathBuf>,

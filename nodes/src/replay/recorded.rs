@@ -6,7 +6,6 @@ use ferntast_bus::{
     Bus, CreateError, McapBus,
     mcap::{self, BagReader},
 };
-use ferntast_emulation::channel::LinkConfig;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Time,
@@ -17,9 +16,9 @@ use ferntast_msgs::{
 use super::ReplayError;
 use crate::{
     bridge::forwarder::{Forwarder, Forwarding, Stamp},
-    config::Loaded,
     graph::NodeRow,
 };
+use ferntast_config::Loaded;
 
 /// A recording of lockstep.
 pub struct Recorded {
@@ -75,15 +74,7 @@ impl Recorded {
                 entry("mode")
             )));
         }
-        let bad = |error: serde_json::Error| ReplayError::Origin(error.to_string());
-        Ok(Loaded {
-            path: String::new(),
-            scenario: serde_json::from_str(entry("scenario")).map_err(bad)?,
-            arm: serde_json::from_str(entry("arm")).map_err(bad)?,
-            link: LinkConfig::default(),
-            hand_recording: None,
-            leader: None,
-        })
+        Loaded::of_entries(&entry).map_err(|error| ReplayError::Origin(error.to_string()))
     }
 
     fn has(&self, topic: &str) -> bool {

@@ -31,11 +31,11 @@ use ferntast_msgs::{
 use friction::FrictionCommands;
 
 use crate::{
-    config::Believed,
     graph::Build,
     node::{Newest, Node, PerJoint, StatePublisher, Ticking, ports, to_law},
     process::NodeError,
 };
+use ferntast_config::Believed;
 
 /// How often the servo says what became of the commands \[ns\].
 const COMMAND_STATUS_NANOS: i64 = 100_000_000;

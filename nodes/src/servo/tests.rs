@@ -3,10 +3,7 @@
 use ferntast_msgs::sample::{Faults, FrictionCommand, FrictionSource};
 
 use super::*;
-use crate::{
-    config,
-    node::{Newest, Output},
-};
+use crate::node::{Newest, Output};
 
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
 
@@ -20,7 +17,7 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let arm = config::load_model_only("rokviss").unwrap();
+        let arm = ferntast_config::load_model_only("rokviss").unwrap();
         Self {
             node: ServoNode::new(&arm.model, &ServoConfig::default()).unwrap(),
             now: START,

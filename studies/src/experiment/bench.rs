@@ -8,6 +8,7 @@ use std::{
 };
 
 use ferntast_bus::{Bus, Depth, McapBus, Publisher, Subscriber, mcap::BagOptions};
+use ferntast_config::{Loaded, joint_names};
 use ferntast_control::servo::ServoConfig;
 use ferntast_drivers::simulated;
 use ferntast_lab::experiment::RECORD;
@@ -21,7 +22,6 @@ use ferntast_msgs::{
 };
 use ferntast_nodes::{
     bridge::forwarder::{Forwarder, Forwarding, Stamp},
-    config::{Loaded, joint_names},
     graph::STEP_NANOS,
     lockstep::{RunError, VirtualTime},
     process::SessionContext,

@@ -6,9 +6,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ferntast_config::{ConfigError, FileKind};
 use ferntast_identification::experiments::{contact_friction::ContactFriction, damping::Average};
 use ferntast_model::{ParameterError, check, contour::Surface, parameters};
-use ferntast_nodes::config::{self, ConfigError, FileKind};
 use ferntast_sim::arm::ArmConfig;
 use serde::Serialize;
 
@@ -56,7 +56,7 @@ impl Mission {
     ///
     /// What is wrong, in which file, and how to correct it.
     pub fn load(name: &str) -> Result<Mission, ConfigError> {
-        config::load(FILE, name, Mission::validate)
+        ferntast_config::load(FILE, name, Mission::validate)
     }
 
     fn has_neither_nothing_nor_too_much(&self) -> Result<(), ParameterError> {

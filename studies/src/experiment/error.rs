@@ -6,7 +6,7 @@ use ferntast_bus::CreateError;
 use ferntast_lab::recording::LoadError;
 use ferntast_model::{ParameterError, kinematics::InverseError};
 
-use ferntast_nodes::config::ConfigError;
+use ferntast_config::ConfigError;
 use ferntast_nodes::lockstep::RunError;
 
 /// Why an experiment cannot be run.

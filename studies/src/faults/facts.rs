@@ -1,8 +1,8 @@
 //! What the scenario says: limits, and how hand and tip correspond.
 
+use ferntast_config::{Believed, Loaded};
 use ferntast_control::delay::{Guarantee, Mapping};
 use ferntast_model::{JointCount, Joints, ParameterError, joint::JointParameters};
-use ferntast_nodes::config::{Believed, Loaded};
 
 use super::body::{Body, SerialBody};
 

@@ -1,6 +1,7 @@
 //! Peers on ROS 2: what they publish comes in as the gateway lets it in.
 
 use ferntast_bus::{Bus, CreateError, MemoryBus, Publisher};
+use ferntast_config::Scenario;
 use ferntast_control::planted::Planted;
 use ferntast_model::MAX_JOINTS;
 use ferntast_msgs::{
@@ -17,7 +18,6 @@ use ferntast_nodes::{
         forwarder::{Forwarder, Forwarding, Stamp},
         gateway::comes_in,
     },
-    config::Scenario,
     node::{HealthMeter, InputWatch, NodeHealth},
 };
 

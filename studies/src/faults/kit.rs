@@ -1,11 +1,11 @@
 //! What schedules are made from: the scenario, read once.
 
+use ferntast_config::{ConfigError, HandSource, Loaded, UnknownLaw};
 use ferntast_control::planted::Planted;
 use ferntast_drivers::simulated::{self, serial::truth};
 use ferntast_emulation::{channel::LinkConfig, hand::Motion};
 use ferntast_model::ParameterError;
 use ferntast_nodes::{
-    config::{ConfigError, HandSource, Loaded, UnknownLaw},
     graph::{Graph, NodeRow, UnknownNode},
     process::SessionContext,
 };
@@ -155,7 +155,7 @@ fn quicker(mut arm: ArmConfig) -> ArmConfig {
 ///
 /// What is wrong with it, where, and how to correct it.
 pub fn load(scenario: &str) -> Result<Loaded, ConfigError> {
-    let mut loaded = ferntast_nodes::config::load_scenario(scenario, simulated::load_arm)?;
+    let mut loaded = ferntast_config::load_scenario(scenario, simulated::load_arm)?;
     loaded.complete()?;
     Ok(loaded)
 }

@@ -13,8 +13,9 @@ use std::{
     time::{Duration, Instant},
 };
 
+use ferntast_config::Loaded;
 use ferntast_control::{delay::Law, planted::Planted};
-use ferntast_nodes::{config::Loaded, graph::Graph};
+use ferntast_nodes::graph::Graph;
 
 use super::{
     draw::draw,

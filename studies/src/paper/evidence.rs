@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use ferntast_config::ConfigError;
 use ferntast_drivers::simulated;
 use ferntast_identification::experiments::{
     damping::Sample, flexible_joint::Row, stiffness::Stiffness,
 };
 use ferntast_model::contour::Surface;
-use ferntast_nodes::config::ConfigError;
 use ferntast_nodes::lockstep::RunError;
 use ferntast_sim::arm::ArmConfig;
 

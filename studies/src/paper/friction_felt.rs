@@ -4,6 +4,7 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
 use ferntast_bus::{Bus, Depth, Subscriber};
+use ferntast_config::Loaded;
 use ferntast_control::estimator::Form;
 use ferntast_drivers::simulated::{arm_file, load_arm};
 use ferntast_model::{contour::Surface, friction::FrictionParameters};
@@ -13,7 +14,6 @@ use ferntast_msgs::{
     topics::{self, Topic},
 };
 use ferntast_nodes::{
-    config::{self, Loaded},
     lockstep::{LockstepSession, RunError},
     process::SessionContext,
     session_graph,
@@ -226,7 +226,7 @@ effects = ["coulomb", "load_coulomb", "viscous", "quadratic_viscous", "cubic_vis
 
 /// The shipped session whose arm has `factor` times the believed friction.
 fn loaded(seed: u64, factor: f64) -> Result<(Loaded, ArmConfig), PaperError> {
-    let mut loaded = config::load_scenario("rokviss", load_arm)?;
+    let mut loaded = ferntast_config::load_scenario("rokviss", load_arm)?;
     loaded.scenario.seed = seed;
     let mut arm: ArmConfig = loaded.arm.whole()?;
     arm.truth.environment.temperature = Some([TEMPERATURE; 2]);

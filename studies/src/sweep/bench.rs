@@ -1,9 +1,9 @@
 //! Hand, arm and master of a sweep, the same in all of its trials.
 
+use ferntast_config::{ConfigError, stiff_enough};
 use ferntast_control::{codec::Deadband, delay::Law, haptics::MasterConfig, servo};
 use ferntast_emulation::hand::ImpedanceParameters;
 use ferntast_model::ParameterError;
-use ferntast_nodes::config::{ConfigError, stiff_enough};
 use ferntast_sim::teleoperation::{Draw, FollowerModel, Outcome, Trial};
 
 use super::{Condition, SweepConfig};

@@ -1,5 +1,6 @@
 //! What a sweep is made of: a file such as `config/scenarios/delay_sweep.toml`.
 
+use ferntast_config::{self, ConfigError, FileKind};
 use ferntast_control::codec::{Codec, Deadband};
 use ferntast_control::delay::Law;
 use ferntast_control::haptics::MasterConfig;
@@ -7,7 +8,6 @@ use ferntast_control::servo::ServoConfig;
 use ferntast_drivers::simulated;
 use ferntast_emulation::hand::ImpedanceParameters;
 use ferntast_model::{ParameterError, check, parameters};
-use ferntast_nodes::config::{self, ConfigError, FileKind};
 use ferntast_sim::teleoperation::{ArmUnderTrial, Environment, FollowerModel, Task, TipParameters};
 
 /// Trials of one sweep at most.
@@ -98,7 +98,7 @@ impl SweepConfig {
     ///
     /// What is wrong, in which file, and how to correct it.
     pub fn load(name: &str) -> Result<SweepConfig, ConfigError> {
-        config::load(FILE, name, SweepConfig::validate)
+        ferntast_config::load(FILE, name, SweepConfig::validate)
     }
 
     /// Leaves only the laws of these names; all where none is named.

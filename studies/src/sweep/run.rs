@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use ferntast_config::ConfigError;
 use ferntast_model::ParameterError;
-use ferntast_nodes::config::ConfigError;
 
 use super::{Bench, Row, SweepConfig};
 use crate::{

@@ -11,7 +11,7 @@ use std::{
 use ferntast_bus::mcap::{BagOptions, BagReader, BagWriter};
 use ferntast_drivers::simulated;
 use ferntast_msgs::{Message, topics};
-use ferntast_nodes::{config, graph::Graph, process::SessionContext, session_graph};
+use ferntast_nodes::{graph::Graph, process::SessionContext, session_graph};
 use ferntast_studies::lockstep::{self, LockstepPlan};
 use ferntast_tests::{JOINT_2, Session, experiment_on_joint_2, number, refused, root, run};
 use serde_json::{Value, json};
@@ -90,7 +90,8 @@ fn arm_file(shipped: &Table, arm: usize, day: i64) -> String {
 fn day_of(graph: &Graph, folder: &Path, shipped: &Table, arm: usize, day: i64) -> String {
     let file = folder.join(format!("arm_{arm}_{day}.toml"));
     fs::write(&file, arm_file(shipped, arm, day)).expect("scratch folder");
-    let mut loaded = config::load_scenario("rokviss", simulated::load_arm).expect("a scenario");
+    let mut loaded =
+        ferntast_config::load_scenario("rokviss", simulated::load_arm).expect("a scenario");
     let name = file.to_str().expect("UTF-8");
     loaded.set_arm(name, simulated::load_arm).expect("an arm");
     loaded.scenario.seed = 1000 * arm as u64 + day as u64;

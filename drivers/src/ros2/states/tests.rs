@@ -1,9 +1,9 @@
+use ferntast_config::Believed;
 use ferntast_msgs::{
     Message,
     ros::{sensor_msgs, std_msgs::Header},
     sample::Fault,
 };
-use ferntast_nodes::config::Believed;
 
 use super::*;
 use crate::simulated::load_arm;

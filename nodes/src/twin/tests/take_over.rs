@@ -4,7 +4,6 @@ use ferntast_control::servo::ServoConfig;
 use ferntast_msgs::sample::{FrictionCommand, FrictionCommandSample, FrictionSource};
 
 use super::*;
-use crate::config;
 use crate::servo::{ServoInput, ServoNode, ServoOutput};
 
 /// Joint 2 as the arm's file has it, free of load, and a bump near rest.
@@ -32,7 +31,7 @@ fn a_stribeck_effect_that_the_twin_follows_is_fed_forward() {
     });
     let mut word = *published.last();
 
-    let arm = config::load_model_only("rokviss").unwrap();
+    let arm = ferntast_config::load_model_only("rokviss").unwrap();
     let mut servo = ServoNode::new(&arm.model, &ServoConfig::default()).unwrap();
     let mut status = None;
     for k in 1..3_000 {

@@ -1,5 +1,9 @@
 //! A serial arm before a wall, with the estimator that ships, as a trial has it.
 
+use ferntast_config::{
+    ArmFile,
+    serial::{Serial, SerialFile},
+};
 use ferntast_control::{
     estimator::{
         Form, JointMeasurement, MotorMeasurement, SpatialEstimate, SpatialEstimator,
@@ -10,10 +14,6 @@ use ferntast_control::{
 };
 use ferntast_drivers::{Choice, Reading, simulated};
 use ferntast_model::{Joints, rigid_body::Vector3, serial_arm::Plane};
-use ferntast_nodes::config::{
-    ArmFile,
-    serial::{Serial, SerialFile},
-};
 use ferntast_sim::teleoperation::{Environment, Estimated, TICK, TrialArm, TrueTip};
 
 use super::{

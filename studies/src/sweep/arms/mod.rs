@@ -11,13 +11,11 @@ mod table;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use ferntast_config::{ConfigError, stiff_enough};
 use ferntast_control::delay::{Law, Mapping};
 use ferntast_drivers::{Choice, UnknownDriver};
 use ferntast_model::ParameterError;
-use ferntast_nodes::{
-    config::{ConfigError, stiff_enough},
-    process::NodeError,
-};
+use ferntast_nodes::process::NodeError;
 use ferntast_sim::teleoperation::{Environment, Outcome, Task, Trial};
 
 use super::{Condition, Row, SweepConfig, config::BUFFER_PER_JITTER};

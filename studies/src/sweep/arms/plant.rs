@@ -1,5 +1,6 @@
 //! What moves and touches in place of an arm: our own simulation, or a program of its own.
 
+use ferntast_config::{ArmFile, serial::Serial};
 use ferntast_drivers::{
     Choice, Driver, DriverCommand, Reading,
     process::{Greeting, Patience, ProcessPlant},
@@ -7,11 +8,7 @@ use ferntast_drivers::{
     simulated::serial,
 };
 use ferntast_model::{Joints, rigid_body::Vector3};
-use ferntast_nodes::{
-    config::{ArmFile, serial::Serial},
-    node::NodeHealth,
-    process::NodeError,
-};
+use ferntast_nodes::{node::NodeHealth, process::NodeError};
 use ferntast_sim::teleoperation::TICK;
 
 use super::ArmsError;

@@ -1,0 +1,93 @@
+//! The two layers between seeded channels, hands, scales and things to touch, on the whole arm:
+//! servo, contact-force estimator and limiter of the hand's force as they ship. What leaves at
+//! hand and tip is held against what entered there, by the simulated bodies themselves.
+
+use crate::common::{stopping, under_trial};
+use crate::random_cases::{failures, report};
+use ferntast_control::delay::{InnerLaw, Law, TwoLayer};
+use ferntast_control::haptics::MasterConfig;
+use ferntast_control::servo;
+use ferntast_sim::teleoperation::{ArmUnderTrial, Draw, FollowerModel, Trial};
+
+/// Seeds tried.
+const CASES: u64 = 1000;
+
+/// A trial on `arm` with a law that `law` makes of a draw.
+fn trial(arm: &ArmUnderTrial, seed: u64, law: impl Fn(&mut Draw) -> Law) -> Trial {
+    let follower = FollowerModel::Arm(Box::new(arm.clone()));
+    Trial::drawn(seed, follower, Some(MasterConfig::default()), law)
+}
+
+/// The layers around `inside`, at scales of their own.
+fn two_layer(draw: &mut Draw, inside: InnerLaw, stiffness: f64) -> TwoLayer {
+    TwoLayer {
+        inside,
+        position_scale: draw.between(0.5, 1.5),
+        force_scale: draw.between(0.02, 1.0),
+        servo_stiffness: stiffness,
+        ..TwoLayer::default()
+    }
+}
+
+/// The arm, and how stiff its servo is at most \[N/m\].
+fn stiff_arm() -> (ArmUnderTrial, f64) {
+    let arm = under_trial();
+    let stiffness = servo::stiffest(&arm.arm.model(), &arm.servo).expect("a stiffness");
+    (arm, stiffness)
+}
+
+/// Whoever claims passivity is tried here.
+#[test]
+fn who_claims_passivity_gives_out_no_more_than_it_took_in() {
+    let laws = Law::all().into_iter().filter(Law::claims_passivity);
+    let claims: Vec<_> = laws.map(|law| law.name()).collect();
+    assert_eq!(
+        claims,
+        ["two_layer", "auto"],
+        "who claims passivity is to be tried here"
+    );
+    let (arm, stiffness) = stiff_arm();
+    let arms = [stopping(), arm];
+    let layers = |draw: &mut Draw| two_layer(draw, InnerLaw::default(), stiffness);
+    report(&failures(CASES, |seed| {
+        let arm = &arms[(seed % 2) as usize];
+        trial(arm, seed, |draw| Law::TwoLayer(layers(draw)))
+    }));
+    report(&failures(CASES, |seed| {
+        let arm = &arms[(seed % 2) as usize];
+        trial(arm, seed, |draw| Law::Auto(layers(draw).into()))
+    }));
+}
+
+/// Bare, each of them makes some joules or some tens of them in some of the cases.
+#[test]
+fn around_the_other_laws_the_layer_leaves_a_tenth_of_a_joule_of_it() {
+    let (arm, stiffness) = stiff_arm();
+    for inside in InnerLaw::all() {
+        let cases = 60;
+        let outcomes = |bare: bool| -> Vec<f64> {
+            let energy = |seed| {
+                let inside = inside.clone();
+                let make = |draw: &mut Draw| {
+                    let layered = Law::TwoLayer(two_layer(draw, inside.clone(), stiffness));
+                    match bare {
+                        true => Law::by_name(inside.name())
+                            .expect("every inner law is a law")
+                            .between(&layered.mapping()),
+                        false => layered,
+                    }
+                };
+                let trial = trial(&arm, seed, make);
+                trial.run().expect("a valid trial").energy_margin
+            };
+            (0..cases).map(energy).collect()
+        };
+        let worst = |bare| outcomes(bare).into_iter().fold(0.0, f64::min);
+        let (with, without) = (worst(false), worst(true));
+        let told = format!("{}: {with:.3} J, bare {without:.3} J", inside.name());
+        assert!(with > -0.15, "{told}");
+        let makes_energy = inside.name() != "model_mediated";
+        assert!(!makes_energy || without < 5.0 * with.min(-0.02), "{told}");
+        println!("{told}");
+    }
+}
