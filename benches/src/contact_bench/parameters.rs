@@ -36,7 +36,13 @@ impl EdgeParameters {
     /// F_N to its exponent, with \[N\] restored: equal to F_N at
     /// [`TYPICAL_FORCE`].
     pub(super) fn coulomb_force(&self, normal_force: f64) -> f64 {
-        TYPICAL_FORCE * (normal_force.max(0.0) / TYPICAL_FORCE).powf(self.exponent)
+        let share = normal_force.max(0.0) / TYPICAL_FORCE;
+        // A power takes much of a step's time, and most edges need none.
+        let raised = match self.exponent {
+            1.0 => share,
+            exponent => share.powf(exponent),
+        };
+        TYPICAL_FORCE * raised
     }
 
     /// Name, value, unit.
