@@ -17,8 +17,9 @@ pub mod servo;
 pub mod session;
 pub mod twin;
 
-use bridge::{foxglove, gateway, player, recorder};
 use ferntast_config::HandSource;
+
+use bridge::{foxglove, gateway, player, recorder};
 use graph::{Graph, NodeRow, always, never};
 use process::Priority;
 

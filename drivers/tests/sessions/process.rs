@@ -1,7 +1,6 @@
 //! A plant in a program of its own: it is the arm of a session in virtual time, as repeatable
 //! as it is itself, and whatever it does wrong is told in words.
 
-use crate::common::scenario;
 use std::time::Duration;
 
 use ferntast_bus::Depth;
@@ -21,6 +20,8 @@ use ferntast_nodes::{
     process::SessionContext,
     session_graph,
 };
+
+use crate::common::scenario;
 
 const TICK: f64 = 1e-3;
 

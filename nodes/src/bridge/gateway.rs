@@ -4,6 +4,7 @@
 //! process with DDS or a Zenoh router.
 
 use ferntast_bus::{Bus, BusParameters, DdsBus, DdsConfig, ZenohBus, ZenohConfig, ZenohMode};
+use ferntast_config::{GatewaySection, HandSource, Middleware, Scenario};
 use ferntast_msgs::{
     Time,
     topics::{Authority, Delivery, EVENT_QUEUE, Row, Switch},
@@ -16,7 +17,6 @@ use super::{
     state_services::StateServices,
 };
 use crate::process::{NodeError, ProcessContext, end_after_a_stop};
-use ferntast_config::{GatewaySection, HandSource, Middleware, Scenario};
 
 /// How often it looks for what is said seldom: states, events, calls of services \[ns\].
 const SELDOM_NANOS: i64 = 5_000_000;

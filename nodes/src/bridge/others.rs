@@ -7,6 +7,7 @@ use ferntast_bus::{
     Bus, OpenError, RawPublisher, RawTopic, ZenohBus, ZenohConfig, ZenohMode,
     mcap::{BagReader, BagTopic, QosProfile},
 };
+use ferntast_config::{GatewaySection, Middleware};
 use ferntast_msgs::{
     Message, Time,
     interface::Library,
@@ -18,7 +19,6 @@ use serde::Serialize;
 use ferntast_lab::experiment::RECORD;
 
 use super::gateway;
-use ferntast_config::{GatewaySection, Middleware};
 
 /// Topics of the table that other people's recordings have, too: they go as bytes there, since
 /// what others say on them need not be what we can say.

@@ -8,6 +8,7 @@ use std::{
 
 use chrono::DateTime;
 use ferntast_bus::{Bus, Depth, McapBus, SharedMemoryBus, mcap::BagOptions};
+use ferntast_config::Loaded;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Text, Time,
@@ -20,7 +21,6 @@ use super::{
     forwarding_loop::ForwardingLoop,
 };
 use crate::process::{NodeError, ProcessContext};
-use ferntast_config::Loaded;
 
 /// Name of the node.
 pub const NAME: &str = "recorder";

@@ -1,11 +1,11 @@
 //! What the page has to know of a session before anything moves.
 
+use ferntast_config::{HandSource, Loaded, known_links};
 use ferntast_control::{delay::Law, frame::WIRE_LENGTH};
 use ferntast_emulation::channel::LinkConfig;
 use serde_json::{Value, json};
 
 use super::spatial::spatial;
-use ferntast_config::{HandSource, Loaded, known_links};
 
 /// Of the session of that name; its hand goes as far as `reach` from the middle. Lengths
 /// \[m\], times \[s\], forces \[N\].

@@ -8,6 +8,7 @@ mod spatial;
 
 use std::{path::PathBuf, sync::Arc};
 
+use ferntast_config::Believed;
 use ferntast_console::{
     Listen, Server,
     server::Content,
@@ -24,7 +25,6 @@ use crate::{
     node::{InputWatch, NodeHealth},
     process::{NodeError, Priority, ProcessContext},
 };
-use ferntast_config::Believed;
 
 /// How far the hand goes from the middle \[m\].
 const REACH: f64 = 0.06;

@@ -1,5 +1,9 @@
 //! The arm and what it can touch, as a page draws it in space.
 
+use ferntast_config::{
+    ArmFile, Believed,
+    serial::{Serial, SerialFile},
+};
 use ferntast_console::session::spatial::{
     FrameView, JointView, LinkShape, SolidView, SpatialView, ThingShape, ThingView,
 };
@@ -11,11 +15,6 @@ use ferntast_model::{
 };
 use ferntast_urdf::{Placed, Robot, Solid};
 use serde_json::Value;
-
-use ferntast_config::{
-    ArmFile, Believed,
-    serial::{Serial, SerialFile},
-};
 
 /// Shapes and things that a page is told of at most.
 const MOST_SHAPES: usize = 256;
@@ -176,10 +175,10 @@ fn head(spring: &SpringParameters) -> ThingView {
 
 #[cfg(test)]
 mod tests {
+    use ferntast_config::{load_model_only, serial::load_serial};
     use serde_json::json;
 
     use super::*;
-    use ferntast_config::{load_model_only, serial::load_serial};
 
     fn panda() -> ArmFile {
         load_serial("panda").unwrap().unwrap()

@@ -1,5 +1,6 @@
 //! The estimator of a planar or of a serial arm, and what either tells.
 
+use ferntast_config::{Believed, serial::Serial};
 use ferntast_control::estimator::{
     Coefficient, ContactEstimate, ContactEstimator, EstimatorParameters, JointMeasurement,
     SpatialEstimate, SpatialEstimator, TorqueFromMotor,
@@ -9,8 +10,6 @@ use ferntast_msgs::{
     Time,
     sample::{Edge, TransformsSample},
 };
-
-use ferntast_config::{Believed, serial::Serial};
 
 /// The estimator of either kind of arm.
 pub(super) enum Estimator {

@@ -5,6 +5,7 @@ mod either;
 
 use by_motors::ByMotors;
 use either::{Estimator, Told};
+use ferntast_config::Believed;
 use ferntast_control::estimator::{EstimatorParameters, Form, JointMeasurement};
 use ferntast_control::servo::TakeOverConfig;
 use ferntast_model::{JointCount, Joints, ParameterError};
@@ -21,7 +22,6 @@ use crate::{
     node::{Newest, Node, NodeHealth, Ticking, ports},
     process::NodeError,
 };
-use ferntast_config::Believed;
 
 /// No measurement for this long \[s\] is a fault.
 const MEASUREMENT_WATCHDOG: f64 = 0.010;

@@ -8,6 +8,7 @@
 #[cfg(test)]
 mod tests;
 
+use ferntast_config::{Believed, LimitsSection};
 use ferntast_model::joint::JointParameters;
 use ferntast_msgs::{
     Text, Time,
@@ -19,7 +20,6 @@ use crate::{
     node::{Newest, Node, Ticking, ports},
     process::NodeError,
 };
-use ferntast_config::{Believed, LimitsSection};
 
 /// Measurements older than this \[s\] say nothing of where the arm is.
 const MEASUREMENT_LIFE: f64 = 0.1;

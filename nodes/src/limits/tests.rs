@@ -3,6 +3,7 @@
 use std::{cell::RefCell, rc::Rc};
 
 use ferntast_bus::Depth;
+use ferntast_config::{Loaded, load_model_only};
 use ferntast_msgs::topics;
 
 use super::*;
@@ -12,7 +13,6 @@ use crate::{
     node::{Newest, Output, PerJoint},
     process::{Priority, SessionContext},
 };
-use ferntast_config::{Loaded, load_model_only};
 
 const START: Time = Time::from_nanos(1_700_000_000_000_000_000);
 

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use ferntast_bus::{CreateError, OpenError};
+use ferntast_config::ConfigError;
 use ferntast_model::ParameterError;
 
 use super::link_keys::LinkKeyError;
-use ferntast_config::ConfigError;
 
 /// Why a node cannot be made, or stopped running.
 #[derive(Debug, thiserror::Error)]

@@ -8,12 +8,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ferntast_config::Loaded;
 use ferntast_control::planted::Planted;
 use ferntast_msgs::sample::JointNames;
 use serde::{Deserialize, Serialize};
 
 use super::{Clock, link_end::LinkAccess};
-use ferntast_config::Loaded;
 
 /// What every process of a session needs to know. The supervisor writes it to
 /// a file; each node reads that.

@@ -6,6 +6,7 @@ use ferntast_bus::{
     Bus, CreateError, McapBus,
     mcap::{self, BagReader},
 };
+use ferntast_config::Loaded;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
     Time,
@@ -18,7 +19,6 @@ use crate::{
     bridge::forwarder::{Forwarder, Forwarding, Stamp},
     graph::NodeRow,
 };
-use ferntast_config::Loaded;
 
 /// A recording of lockstep.
 pub struct Recorded {

@@ -9,6 +9,7 @@ pub use summary::{FrictionParameter, FrictionSummary};
 
 use std::borrow::Cow;
 
+use ferntast_config::Believed;
 use ferntast_control::{
     operating,
     orientation::Orientation,
@@ -35,7 +36,6 @@ use crate::{
     node::{Newest, Node, PerJoint, StatePublisher, Ticking, ports, to_law},
     process::NodeError,
 };
-use ferntast_config::Believed;
 
 /// How often the servo says what became of the commands \[ns\].
 const COMMAND_STATUS_NANOS: i64 = 100_000_000;

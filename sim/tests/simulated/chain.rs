@@ -1,7 +1,7 @@
 //! The whole chain without nodes or middleware: hand, master, delay law, frames
 //! through the channel, servo, arm, and back.
 
-use crate::common::rokviss;
+use crate::common::{TICK, TICK_NS, rokviss};
 use ferntast_control::delay::{
     FollowerEnd, FollowerInput, Law, LeaderEnd, LeaderInput, Motion, Packet, PositionForce,
     Received,
@@ -16,8 +16,6 @@ use ferntast_emulation::hand::{Hand, ScriptedHand, ScriptedHandConfig};
 use ferntast_model::Joints;
 use ferntast_sim::arm::{ArmConfig, SimulatedArm};
 
-const TICK: f64 = 1e-3;
-const TICK_NS: i64 = 1_000_000;
 const START: i64 = 1_700_000_000_000_000_000;
 
 /// Reach to the lubricated edge, press, slide, let go.

@@ -1,7 +1,6 @@
 //! What the literature says of each delay law, reached in simulation.
 
-use ferntast_control::delay::Law;
-use ferntast_emulation::channel::{ChannelConfig, LinkConfig};
+use crate::common::{configured, constant};
 use ferntast_sim::teleoperation::{Environment, Outcome, Trial};
 
 fn run(name: &str, round_trip: f64, environment: Environment) -> Outcome {
@@ -9,15 +8,8 @@ fn run(name: &str, round_trip: f64, environment: Environment) -> Outcome {
 }
 
 fn run_with(name: &str, keys: &str, round_trip: f64, environment: Environment) -> Outcome {
-    let law: Law = toml::from_str(&format!("kind = \"{name}\"\nforce_scale = 1.0\n{keys}"))
-        .expect("keys of the law");
-    let one_way = ChannelConfig::with_delay(0.5 * round_trip);
-    let link = LinkConfig {
-        up: one_way.clone(),
-        down: one_way,
-        ..LinkConfig::default()
-    };
-    Trial::new(law, link, environment, 1)
+    let law = configured(name, 1.0, keys);
+    Trial::new(law, constant(round_trip), environment, 1)
         .run()
         .expect("a valid trial")
 }

@@ -4,6 +4,7 @@
 //! whose books say so. What that is worth with a whole arm, `true_ports.rs` and `whole_arm.rs`
 //! tell.
 
+use crate::common::configured;
 use crate::random_cases::{cases, failures, report};
 use ferntast_control::delay::{Guarantee, Law};
 use ferntast_sim::teleoperation::{Draw, Environment, Trial};
@@ -22,14 +23,6 @@ fn trial(draw: &mut Draw, law: Law, outages: bool, seed: u64) -> Trial {
     trial
 }
 
-/// The law as a configuration would set it.
-fn configured(name: &str, keys: &str) -> Law {
-    let law: Law = toml::from_str(&format!("kind = \"{name}\"\nforce_scale = 1.0\n{keys}"))
-        .expect("keys of the law");
-    assert_eq!(law.validate(), Ok(()));
-    law
-}
-
 #[test]
 fn a_law_whose_books_say_so_gives_out_no_more_than_it_took_in() {
     let claiming: Vec<&str> = Law::all()
@@ -42,7 +35,7 @@ fn a_law_whose_books_say_so_gives_out_no_more_than_it_took_in() {
         report(&failures(CASES, |seed| {
             let mut draw = Draw::of(seed);
             let scales = format!("position_scale = {}", draw.between(0.5, 2.0));
-            trial(&mut draw, configured(name, &scales), true, seed)
+            trial(&mut draw, configured(name, 1.0, &scales), true, seed)
         }));
     }
 }
@@ -56,7 +49,7 @@ fn a_law_whose_books_say_so_while_connected_does_so_while_frames_come() {
     for law in claiming {
         report(&failures(CASES, |seed| {
             let mut draw = Draw::of(seed);
-            trial(&mut draw, configured(law.name(), ""), false, seed)
+            trial(&mut draw, configured(law.name(), 1.0, ""), false, seed)
         }));
     }
 }
@@ -66,7 +59,7 @@ fn the_test_can_fail() {
     // Position–force makes energy on a stiff wall, and the test sees it.
     let found = failures(CASES, |seed| {
         let mut draw = Draw::of(seed);
-        let law = configured("position_force", "");
+        let law = configured("position_force", 1.0, "");
         trial(&mut draw, law, true, seed)
     });
     assert!(found.len() as u64 > cases(CASES) / 4, "{}", found.len());

@@ -1,7 +1,6 @@
 //! Servo and estimator of a serial arm on the simulated one, which shares geometry with what
 //! they believe and neither friction nor contact.
 
-use crate::serial_arm::arms;
 use std::collections::BTreeMap;
 
 use ferntast_control::{
@@ -21,7 +20,9 @@ use ferntast_model::{
 };
 use ferntast_sim::serial_arm::{SerialArm, SerialArmParameters};
 
-const TICK_NS: i64 = 1_000_000;
+use crate::common::TICK_NS;
+use crate::serial_arm::arms;
+
 const START: i64 = 1_700_000_000_000_000_000;
 const HOME: [f64; 7] = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785];
 /// How far below the tip the table is \[m\].

@@ -1,17 +1,13 @@
 //! The servo on the simulated arm that is shipped: it tracks, presses and
 //! lets go, with a tick of delay from sensor to servo and another one back.
 
-use crate::common::rokviss;
+use crate::common::{TICK, TICK_NS, rokviss};
 use ferntast_control::operating::{OperatingState, StateCommand};
 use ferntast_control::servo::{
     Command, ContactStopConfig, Measurement, Servo, ServoConfig, ServoInput, ServoOutput, Target,
 };
 use ferntast_model::Joints;
 use ferntast_sim::arm::SimulatedArm;
-
-/// One tick.
-const TICK: f64 = 1e-3;
-const TICK_NS: i64 = 1_000_000;
 
 struct Bench {
     arm: SimulatedArm,

@@ -1,12 +1,11 @@
 //! Links that leave frames out: what is led on in their place makes no energy at hand and tip,
 //! and is not felt.
 
-use crate::common::under_trial;
+use crate::common::{configured, stiffest, under_trial};
 use crate::random_cases::{failures, report};
 use ferntast_control::codec::Deadband;
 use ferntast_control::delay::{InnerLaw, Law, TwoLayer};
 use ferntast_control::haptics::MasterConfig;
-use ferntast_control::servo;
 use ferntast_sim::teleoperation::{Draw, Environment, FollowerModel, Trial};
 
 /// Seeds tried for each law on the light tip.
@@ -37,10 +36,7 @@ fn a_law_whose_books_say_so_gives_out_no_more_with_any_deadband() {
         report(&failures(LIGHT, |seed| {
             let mut draw = Draw::of(seed);
             let scale = draw.between(0.5, 2.0);
-            let law: Law = toml::from_str(&format!(
-                "kind = \"{name}\"\nforce_scale = 1.0\nposition_scale = {scale}"
-            ))
-            .expect("keys of the law");
+            let law = configured(name, 1.0, &format!("position_scale = {scale}"));
             let link = draw.link(true);
             let environment = Environment::ALL[seed as usize % Environment::ALL.len()];
             Trial {
@@ -56,7 +52,7 @@ fn a_law_whose_books_say_so_gives_out_no_more_with_any_deadband() {
 #[test]
 fn two_layers_give_out_no_more_than_they_took_in_with_any_deadband() {
     let arm = under_trial();
-    let stiffness = servo::stiffest(&arm.arm.model(), &arm.servo).expect("a stiffness");
+    let stiffness = stiffest(&arm);
     let law = Law::TwoLayer(TwoLayer {
         inside: InnerLaw::default(),
         servo_stiffness: stiffness,

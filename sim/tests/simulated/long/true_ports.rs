@@ -2,11 +2,10 @@
 //! servo, contact-force estimator and limiter of the hand's force as they ship. What leaves at
 //! hand and tip is held against what entered there, by the simulated bodies themselves.
 
-use crate::common::{stopping, under_trial};
+use crate::common::{stiffest, stopping, under_trial};
 use crate::random_cases::{failures, report};
 use ferntast_control::delay::{InnerLaw, Law, TwoLayer};
 use ferntast_control::haptics::MasterConfig;
-use ferntast_control::servo;
 use ferntast_sim::teleoperation::{ArmUnderTrial, Draw, FollowerModel, Trial};
 
 /// Seeds tried.
@@ -32,7 +31,7 @@ fn two_layer(draw: &mut Draw, inside: InnerLaw, stiffness: f64) -> TwoLayer {
 /// The arm, and how stiff its servo is at most \[N/m\].
 fn stiff_arm() -> (ArmUnderTrial, f64) {
     let arm = under_trial();
-    let stiffness = servo::stiffest(&arm.arm.model(), &arm.servo).expect("a stiffness");
+    let stiffness = stiffest(&arm);
     (arm, stiffness)
 }
 

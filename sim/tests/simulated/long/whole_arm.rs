@@ -1,15 +1,16 @@
 //! Every law on the whole arm: servo, contact-force estimator and limiter of the hand's force
 //! as they ship, energy as the simulated bodies have it.
 
-use crate::common::stopping;
 use std::thread;
 
-use ferntast_control::{delay::Law, haptics::MasterConfig, servo};
-use ferntast_emulation::channel::{ChannelConfig, Jitter, LinkConfig, Loss};
+use ferntast_control::{delay::Law, haptics::MasterConfig};
+use ferntast_emulation::channel::{Jitter, Loss};
 use ferntast_sim::arm::SimulatedArm;
 use ferntast_sim::teleoperation::{
     ArmUnderTrial, Environment, FollowerModel, Outcome, Task, Trial,
 };
+
+use crate::common::{configured, constant, stiffest, stopping};
 
 /// Energy that may leave beyond what entered \[J\].
 const BOUND: f64 = 0.02;
@@ -20,31 +21,21 @@ fn law(name: &str, arm: &ArmUnderTrial) -> Law {
 }
 
 fn scaled(name: &str, force_scale: f64, arm: &ArmUnderTrial) -> Law {
-    let stiffest = servo::stiffest(&arm.arm.model(), &arm.servo).expect("a stiffness");
     let keys = match name {
         "position_force" | "position_position" | "model_mediated" => String::new(),
-        _ => format!("servo_stiffness = {stiffest}"),
+        _ => format!("servo_stiffness = {}", stiffest(arm)),
     };
-    toml::from_str(&format!(
-        "kind = \"{name}\"\nforce_scale = {force_scale}\n{keys}"
-    ))
-    .expect("keys of the law")
+    configured(name, force_scale, &keys)
 }
 
 fn trial(name: &str, round_trip: f64, environment: Environment, task: Task) -> Trial {
     let arm = stopping();
     let law = law(name, &arm);
-    let one_way = ChannelConfig::with_delay(0.5 * round_trip);
-    let link = LinkConfig {
-        up: one_way.clone(),
-        down: one_way,
-        ..LinkConfig::default()
-    };
     Trial {
         task,
         follower: FollowerModel::Arm(Box::new(arm)),
         master: Some(MasterConfig::default()),
-        ..Trial::new(law, link, environment, 1)
+        ..Trial::new(law, constant(round_trip), environment, 1)
     }
 }
 

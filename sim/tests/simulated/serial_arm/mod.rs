@@ -8,11 +8,9 @@ mod grip;
 mod mechanics;
 mod two_joints;
 
+use crate::common::TICK;
 use ferntast_model::{Joints, rigid_body::Chain};
 use ferntast_sim::serial_arm::{SerialArm, SerialArmParameters};
-
-/// One tick \[s\].
-const TICK: f64 = 1e-3;
 
 /// What a file says; the rest is left out.
 fn parameters(text: &str) -> SerialArmParameters {
