@@ -57,8 +57,15 @@ impl JointParameters {
         motor_torque * self.motor_constant / self.gear_ratio
     }
 
+    /// How far the gear is wound, δ = θ − q \[rad\], under the joint torque τ = K δ + D δ̇
+    /// \[Nm\], `dt` \[s\] after it was wound by `before` \[rad\]: an implicit Euler step, which
+    /// is stable at any step and, as slow torques go, as late as δ is behind τ/K, D/K.
+    pub fn wound(&self, before: f64, joint_torque: f64, dt: f64) -> f64 {
+        (self.damping * before + joint_torque * dt) / (self.damping + self.stiffness * dt)
+    }
+
     /// Link-side position q = θ − τ/K \[rad\] from the motor position θ
-    /// \[rad\] and the joint torque τ \[Nm\].
+    /// \[rad\] and the joint torque τ \[Nm\], at rest.
     pub fn link_position(&self, motor_position: f64, joint_torque: f64) -> f64 {
         motor_position - joint_torque / self.stiffness
     }
@@ -67,5 +74,57 @@ impl JointParameters {
     /// under the joint torque τ \[Nm\].
     pub fn motor_position(&self, link_position: f64, joint_torque: f64) -> f64 {
         link_position + joint_torque / self.stiffness
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::friction::FrictionParameters;
+
+    fn joint(damping: f64) -> JointParameters {
+        JointParameters {
+            motor_inertia: 0.5,
+            gear_ratio: 160.0,
+            stiffness: 4900.0,
+            damping,
+            motor_constant: 10.0,
+            motor_torque_limit: 80.0,
+            torque_sensor_range: 40.0,
+            position_lower: -1.0,
+            position_upper: 1.0,
+            velocity_limit: 1.0,
+            friction: FrictionParameters {
+                speed_range: [0.0, 1.0],
+                effects: Default::default(),
+            },
+        }
+    }
+
+    #[test]
+    fn a_gear_without_damping_is_wound_by_its_torque_at_once() {
+        let wound = joint(0.0).wound(0.3, 9.8, 1e-3);
+        assert!((wound - 0.002).abs() < 1e-15);
+    }
+
+    /// At 20 Hz, with 1 kHz of samples: τ/K alone is wrong by D ω/K, 5 %.
+    #[test]
+    fn damping_does_not_wind_it() {
+        let (joint, rate, dt) = (joint(2.0), 40.0 * std::f64::consts::PI, 1e-3);
+        let torque = |t: f64| {
+            let (sine, cosine) = (rate * t).sin_cos();
+            joint.stiffness * sine + joint.damping * rate * cosine
+        };
+        let (mut wound, mut worst, mut plain) = (0.0, 0.0_f64, 0.0_f64);
+        for k in 1..1000 {
+            let t = dt * f64::from(k);
+            wound = joint.wound(wound, torque(t), dt);
+            worst = worst.max((wound - (rate * t).sin()).abs());
+            plain = plain.max((torque(t) / joint.stiffness - (rate * t).sin()).abs());
+        }
+        assert!(
+            (0.04..0.06).contains(&plain) && worst < 0.01,
+            "{plain} {worst}"
+        );
     }
 }

@@ -22,6 +22,8 @@ pub(crate) struct MeasuredContact {
     contact: TorqueOfContact,
     longest_gap: f64,
     started: bool,
+    /// How far the gears were wound last [rad].
+    wound: Joints<f64>,
 }
 
 impl MeasuredContact {
@@ -39,6 +41,7 @@ impl MeasuredContact {
             contact: TorqueOfContact::new(form, cut_off, count),
             longest_gap,
             started: false,
+            wound: Joints::filled(count, 0.0),
         }
     }
 
@@ -65,17 +68,21 @@ impl MeasuredContact {
         motor_position: &Joints<f64>,
         joint_torque: &Joints<f64>,
     ) -> OfMeasurement {
-        let link = Joints::from_fn(motor_position.count(), |joint| {
+        let anew = !self.started || passed > self.longest_gap;
+        self.started = true;
+        for (joint, wound) in self.wound.iter_mut().enumerate() {
             let own = &self.joints[joint];
             // Beyond its range a sensor says nothing, least of all how far the gear is wound.
             let range = own.torque_sensor_range;
-            own.link_position(
-                motor_position[joint],
-                joint_torque[joint].clamp(-range, range),
-            )
+            let torque = joint_torque[joint].clamp(-range, range);
+            *wound = match anew {
+                true => torque / own.stiffness,
+                false => own.wound(*wound, torque, passed),
+            };
+        }
+        let link = Joints::from_fn(motor_position.count(), |joint| {
+            motor_position[joint] - self.wound[joint]
         });
-        let anew = !self.started || passed > self.longest_gap;
-        self.started = true;
         if anew {
             self.contact.reset(links, &link, joint_torque);
         } else {

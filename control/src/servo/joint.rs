@@ -265,8 +265,12 @@ impl JointServo {
                     false => self.generator.step(dt),
                 };
                 let setpoint = self.generator.setpoint();
+                let torque = match self.stands {
+                    true => self.law.brake(&setpoint, position, velocity, seen.torque),
+                    false => self.law.follow(&setpoint, position, velocity, seen.torque),
+                };
                 Driven {
-                    torque: self.law.follow(&setpoint, position, velocity, seen.torque),
+                    torque,
                     velocity_limited,
                     approaching: self.generator.is_approaching(),
                 }

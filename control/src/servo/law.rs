@@ -19,6 +19,9 @@ use crate::planted::{Planted, Rule};
 use ferntast_model::ParameterError;
 use ferntast_model::joint::JointParameters;
 
+/// A motor that is braked comes to rest with this time constant [s].
+const BRAKED: f64 = 0.005;
+
 /// Position law of one joint.
 #[derive(Clone, Debug)]
 pub struct PositionLaw {
@@ -94,13 +97,36 @@ impl PositionLaw {
         velocity: f64,
         load: f64,
     ) -> LimitedTorque {
+        self.damped(self.damping, setpoint, position, velocity, load)
+    }
+
+    /// The same with a motor that is braked: the setpoint stands.
+    pub(super) fn brake(
+        &self,
+        setpoint: &Setpoint,
+        position: f64,
+        velocity: f64,
+        load: f64,
+    ) -> LimitedTorque {
+        let damping = self.damping + self.inertia / BRAKED;
+        self.damped(damping, setpoint, position, velocity, load)
+    }
+
+    fn damped(
+        &self,
+        damping: f64,
+        setpoint: &Setpoint,
+        position: f64,
+        velocity: f64,
+        load: f64,
+    ) -> LimitedTorque {
         let pressing = self.stiffness * (setpoint.position - position);
         let limited = pressing.abs() > self.pressing_limit;
         let bounded = match self.planted.lacks(Rule::PressingLimit) {
             true => pressing,
             false => pressing.clamp(-self.pressing_limit, self.pressing_limit),
         };
-        let feedback = bounded + self.damping * (setpoint.velocity - velocity);
+        let feedback = bounded + damping * (setpoint.velocity - velocity);
         let feed_forward = self.inertia * setpoint.acceleration + self.friction(setpoint, load);
         let torque = self.limit(feedback + feed_forward);
         LimitedTorque {
@@ -140,5 +166,32 @@ impl PositionLaw {
             torque: bounded,
             limited: torque.abs() > self.torque_limit,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::servo::tests::joint;
+    use ferntast_model::JointCount;
+
+    /// Without friction, the setpoint where it is: v = v₀ exp(−t (1/5 ms + k_D/J)).
+    #[test]
+    fn a_motor_that_is_braked_comes_to_rest_within_milliseconds() {
+        let (config, joint) = (ServoConfig::default(), joint());
+        let tuning = config.joints(JointCount::new(2).unwrap()).unwrap()[0];
+        let law = PositionLaw::new(&joint, &tuning, &config).unwrap();
+        let (dt, begun) = (1e-5, 0.1);
+        let mut velocity = begun;
+        for _ in 0..500 {
+            let torque = law.brake(&Setpoint::default(), 0.0, velocity, 0.0);
+            assert!(!torque.limited);
+            velocity += torque.torque / joint.motor_inertia * dt;
+        }
+        let expected = (-0.005 * (1.0 / 0.005 + tuning.damping / joint.motor_inertia)).exp();
+        assert!(
+            (velocity / begun / expected - 1.0_f64).abs() < 0.01,
+            "{velocity}"
+        );
     }
 }

@@ -30,13 +30,17 @@ const APART: f64 = 0.02;
 /// How late forces are: 2/ω of filters of 40 Hz \[ticks\].
 const LATE: usize = 8;
 
+/// Gears are rigid from that stiffness on \[Nm/rad\]; damping of softer ones \[Nm·s/rad\].
+const RIGID: f64 = 1e6;
+const SOFT_DAMPING: f64 = 20.0;
+
 fn believed(stiffness: f64) -> Believed {
     let chain = arms::seven_joints();
     let joint = |torque: f64| JointParameters {
         motor_inertia: 0.1,
         gear_ratio: 100.0,
         stiffness,
-        damping: 0.0,
+        damping: if stiffness < RIGID { SOFT_DAMPING } else { 0.0 },
         motor_constant: 10.0,
         motor_torque_limit: torque,
         torque_sensor_range: 1.5 * torque,
@@ -118,8 +122,8 @@ impl Bench {
     fn new(form: Form, stiffness: f64, sensors: &str) -> Bench {
         let believed = believed(stiffness);
         let [x, y, z] = believed.surfaces()[0].point;
-        let gear = match stiffness < 1e6 {
-            true => format!("stiffness = {stiffness:?}\ndamping = 20.0"),
+        let gear = match stiffness < RIGID {
+            true => format!("stiffness = {stiffness:?}\ndamping = {SOFT_DAMPING:?}"),
             false => String::new(),
         };
         let truth: SerialArmParameters = toml::from_str(&format!(

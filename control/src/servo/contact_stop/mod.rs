@@ -5,29 +5,40 @@
 //! and the friction fed forward bring along. The servo has the joint torques at once. What they
 //! do not explain of the links' motion, after equation (5), Jᵀ F = M(q) q̈ + C(q, q̇) q̇ + g(q) − τ,
 //! is a contact's; where it comes suddenly and against the motion, the setpoint stands for a
-//! moment, in which the motors' own friction brakes them (collision detection and reaction:
+//! moment, in which the motors are braked (collision detection and reaction:
 //! Haddadin, De Luca, Albu-Schäffer 2017, "Robot collisions: a survey on detection, isolation,
 //! and identification", IEEE T-RO 33, sections IV and VI; theirs by the momentum observer).
 //!
-//! What is slow stops nothing: errors of the torque sensors' zeros and of weights, up to half
-//! of the torque that stops, and contacts that grow as slowly as a command can follow. Nor does what
-//! changes in a contact. An arm without torque sensors, which tells zeros, has none of this.
+//! How much is a contact's is not told but found: what comes up suddenly in free motion has a
+//! covariance ([`noise`]), and a contact is some standard deviations beyond it, of all joints
+//! together. A joint alone has most of its noise by the inertia of links that it turns as
+//! well, which the others' torques tell of.
+//!
+//! What is slow stops nothing, nor does what changes in a contact: errors of the torque sensors'
+//! zeros and of weights, and surfaces that are soft. An arm without torque sensors, which tells
+//! zeros, has none of this. Of a gear that is soft the damping has to be known, else what shakes
+//! it looks like a contact.
+
+mod noise;
 
 use super::Measurement;
 use crate::contact_torque::{Form, Links, MeasuredContact};
 use crate::seconds;
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, parameters};
+use noise::Noise;
 
 parameters! {
     /// How the setpoint stops where the arm runs into something. Every key may be left out:
-    /// it does not stop then, as the noise of an arm's sensors is not known.
+    /// it does not stop then, as the errors of an arm's sensors are not known.
     #[derive(Copy)]
     pub struct ContactStopConfig {
-        /// Torque against the motion that is a contact's \[Nm\], as the joints' share in the
-        /// motion has it: some times the noise of the torque sensors, twice differentiated (ROKVISS:
+        /// Torque that no error of a sensor's zero or of a weight comes up to \[Nm\]: a joint
+        /// that is pressed on with more is in contact already, and nothing stops (ROKVISS:
         /// 0.55 Nm); 0: it never stops.
         pub torque: f64 [0.0..=1e4, "Nm"] = 0.0,
+        /// How far beyond what comes up in free motion a contact is \[standard deviations\].
+        pub deviations: f64 [3.0..=100.0, "-"] = 9.0,
         /// For how long the setpoint stands \[s\].
         pub time: f64 [0.001..=0.1, "s"] = 0.02,
         /// Cut-off of the filters of motion and torque \[Hz\]: a contact is seen 2/(2π f) late.
@@ -36,9 +47,10 @@ parameters! {
 }
 
 /// What grows with a larger time constant is not sudden [s].
-const SUDDEN: f64 = 0.01;
-/// Who is pressed on with more than this share of the torque that stops runs into nothing [-].
-const FREE: f64 = 0.5;
+const SUDDEN: f64 = 0.003;
+/// Standard deviation that every joint has in free motion, as a share of the torque that is a
+/// contact's [-]: the noise of sensors that have none.
+const LEAST_NOISE: f64 = 0.02;
 /// A setpoint slower than this, all joints together, need not be stopped [rad/s].
 const SLOW: f64 = 0.02;
 /// From one stop to the next, and from the first measurement on: filters settle [s].
@@ -57,6 +69,8 @@ pub(super) struct ContactStop {
     stamp_ns: Option<i64>,
     /// Mean of the contact's torque over the time that is sudden [Nm].
     lately: Joints<f64>,
+    /// What comes up suddenly in free motion.
+    noise: Noise,
     /// Measurements of no torque, one after the other.
     zeros: u32,
     /// For how long the setpoint stands still [s], and for how long no stop may follow.
@@ -76,6 +90,7 @@ impl ContactStop {
             contact: MeasuredContact::new(joints, count, Form::Direct, config.cut_off, LONGEST_GAP),
             stamp_ns: None,
             lately: Joints::filled(count, 0.0),
+            noise: Noise::new(LEAST_NOISE * config.torque),
             zeros: 0,
             stands: 0.0,
             rests: 0.0,
@@ -100,8 +115,8 @@ impl ContactStop {
         self.stands -= period;
         self.rests -= period;
         if self.stamp_ns.is_none_or(|last| measured.stamp_ns > last) {
-            let against = self.against(links, measured, velocity);
-            if against > self.config.torque && self.rests < 0.0 {
+            let runs_into = self.runs_into(links, measured, velocity);
+            if runs_into && self.rests < 0.0 {
                 self.stands = self.config.time;
                 self.rests = APART;
             }
@@ -109,13 +124,13 @@ impl ContactStop {
         self.stands > 0.0
     }
 
-    /// What has suddenly come up against the motion \[Nm\].
-    fn against(
+    /// Whether something has suddenly come up against the motion.
+    fn runs_into(
         &mut self,
         links: &impl Links,
         measured: &Measurement,
         velocity: &Joints<f64>,
-    ) -> f64 {
+    ) -> bool {
         let passed = self
             .stamp_ns
             .replace(measured.stamp_ns)
@@ -127,28 +142,33 @@ impl ContactStop {
         };
         if self.zeros > MOST_ZEROS {
             self.contact.forget();
-            return 0.0;
+            return false;
         }
         let seen = self.contact.step(links, passed, &measured.position, torque);
         let contact = seen.motion.contact_torque;
         if seen.anew {
             self.rest();
             self.lately = contact;
-            return 0.0;
+            return false;
         }
         let share = passed / (passed + SUDDEN);
-        let (mut power, mut pressed) = (0.0, 0.0_f64);
+        let sudden = Joints::from_fn(contact.count(), |joint| contact[joint] - self.lately[joint]);
+        let pressed = self
+            .lately
+            .iter()
+            .fold(0.0, |most: f64, own| most.max(own.abs()));
+        let (mut power, mut speed_squared) = (0.0, 0.0);
         for joint in 0..contact.len() {
-            let sudden = contact[joint] - self.lately[joint];
-            pressed = pressed.max(self.lately[joint].abs());
-            power += sudden * velocity[joint];
-            self.lately[joint] += share * sudden;
+            self.lately[joint] += share * sudden[joint];
+            power += sudden[joint] * velocity[joint];
+            speed_squared += velocity[joint] * velocity[joint];
         }
-        let speed = velocity.iter().map(|own| own * own).sum::<f64>().sqrt();
-        match speed > SLOW && pressed < FREE * self.config.torque {
-            true => -power / speed,
-            false => 0.0,
+        if pressed > self.config.torque {
+            return false;
         }
+        let (deviations, moving) = (self.config.deviations, speed_squared > SLOW * SLOW);
+        let beyond = self.noise.is_beyond(deviations, &sudden, passed, moving);
+        beyond && power < 0.0
     }
 }
 
@@ -171,27 +191,30 @@ mod tests {
         qd: Vector2<f64>,
         /// Where joint 1 touches, and how stiff that is there \[rad, Nm/rad\].
         wall: Option<(f64, f64)>,
-        noise: u64,
+        /// Of the torque sensors \[Nm\].
+        noise: f64,
+        random: u64,
     }
 
     impl Plant {
-        fn new(wall: Option<(f64, f64)>) -> Plant {
+        fn new(wall: Option<(f64, f64)>, noise: f64) -> Plant {
             Plant {
                 links: Arm::new(&arm()),
                 joints: [joint(), joint()],
                 q: Vector2::new(0.0, 1.2),
                 qd: Vector2::zeros(),
                 wall,
-                noise: 1,
+                noise,
+                random: 1,
             }
         }
 
         /// Normal after the sum of twelve uniform numbers (Knuth's 64-bit congruence).
         fn normal(&mut self) -> f64 {
             let mut uniform = || {
-                self.noise = self.noise.wrapping_mul(6364136223846793005);
-                self.noise = self.noise.wrapping_add(1442695040888963407);
-                (self.noise >> 11) as f64 / (1_u64 << 53) as f64
+                self.random = self.random.wrapping_mul(6364136223846793005);
+                self.random = self.random.wrapping_add(1442695040888963407);
+                (self.random >> 11) as f64 / (1_u64 << 53) as f64
             };
             (0..12).map(|_| uniform()).sum::<f64>() - 6.0
         }
@@ -219,20 +242,25 @@ mod tests {
                 position: [motor, 1.2].into(),
                 velocity: [speed, 0.0].into(),
                 torque: [torque.x, torque.y]
-                    .map(|own| own + NOISE * self.normal())
+                    .map(|own| own + self.noise * self.normal())
                     .into(),
             }
         }
     }
 
+    /// Before the motor turns, and until it turns as it should [s].
+    const REST: f64 = 0.3;
+    const STARTS: f64 = 0.05;
+
     /// From touching on until the setpoint stands, and for how long \[ms\]; the motor of joint 1
-    /// turns with `speed(t)` \[rad/s\] for three seconds. `sensors`: the torques are measured.
+    /// rests, and turns with `speed(t)` \[rad/s\] for three seconds. `noise`: of the torque sensors \[Nm\];
+    /// there are none where it is not a number.
     fn stands(
         wall: Option<(f64, f64)>,
-        sensors: bool,
+        noise: f64,
         speed: impl Fn(f64) -> f64,
     ) -> (Option<usize>, usize) {
-        let mut plant = Plant::new(wall);
+        let mut plant = Plant::new(wall, noise);
         let config = ContactStopConfig {
             torque: 0.55,
             ..ContactStopConfig::default()
@@ -240,11 +268,12 @@ mod tests {
         let count = JointCount::new(2).unwrap();
         let mut own = ContactStop::new(&plant.joints, count, &config);
         let (mut motor, mut touched, mut first, mut long) = (0.0, None, None, 0);
-        for k in 0..3000 {
-            let now = speed(1e-3 * k as f64);
+        for k in 0..3300 {
+            let t = 1e-3 * k as f64 - REST;
+            let now = speed(t.max(0.0)) * (t / STARTS).clamp(0.0, 1.0);
             motor += now * 1e-3;
             let mut measured = plant.measure((k as i64 + 1) * MS, motor, now);
-            if !sensors {
+            if noise.is_nan() {
                 measured.torque = [0.0; 2].into();
             }
             if wall.is_some_and(|(place, _)| plant.q.x > place) {
@@ -261,29 +290,45 @@ mod tests {
     /// 20 kN/m at 0.35 m from the axis, met at 60 mm/s.
     const STIFF: (f64, f64) = (0.2, 2450.0);
     const SPEED: f64 = 0.17;
+    /// To and fro with up to 12 rad/s².
+    const TO_AND_FRO: fn(f64) -> f64 = |t| 0.6 * (20.0 * t).sin();
 
     /// The torque sensors alone see 1 Nm, 3 N at the tip, after some 6 ms.
     #[test]
     fn it_stands_a_few_milliseconds_after_a_stiff_contact_began_and_once() {
-        let (first, long) = stands(Some(STIFF), true, |_| SPEED);
-        assert!((2..=6).contains(&first.unwrap()), "{first:?} ms");
+        let (first, long) = stands(Some(STIFF), NOISE, |_| SPEED);
+        assert!((2..=5).contains(&first.unwrap()), "{first:?} ms");
         assert_eq!(long, 20);
     }
 
     #[test]
     fn what_is_soft_or_nothing_at_all_stops_nothing() {
         let soft = (STIFF.0, 0.05 * STIFF.1);
-        assert_eq!(stands(Some(soft), true, |_| SPEED), (None, 0));
-        assert_eq!(stands(None, true, |_| SPEED), (None, 0));
-        // To and fro with up to 12 rad/s².
-        assert_eq!(stands(None, true, |t| 0.6 * (20.0 * t).sin()), (None, 0));
+        assert_eq!(stands(Some(soft), NOISE, |_| SPEED), (None, 0));
+        assert_eq!(stands(None, NOISE, |_| SPEED), (None, 0));
+        assert_eq!(stands(None, NOISE, TO_AND_FRO), (None, 0));
+    }
+
+    /// Nobody tells it how noisy they are.
+    #[test]
+    fn a_contact_is_seen_as_soon_as_the_noise_of_the_sensors_allows() {
+        let mut last = 2;
+        for noise in [0.0, 0.2, 1.0, 5.0].map(|times| times * NOISE) {
+            assert_eq!(stands(None, noise, |_| SPEED), (None, 0), "{noise} Nm");
+            assert_eq!(stands(None, noise, TO_AND_FRO), (None, 0), "{noise} Nm");
+            let (first, long) = stands(Some(STIFF), noise, |_| SPEED);
+            let first = first.unwrap();
+            assert!((last..=9).contains(&first), "{first} ms, {noise} Nm");
+            assert_eq!(long, 20);
+            last = first;
+        }
+        assert!(last > 5, "{last} ms");
     }
 
     #[test]
     fn an_arm_that_measures_no_torque_is_not_stopped() {
-        assert_eq!(stands(Some(STIFF), false, |_| SPEED), (None, 0));
+        assert_eq!(stands(Some(STIFF), f64::NAN, |_| SPEED), (None, 0));
         // Nor would it see anything where it speeds up.
-        let (_, long) = stands(None, false, |t| 0.6 * (20.0 * t).sin());
-        assert_eq!(long, 0);
+        assert_eq!(stands(None, f64::NAN, TO_AND_FRO), (None, 0));
     }
 }
