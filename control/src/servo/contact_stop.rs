@@ -53,7 +53,8 @@ const SUDDEN: f64 = 0.003;
 const LEAST_NOISE: f64 = 0.02;
 /// A setpoint slower than this, all joints together, need not be stopped [rad/s].
 const SLOW: f64 = 0.02;
-/// From one stop to the next, and from the first measurement on: filters settle [s].
+/// From one stop to the next, from the end of a contact and from the first measurement on: filters
+/// settle [s].
 const APART: f64 = 0.1;
 /// So many measurements of no torque at all are of no sensor: of one in steps of its noise some may be.
 const MOST_ZEROS: u32 = 20;
@@ -164,6 +165,8 @@ impl ContactStop {
             speed_squared += velocity[joint] * velocity[joint];
         }
         if pressed > self.config.torque {
+            // Letting go of it shakes the arm, and is sudden, too.
+            self.rests = APART;
             return false;
         }
         let (deviations, moving) = (self.config.deviations, speed_squared > SLOW * SLOW);
