@@ -256,14 +256,14 @@ mod tests {
     const STARTS: f64 = 0.05;
 
     /// From touching on until the setpoint stands, and for how long \[ms\]; the motor of joint 1
-    /// rests, and turns with `speed(t)` \[rad/s\] for three seconds. `noise`: of the torque sensors \[Nm\];
-    /// there are none where it is not a number.
+    /// rests, and turns with `speed(t)` \[rad/s\] for three seconds. `noise`: of the torque sensors
+    /// \[Nm\], if there are any.
     fn stands(
         wall: Option<(f64, f64)>,
-        noise: f64,
+        noise: Option<f64>,
         speed: impl Fn(f64) -> f64,
     ) -> (Option<usize>, usize) {
-        let mut plant = Plant::new(wall, noise);
+        let mut plant = Plant::new(wall, noise.unwrap_or(0.0));
         let config = ContactStopConfig {
             torque: 0.55,
             ..ContactStopConfig::default()
@@ -276,7 +276,7 @@ mod tests {
             let now = speed(t.max(0.0)) * (t / STARTS).clamp(0.0, 1.0);
             motor += now * 1e-3;
             let mut measured = plant.measure((k as i64 + 1) * MS, motor, now);
-            if noise.is_nan() {
+            if noise.is_none() {
                 measured.torque = [0.0; 2].into();
             }
             if wall.is_some_and(|(place, _)| plant.q.x > place) {
@@ -299,7 +299,7 @@ mod tests {
     /// The torque sensors alone see 1 Nm, 3 N at the tip, after some 6 ms.
     #[test]
     fn it_stands_a_few_milliseconds_after_a_stiff_contact_began_and_once() {
-        let (first, long) = stands(Some(STIFF), NOISE, |_| SPEED);
+        let (first, long) = stands(Some(STIFF), Some(NOISE), |_| SPEED);
         assert!((2..=5).contains(&first.unwrap()), "{first:?} ms");
         assert_eq!(long, 20);
     }
@@ -307,9 +307,9 @@ mod tests {
     #[test]
     fn what_is_soft_or_nothing_at_all_stops_nothing() {
         let soft = (STIFF.0, 0.05 * STIFF.1);
-        assert_eq!(stands(Some(soft), NOISE, |_| SPEED), (None, 0));
-        assert_eq!(stands(None, NOISE, |_| SPEED), (None, 0));
-        assert_eq!(stands(None, NOISE, TO_AND_FRO), (None, 0));
+        assert_eq!(stands(Some(soft), Some(NOISE), |_| SPEED), (None, 0));
+        assert_eq!(stands(None, Some(NOISE), |_| SPEED), (None, 0));
+        assert_eq!(stands(None, Some(NOISE), TO_AND_FRO), (None, 0));
     }
 
     /// Nobody tells it how noisy they are.
@@ -317,9 +317,17 @@ mod tests {
     fn a_contact_is_seen_as_soon_as_the_noise_of_the_sensors_allows() {
         let mut last = 2;
         for noise in [0.0, 0.2, 1.0, 5.0].map(|times| times * NOISE) {
-            assert_eq!(stands(None, noise, |_| SPEED), (None, 0), "{noise} Nm");
-            assert_eq!(stands(None, noise, TO_AND_FRO), (None, 0), "{noise} Nm");
-            let (first, long) = stands(Some(STIFF), noise, |_| SPEED);
+            assert_eq!(
+                stands(None, Some(noise), |_| SPEED),
+                (None, 0),
+                "{noise} Nm"
+            );
+            assert_eq!(
+                stands(None, Some(noise), TO_AND_FRO),
+                (None, 0),
+                "{noise} Nm"
+            );
+            let (first, long) = stands(Some(STIFF), Some(noise), |_| SPEED);
             let first = first.unwrap();
             assert!((last..=9).contains(&first), "{first} ms, {noise} Nm");
             assert_eq!(long, 20);
@@ -330,8 +338,8 @@ mod tests {
 
     #[test]
     fn an_arm_that_measures_no_torque_is_not_stopped() {
-        assert_eq!(stands(Some(STIFF), f64::NAN, |_| SPEED), (None, 0));
+        assert_eq!(stands(Some(STIFF), None, |_| SPEED), (None, 0));
         // Nor would it see anything where it speeds up.
-        assert_eq!(stands(None, f64::NAN, TO_AND_FRO), (None, 0));
+        assert_eq!(stands(None, None, TO_AND_FRO), (None, 0));
     }
 }

@@ -230,7 +230,7 @@ impl JointServo {
     }
 
     fn law(&mut self, state: OperatingState, dt: f64, seen: &Seen) -> Driven {
-        let (position, velocity) = (seen.position, seen.velocity);
+        let (position, velocity, load) = (seen.position, seen.velocity, seen.torque);
         match state {
             OperatingState::Disabled | OperatingState::Fault => {
                 self.generator.start(position);
@@ -241,7 +241,7 @@ impl JointServo {
                 self.hold = way_out.map_or(self.hold, |own| own.position);
                 self.generator.start(self.hold);
                 let torque = match way_out {
-                    Some(setpoint) => self.law.follow(&setpoint, position, velocity, seen.torque),
+                    Some(setpoint) => self.law.follow(&setpoint, position, velocity, load, false),
                     None => self.law.hold(self.hold, position, velocity),
                 };
                 Driven {
@@ -265,12 +265,9 @@ impl JointServo {
                     false => self.generator.step(dt),
                 };
                 let setpoint = self.generator.setpoint();
-                let torque = match self.stands {
-                    true => self.law.brake(&setpoint, position, velocity, seen.torque),
-                    false => self.law.follow(&setpoint, position, velocity, seen.torque),
-                };
+                let law = &self.law;
                 Driven {
-                    torque,
+                    torque: law.follow(&setpoint, position, velocity, load, self.stands),
                     velocity_limited,
                     approaching: self.generator.is_approaching(),
                 }

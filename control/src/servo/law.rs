@@ -19,7 +19,7 @@ use crate::planted::{Planted, Rule};
 use ferntast_model::ParameterError;
 use ferntast_model::joint::JointParameters;
 
-/// A motor that is braked comes to rest with this time constant [s].
+/// Time constant with which a braked motor comes to rest [s].
 const BRAKED: f64 = 0.005;
 
 /// Position law of one joint.
@@ -89,44 +89,24 @@ impl PositionLaw {
     }
 
     /// Motor torque that follows `setpoint`, from motor position \[rad\],
-    /// velocity \[rad/s\] and joint torque \[Nm\] (0 when not known).
+    /// velocity \[rad/s\] and joint torque \[Nm\] (0 when not known). A motor that is `braked` comes
+    /// to rest at a setpoint that stands within milliseconds.
     pub fn follow(
         &self,
         setpoint: &Setpoint,
         position: f64,
         velocity: f64,
         load: f64,
+        braked: bool,
     ) -> LimitedTorque {
-        self.damped(self.damping, setpoint, position, velocity, load)
-    }
-
-    /// The same with a motor that is braked: the setpoint stands.
-    pub(super) fn brake(
-        &self,
-        setpoint: &Setpoint,
-        position: f64,
-        velocity: f64,
-        load: f64,
-    ) -> LimitedTorque {
-        let damping = self.damping + self.inertia / BRAKED;
-        self.damped(damping, setpoint, position, velocity, load)
-    }
-
-    fn damped(
-        &self,
-        damping: f64,
-        setpoint: &Setpoint,
-        position: f64,
-        velocity: f64,
-        load: f64,
-    ) -> LimitedTorque {
+        let braking = if braked { self.inertia / BRAKED } else { 0.0 };
         let pressing = self.stiffness * (setpoint.position - position);
         let limited = pressing.abs() > self.pressing_limit;
         let bounded = match self.planted.lacks(Rule::PressingLimit) {
             true => pressing,
             false => pressing.clamp(-self.pressing_limit, self.pressing_limit),
         };
-        let feedback = bounded + damping * (setpoint.velocity - velocity);
+        let feedback = bounded + (self.damping + braking) * (setpoint.velocity - velocity);
         let feed_forward = self.inertia * setpoint.acceleration + self.friction(setpoint, load);
         let torque = self.limit(feedback + feed_forward);
         LimitedTorque {
@@ -184,7 +164,7 @@ mod tests {
         let (dt, begun) = (1e-5, 0.1);
         let mut velocity = begun;
         for _ in 0..500 {
-            let torque = law.brake(&Setpoint::default(), 0.0, velocity, 0.0);
+            let torque = law.follow(&Setpoint::default(), 0.0, velocity, 0.0, true);
             assert!(!torque.limited);
             velocity += torque.torque / joint.motor_inertia * dt;
         }

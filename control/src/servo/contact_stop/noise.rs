@@ -79,7 +79,7 @@ mod tests {
 
     const TICK: f64 = 1e-3;
 
-    /// Torques of two joints in the order of a Latin square, with covariance
+    /// Torques of two joints, through all combinations of signs, with covariance
     /// [[1, 0.9], [0.9, 1]] Nm² times `size`².
     fn torques(size: f64) -> impl Iterator<Item = Joints<f64>> {
         let root = 0.9_f64.sqrt();

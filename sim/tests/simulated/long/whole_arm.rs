@@ -29,7 +29,16 @@ fn scaled(name: &str, force_scale: f64, arm: &ArmUnderTrial) -> Law {
 }
 
 fn trial(name: &str, round_trip: f64, environment: Environment, task: Task) -> Trial {
-    let arm = stopping();
+    trial_on(stopping(), name, round_trip, environment, task)
+}
+
+fn trial_on(
+    arm: ArmUnderTrial,
+    name: &str,
+    round_trip: f64,
+    environment: Environment,
+    task: Task,
+) -> Trial {
     let law = law(name, &arm);
     Trial {
         task,
@@ -97,13 +106,8 @@ fn a_law_claims_passivity_where_it_makes_no_energy_and_only_there() {
 #[test]
 fn four_channels_make_energy_on_a_hard_wall() {
     for (arm, expected) in [(under_trial(), 0.3..3.0), (stopping(), BOUND..1.0)] {
-        let mut trial = trial(
-            "four_channel",
-            0.02,
-            Environment::HardWall,
-            Task::PressAndSlide,
-        );
-        trial.follower = FollowerModel::Arm(Box::new(arm));
+        let (environment, task) = (Environment::HardWall, Task::PressAndSlide);
+        let trial = trial_on(arm, "four_channel", 0.02, environment, task);
         let outcome = trial.run().expect("a valid trial");
         assert!(expected.contains(&-outcome.energy_margin), "{outcome:?}");
     }
@@ -123,9 +127,10 @@ fn four_channels_hold_at_the_scale_of_a_session() {
         ] {
             for task in [Task::PressAndSlide, Task::LetGo] {
                 for round_trip in [0.02, 0.1, 0.3] {
-                    let mut trial = trial("four_channel", round_trip, environment, task);
-                    trial.follower = FollowerModel::Arm(Box::new(under_trial()));
-                    trial.law = scaled("four_channel", SCALE, &under_trial());
+                    let arm = under_trial();
+                    let law = scaled("four_channel", SCALE, &arm);
+                    let mut trial = trial_on(arm, "four_channel", round_trip, environment, task);
+                    trial.law = law;
                     trial.hand.stiffness = stiffness;
                     trial.hand.damping = damping;
                     let outcome = trial.run().expect("a valid trial");
