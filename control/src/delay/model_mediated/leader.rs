@@ -12,6 +12,8 @@ use nalgebra::Vector3;
 
 /// A surface that is not told while others are is forgotten after this [s]: some turns of each.
 const UNTOLD: f64 = 0.3;
+/// What the tip is asked to press with, by the force that the hand gets, at most [-].
+const ASKED: f64 = 1.1;
 
 /// The leader's end: sends position of the hand and the force that it gives into
 /// the surface \[N\].
@@ -73,6 +75,17 @@ impl ModelMediatedLeader {
             *slot = slot.filter(|own| own.untold < UNTOLD);
         }
     }
+
+    /// What of the model's force the tip is asked for [-]: a hand that is deep in a surface, but does
+    /// not get all of its force as nobody pays for that, does not press with it either.
+    fn asked_share(&self) -> f64 {
+        let square = self.wanted.norm_squared();
+        let got = self.wanted - self.lacking;
+        match square > 0.0 {
+            true => (ASKED * got.dot(&self.wanted) / square).clamp(0.0, 1.0),
+            false => 1.0,
+        }
+    }
 }
 
 impl Leader for ModelMediatedLeader {
@@ -127,12 +140,13 @@ impl Leader for ModelMediatedLeader {
         let limit = self.parameters.largest_force;
         let [model, felt] = [model, felt].map(|force| shortened(force, limit));
         let felt = share * felt - self.damping.value() * velocity;
+        // Of a contact's own force it is not: the tip goes as deep as the hand.
+        let asked = self.asked_share() * share * model;
         self.wanted = felt;
         self.lacking = Vector3::zeros();
         LeaderOutput {
             force: felt.into(),
-            // Whatever is felt, the tip goes as deep as the hand.
-            packet: Packet::new(hand.position, (-share * model).into(), energy),
+            packet: Packet::new(hand.position, (-asked).into(), energy),
         }
     }
 
@@ -150,34 +164,42 @@ mod tests {
     use super::*;
     use crate::delay::model_mediated::tests::WALL;
 
-    /// The leader with the hand at rest at `x` \[m\], after each step; `surface` comes from the arm.
-    fn rendering(x: f64, surface: SurfaceModel) -> impl Iterator<Item = SurfaceModel> {
-        let law = ModelMediated {
+    /// The hand at rest at `x` \[m\]; `surface` comes from the arm.
+    fn at_the_wall(x: f64, surface: SurfaceModel) -> LeaderInput {
+        let told = Told {
+            surface,
+            force: None,
+        };
+        LeaderInput {
+            hand: Some(crate::delay::Motion {
+                position: [x, 0.0, 0.0],
+                velocity: [0.0; 3],
+            }),
+            received: Some(crate::delay::Received {
+                packet: told.packed(Energy::default()),
+                fresh: true,
+                silence: 0.0,
+                age: 0.1,
+                round_trip: 0.2,
+            }),
+            connected: true,
+        }
+    }
+
+    /// One whose updates nobody has to pay for.
+    fn unpaid() -> ModelMediatedLeader {
+        ModelMediatedLeader::new(&ModelMediated {
             emerge_speed: 0.02,
             paid_updates: false,
             ..ModelMediated::default()
-        };
-        let mut leader = ModelMediatedLeader::new(&law);
+        })
+    }
+
+    /// The leader with the hand at rest at `x` \[m\], after each step; `surface` comes from the arm.
+    fn rendering(x: f64, surface: SurfaceModel) -> impl Iterator<Item = SurfaceModel> {
+        let mut leader = unpaid();
         std::iter::repeat_with(move || {
-            let packet = Told {
-                surface,
-                force: None,
-            }
-            .packed(Energy::default());
-            let input = LeaderInput {
-                hand: Some(crate::delay::Motion {
-                    position: [x, 0.0, 0.0],
-                    velocity: [0.0; 3],
-                }),
-                received: Some(crate::delay::Received {
-                    packet,
-                    fresh: true,
-                    silence: 0.0,
-                    age: 0.1,
-                    round_trip: 0.2,
-                }),
-                connected: true,
-            };
+            let input = at_the_wall(x, surface);
             leader.step(1e-3, &input, Energy::default());
             *leader.surfaces().next().unwrap()
         })
@@ -191,24 +213,9 @@ mod tests {
         };
         let mut leader = ModelMediatedLeader::new(&law);
         let mut force = |heard: bool| {
-            let input = LeaderInput {
-                hand: Some(crate::delay::Motion {
-                    position: [0.002, 0.0, 0.0],
-                    velocity: [0.0; 3],
-                }),
-                received: heard.then_some(crate::delay::Received {
-                    packet: Told {
-                        surface: WALL,
-                        force: None,
-                    }
-                    .packed(Energy::default()),
-                    fresh: true,
-                    silence: 0.0,
-                    age: 0.1,
-                    round_trip: 0.2,
-                }),
-                connected: heard,
-            };
+            let mut input = at_the_wall(0.002, WALL);
+            input.received = input.received.filter(|_| heard);
+            input.connected = heard;
             leader.step(1e-3, &input, Energy::default()).force[0]
         };
         // Nobody knows of it before the other end was heard.
@@ -225,6 +232,25 @@ mod tests {
         assert!((0.45..0.55).contains(&(half / whole)), "{half} N");
         let gone = (0..fades).map(|_| force(false)).last().unwrap();
         assert_eq!(gone, 0.0);
+    }
+
+    /// 2 kN/m, 2 mm deep: 4 N, of which somebody keeps some.
+    #[test]
+    fn a_hand_presses_with_hardly_more_than_it_gets() {
+        let pressed = |gets: f64| {
+            let mut leader = unpaid();
+            let mut asked = |x: f64| {
+                let output = leader.step(1e-3, &at_the_wall(x, WALL), Energy::default());
+                leader.given(Vector3::x() * -gets);
+                f64::from(output.packet.vector[0])
+            };
+            // It comes from where it feels nothing.
+            let before = asked(-0.001);
+            (0..1000).map(|_| asked(0.002)).last().unwrap() - before
+        };
+        assert!((pressed(4.0) - 4.0).abs() < 0.01, "{} N", pressed(4.0));
+        assert!((pressed(2.0) - 2.2).abs() < 0.01, "{} N", pressed(2.0));
+        assert_eq!(pressed(-1.0), 0.0);
     }
 
     #[test]

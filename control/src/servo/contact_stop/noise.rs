@@ -8,6 +8,9 @@ const LONG: f64 = 1.0;
 /// After which time it is known [s].
 const KNOWN: f64 = 0.2;
 
+/// Torques of all joints that an arm may have.
+type Padded = SVector<f64, MAX_JOINTS>;
+
 /// Covariance of the torques that come up suddenly where nothing is touched: noise of the sensors,
 /// which inertias make large where it is differentiated, and what the links' model has wrong.
 #[derive(Clone, Debug)]
@@ -46,7 +49,7 @@ impl Noise {
         moving: bool,
     ) -> bool {
         let limit = deviations * deviations + sudden.len() as f64;
-        let sudden = SVector::from_fn(|joint, _| sudden.get(joint).copied().unwrap_or(0.0));
+        let sudden = padded(sudden);
         if self.seen < KNOWN {
             self.seen += passed;
             self.take_in(&sudden, passed / self.seen, 1.0);
@@ -55,22 +58,49 @@ impl Noise {
         if !moving {
             return false;
         }
-        let distance = self.squared_distance(&sudden);
+        let distance = self.squared_distance(&sudden, None);
         self.take_in(&sudden, passed / LONG, (limit / distance).min(1.0));
         distance > limit
     }
 
-    fn take_in(&mut self, sudden: &SVector<f64, MAX_JOINTS>, share: f64, counts: f64) {
+    /// The same of an arm that something presses with `pressed` \[Nm\] already: whether another
+    /// thing comes up across that. Nothing is taken in.
+    pub(super) fn is_beyond_across(
+        &self,
+        deviations: f64,
+        sudden: &Joints<f64>,
+        pressed: &Joints<f64>,
+    ) -> bool {
+        let limit = deviations * deviations + sudden.len() as f64;
+        let across = Some(padded(pressed));
+        self.seen >= KNOWN && self.squared_distance(&padded(sudden), across.as_ref()) > limit
+    }
+
+    fn take_in(&mut self, sudden: &Padded, share: f64, counts: f64) {
         let squares = sudden * sudden.transpose() * counts;
         self.covariance += (squares - self.covariance) * share.min(1.0);
     }
 
-    fn squared_distance(&self, sudden: &SVector<f64, MAX_JOINTS>) -> f64 {
+    /// Of `sudden`, or of what of it is across `pressed`.
+    fn squared_distance(&self, sudden: &Padded, pressed: Option<&Padded>) -> f64 {
         let least = SMatrix::identity() * (self.least * self.least);
         // Positive definite, as `least` is, unless something is not a number.
-        let factor = (self.covariance + least).cholesky();
-        factor.map_or(0.0, |own| sudden.dot(&own.solve(sudden)))
+        let Some(factor) = (self.covariance + least).cholesky() else {
+            return 0.0;
+        };
+        let weighed = factor.solve(sudden);
+        let whole = sudden.dot(&weighed);
+        let along = pressed.map_or(0.0, |pressed| {
+            let size = pressed.dot(&factor.solve(pressed));
+            pressed.dot(&weighed).powi(2) / size.max(f64::MIN_POSITIVE)
+        });
+        whole - along
     }
+}
+
+/// The torques of an arm with fewer joints, and zeros.
+fn padded(torques: &Joints<f64>) -> Padded {
+    Padded::from_fn(|joint, _| torques.get(joint).copied().unwrap_or(0.0))
 }
 
 #[cfg(test)]
@@ -105,7 +135,7 @@ mod tests {
         let squared = |first: f64, second: f64| {
             let mut padded = SVector::zeros();
             (padded[0], padded[1]) = (first, second);
-            noise.squared_distance(&padded)
+            noise.squared_distance(&padded, None)
         };
         // Along the axes of the ellipse: variances of 1.9 and 0.1 Nm².
         assert!((squared(1.0, 1.0) / (2.0 / 1.9) - 1.0).abs() < 0.05);
@@ -118,6 +148,17 @@ mod tests {
         let beyond = |torque: [f64; 2]| noise.clone().is_beyond(5.0, &torque.into(), TICK, true);
         assert!(!beyond([2.0, 2.0]));
         assert!(beyond([2.0, -2.0]));
+    }
+
+    #[test]
+    fn of_an_arm_that_is_pressed_only_what_comes_across_counts() {
+        let noise = learnt(1.0);
+        let pressed = [20.0, 0.0].into();
+        let beyond = |torque: [f64; 2]| noise.is_beyond_across(5.0, &torque.into(), &pressed);
+        assert!(!beyond([50.0, 0.0]) && !beyond([-50.0, 0.0]));
+        // The other joint has a variance of 1 Nm² then.
+        assert!(beyond([0.0, 5.5]) && beyond([30.0, -5.5]));
+        assert!(!beyond([0.0, 5.0]));
     }
 
     #[test]
