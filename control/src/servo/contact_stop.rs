@@ -122,6 +122,7 @@ impl ContactStop {
     ) -> bool {
         self.stands -= period;
         self.rests -= period;
+        self.let_go -= period;
         if self.stamp_ns.is_none_or(|last| measured.stamp_ns > last) {
             let runs_into = self.runs_into(links, measured, velocity);
             if runs_into && self.rests < 0.0 {
@@ -176,7 +177,6 @@ impl ContactStop {
             let deviations = ACROSS * deviations;
             moving && self.noise.is_beyond_across(deviations, &sudden, &before)
         } else {
-            self.let_go -= passed;
             self.noise.is_beyond(deviations, &sudden, passed, moving) && self.let_go < 0.0
         };
         beyond && power < 0.0
@@ -276,6 +276,8 @@ mod tests {
     /// Before the motors turn, and until they turn as they should [s].
     const REST: f64 = 0.3;
     const STARTS: f64 = 0.05;
+    /// What a motor that turns on pushes with is not measured beyond this \[Nm\].
+    const SENSOR_RANGE: f64 = 110.0;
 
     /// From joint `touching` touching on until the setpoint stands, and for how long from the start
     /// on \[ms\]; the motors rest, and turn with `speed(t)` \[rad/s\] for three seconds. `noise`: of
@@ -295,13 +297,14 @@ mod tests {
         let mut own = ContactStop::new(&plant.joints, count, &config);
         let mut motors = Vector2::from(BEGIN);
         let (mut touched, mut first, mut long) = (None, None, 0);
-        let mut k = 0;
-        // Later a motor that turns on is beyond what a sensor measures.
-        while k < touched.map_or(3300, |touched| touched + 300) {
+        for k in 0..3300 {
             let t = 1e-3 * k as f64 - REST;
             let now = Vector2::from(speed(t.max(0.0))) * (t / STARTS).clamp(0.0, 1.0);
             motors += now * 1e-3;
             let mut measured = plant.measure((k as i64 + 1) * MS, motors, now);
+            if measured.torque[0] > SENSOR_RANGE {
+                break;
+            }
             if noise.is_none() {
                 measured.torque = [0.0; 2].into();
             }
@@ -313,7 +316,6 @@ mod tests {
                 long += 1;
                 first = first.or(touched.map(|touched| k - touched));
             }
-            k += 1;
         }
         (first, long)
     }

@@ -140,7 +140,7 @@ impl Leader for ModelMediatedLeader {
         let limit = self.parameters.largest_force;
         let [model, felt] = [model, felt].map(|force| shortened(force, limit));
         let felt = share * felt - self.damping.value() * velocity;
-        // Of a contact's own force it is not: the tip goes as deep as the hand.
+        // Whether that is felt or the contact's own force: the tip goes as deep as the hand.
         let asked = self.asked_share() * share * model;
         self.wanted = felt;
         self.lacking = Vector3::zeros();

@@ -48,7 +48,7 @@ impl Noise {
         passed: f64,
         moving: bool,
     ) -> bool {
-        let limit = deviations * deviations + sudden.len() as f64;
+        let limit = squared_limit(deviations, sudden);
         let sudden = padded(sudden);
         if self.seen < KNOWN {
             self.seen += passed;
@@ -71,7 +71,7 @@ impl Noise {
         sudden: &Joints<f64>,
         pressed: &Joints<f64>,
     ) -> bool {
-        let limit = deviations * deviations + sudden.len() as f64;
+        let limit = squared_limit(deviations, sudden);
         let across = Some(padded(pressed));
         self.seen >= KNOWN && self.squared_distance(&padded(sudden), across.as_ref()) > limit
     }
@@ -96,6 +96,11 @@ impl Noise {
         });
         whole - along
     }
+}
+
+/// Squared distance of `deviations` beyond what there is on average.
+fn squared_limit(deviations: f64, sudden: &Joints<f64>) -> f64 {
+    deviations * deviations + sudden.len() as f64
 }
 
 /// The torques of an arm with fewer joints, and zeros.
