@@ -23,6 +23,8 @@
 //!
 //! Allocates when made, never afterwards.
 
+use std::collections::VecDeque;
+
 use crate::frame::LinkFrame;
 use crate::meter::behind;
 use crate::nanoseconds;
@@ -51,13 +53,23 @@ pub enum Offered {
     Replayed,
 }
 
+/// A frame that waits: which, and where it lies.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    sequence: u32,
+    stamp_ns: i64,
+    place: usize,
+}
+
 /// Frames that wait for their turn.
 #[derive(Clone, Debug)]
 pub struct PlayOut {
     buffer_ns: i64,
     slots: Box<[Option<LinkFrame>; SLOTS]>,
     /// A bit for each slot in which a frame waits.
-    waiting: u128,
+    used: u128,
+    /// Those that wait, by their sequence numbers; never more than there are slots.
+    turns: VecDeque<Turn>,
     /// Smallest transit time [ns].
     base_ns: Option<i64>,
     /// Frames that it is of, up to [`FORGET`].
@@ -77,7 +89,8 @@ impl PlayOut {
             // Not a number counts as none.
             buffer_ns: nanoseconds(buffer.clamp(0.0, LONGEST_BUFFER)),
             slots: Box::new([None; SLOTS]),
-            waiting: 0,
+            used: 0,
+            turns: VecDeque::with_capacity(SLOTS),
             base_ns: None,
             based_on: 0,
             late_since_ns: None,
@@ -95,7 +108,7 @@ impl PlayOut {
 
     /// Frames that wait.
     pub fn waiting(&self) -> usize {
-        self.waiting.count_ones() as usize
+        self.turns.len()
     }
 
     /// The sender was started anew, or is another one: what waits is dropped.
@@ -137,55 +150,61 @@ impl PlayOut {
         });
         self.based_on = (self.based_on + 1).min(FORGET);
         self.late_since_ns = None;
-        let place = frame.sequence as usize % SLOTS;
-        let slot = &mut self.slots[place];
-        match slot {
-            Some(own) if own.sequence == frame.sequence => return Offered::Replayed,
-            // Further ahead than there is room: the older one gives way.
-            Some(own) if behind(frame.sequence, own.sequence) => return Offered::Late,
-            Some(_) => {}
-            None => self.waiting |= 1 << place,
+        let not_after = |own: &Turn| !behind(frame.sequence, own.sequence);
+        let mut at = self
+            .turns
+            .iter()
+            .rposition(not_after)
+            .map_or(0, |own| own + 1);
+        if at > 0 && self.turns[at - 1].sequence == frame.sequence {
+            return Offered::Replayed;
         }
-        *slot = Some(*frame);
+        if self.turns.len() == SLOTS {
+            // Further ahead than there is room: the oldest gives way.
+            if at == 0 {
+                return Offered::Late;
+            }
+            self.pop();
+            at -= 1;
+        }
+        let place = (!self.used).trailing_zeros() as usize;
+        self.used |= 1 << place;
+        self.slots[place] = Some(*frame);
+        let (sequence, stamp_ns) = (frame.sequence, frame.stamp_ns);
+        let turn = Turn {
+            sequence,
+            stamp_ns,
+            place,
+        };
+        self.turns.insert(at, turn);
         Offered::Waiting
     }
 
-    /// The frame to act on from `now_ns` on, when there is a new one: the newest
-    /// that is due. Those before it are dropped.
+    /// The frame to act on from `now_ns` on, when there is a new one: the last of those that are
+    /// due. Those before it are dropped. No frame is due before those that were sent before it.
     pub fn take(&mut self, now_ns: i64) -> Option<LinkFrame> {
         self.after_outage(now_ns);
-        if self.waiting == 0 {
-            return None;
-        }
-        let base_ns = self.base_ns.unwrap_or(0);
-        let buffer_ns = self.buffer_ns;
-        let due = |frame: &LinkFrame| {
-            let due_ns = frame.stamp_ns.saturating_add(base_ns);
+        let (base_ns, buffer_ns) = (self.base_ns.unwrap_or(0), self.buffer_ns);
+        let due = |own: &Turn| {
+            let due_ns = own.stamp_ns.saturating_add(base_ns);
             buffer_ns == 0 || due_ns.saturating_add(buffer_ns) <= now_ns
         };
-        let waiting = places(self.waiting).filter_map(|place| self.slots[place].as_ref());
-        let mut newest: Option<&LinkFrame> = None;
-        for frame in waiting.filter(|frame| due(frame)) {
-            if newest.is_none_or(|own| behind(own.sequence, frame.sequence)) {
-                newest = Some(frame);
-            }
+        let (mut newest, mut content) = (None, None);
+        while self.turns.front().is_some_and(due) {
+            newest = self.pop();
+            content = newest.filter(|own| own.since_content == 0).or(content);
         }
-        let newest = *newest?;
-        self.content = None;
-        for place in places(self.waiting) {
-            let slot = &mut self.slots[place];
-            let Some(own) = slot.filter(|own| !behind(newest.sequence, own.sequence)) else {
-                continue;
-            };
-            let newer = |before: LinkFrame| behind(before.sequence, own.sequence);
-            if own.since_content == 0 && self.content.is_none_or(newer) {
-                self.content = Some(own);
-            }
-            *slot = None;
-            self.waiting &= !(1 << place);
-        }
+        let newest = newest?;
+        self.content = content;
         self.last = Some(newest.sequence);
         Some(newest)
+    }
+
+    /// The one that waits first.
+    fn pop(&mut self) -> Option<LinkFrame> {
+        let turn = self.turns.pop_front()?;
+        self.used &= !(1 << turn.place);
+        self.slots[turn.place]
     }
 
     /// Whether nothing arrived for so long that what waits does not count; it is dropped then.
@@ -193,26 +212,16 @@ impl PlayOut {
         let silent = self.arrived_ns.is_some_and(|own| {
             now_ns.saturating_sub(own) > self.buffer_ns.max(nanoseconds(OUTAGE))
         });
-        if silent && self.waiting > 0 {
+        if silent {
             self.clear();
         }
         silent
     }
 
     fn clear(&mut self) {
-        *self.slots = [None; SLOTS];
-        self.waiting = 0;
+        self.turns.clear();
+        self.used = 0;
     }
-}
-
-/// The slots whose bits are set, in order.
-fn places(mut bits: u128) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let place = bits.trailing_zeros() as usize;
-        // Takes the lowest bit that is set.
-        bits &= bits.wrapping_sub(1);
-        (place < SLOTS).then_some(place)
-    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! they turn on the other side of the torque sensor.
 
 use crate::joint::JointParameters;
-use crate::kinematics::{Kinematics, LINKS};
+use crate::kinematics::{Kinematics, LINKS, unit};
 use crate::{Matrix2, ParameterError, Vector2, parameters};
 
 /// Standard gravity \[m/s²\].
@@ -143,42 +143,42 @@ impl Arm {
 
     /// Torques g(q) = ∂V/∂q that hold the links against gravity \[Nm\]; zero in orbit.
     pub fn gravity(&self, q: &Vector2<f64>) -> Vector2<f64> {
-        let [x, y] = self.parameters.gravity;
-        if x == 0.0 && y == 0.0 {
+        if self.parameters.gravity == [0.0; 2] {
             return Vector2::zeros();
         }
+        self.gravity_at(&unit(q.x), &unit(q.x + q.y))
+    }
+
+    /// The same with links that point along `first` and `second`, of length 1.
+    #[inline]
+    fn gravity_at(&self, first: &Vector2<f64>, second: &Vector2<f64>) -> Vector2<f64> {
         let [one, two] = self.parameters.link;
-        let (first, second) = ((q.x).sin_cos(), (q.x + q.y).sin_cos());
+        let [x, y] = self.parameters.gravity;
         // −(gravity · ∂r/∂angle) for a unit lever at each angle.
-        let turn = |(sine, cosine): (f64, f64)| x * sine - y * cosine;
+        let turn = |along: &Vector2<f64>| x * along.y - y * along.x;
         let shoulder = (one.mass * one.center_of_mass + two.mass * one.length) * turn(first);
         let elbow = two.mass * two.center_of_mass * turn(second);
         Vector2::new(shoulder + elbow, elbow)
     }
 
-    /// M(q) and C(q, q̇) q̇ + g(q) at once, for loops that need both.
-    pub fn inertia_and_bias(
-        &self,
-        q: &Vector2<f64>,
-        qd: &Vector2<f64>,
-    ) -> (Matrix2<f64>, Vector2<f64>) {
-        let (inertia, bias) = self.inertia_and_biases(q);
-        (inertia, bias(qd))
-    }
-
-    /// M(q), and C(q, q̇) q̇ + g(q) of any q̇ there, for loops that need that of several.
+    /// What a step of the dynamics takes of one posture, from the sines of two angles.
     #[inline]
-    pub fn inertia_and_biases<'a>(
-        &'a self,
-        q: &Vector2<f64>,
-    ) -> (
-        Matrix2<f64>,
-        impl Fn(&Vector2<f64>) -> Vector2<f64> + use<'a>,
-    ) {
-        let (sine, cosine) = q.y.sin_cos();
-        let gravity = self.gravity(q);
-        let bias = move |qd: &Vector2<f64>| self.coriolis_at(sine, qd) + gravity;
-        (self.inertia_at(cosine), bias)
+    pub fn posture(&self, q: &Vector2<f64>) -> Posture<'_> {
+        let (first, bend) = (unit(q.x), unit(q.y));
+        // cos and sin of q₁ + q₂.
+        let second = Vector2::new(
+            first.x * bend.x - first.y * bend.y,
+            first.y * bend.x + first.x * bend.y,
+        );
+        let (tip, jacobian) = self.kinematics.turned(first, second);
+        Posture {
+            arm: self,
+            tip,
+            jacobian,
+            inertia: self.inertia_at(bend.x),
+            gravity: self.gravity_at(&first, &second),
+            sine: bend.y,
+        }
     }
 
     /// ∂L/∂q = ½ q̇ᵀ (∂M/∂q) q̇ − g(q) \[Nm\], with the Lagrangian L = T − V of
@@ -197,8 +197,8 @@ impl Arm {
         qd: &Vector2<f64>,
         qdd: &Vector2<f64>,
     ) -> Vector2<f64> {
-        let (inertia, bias) = self.inertia_and_bias(q, qd);
-        inertia * qdd + bias
+        let posture = self.posture(q);
+        posture.inertia * qdd + posture.bias(qd)
     }
 
     /// Kinetic energy ½ q̇ᵀ M q̇ \[J\].
@@ -213,6 +213,30 @@ impl Arm {
         let height = |angle: f64| x * angle.cos() + y * angle.sin();
         -(one.mass * one.center_of_mass + two.mass * one.length) * height(q.x)
             - two.mass * two.center_of_mass * height(q.x + q.y)
+    }
+}
+
+/// The two links in one posture.
+#[derive(Clone, Copy, Debug)]
+pub struct Posture<'a> {
+    arm: &'a Arm,
+    /// Stylus tip r_ee, base frame \[m\].
+    pub tip: Vector2<f64>,
+    /// J = ∂r_ee/∂q \[m/rad\].
+    pub jacobian: Matrix2<f64>,
+    /// M(q) \[kg m²\].
+    pub inertia: Matrix2<f64>,
+    /// g(q) \[Nm\].
+    gravity: Vector2<f64>,
+    /// sin q₂.
+    sine: f64,
+}
+
+impl Posture<'_> {
+    /// C(q, q̇) q̇ + g(q) \[Nm\].
+    #[inline]
+    pub fn bias(&self, qd: &Vector2<f64>) -> Vector2<f64> {
+        self.arm.coriolis_at(self.sine, qd) + self.gravity
     }
 }
 

@@ -83,6 +83,13 @@ pub enum InverseError {
     },
 }
 
+/// The direction at `angle` \[rad\] from the x axis, of length 1.
+#[inline]
+pub(crate) fn unit(angle: f64) -> Vector2<f64> {
+    let (sine, cosine) = angle.sin_cos();
+    Vector2::new(cosine, sine)
+}
+
 /// A two-link planar arm's geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kinematics {
@@ -103,8 +110,7 @@ impl Kinematics {
     /// Elbow (axis of joint 2), base frame \[m\].
     #[inline]
     pub fn elbow(&self, q: &Vector2<f64>) -> Vector2<f64> {
-        let (sine, cosine) = q.x.sin_cos();
-        Vector2::new(self.lengths[0] * cosine, self.lengths[0] * sine)
+        unit(q.x) * self.lengths[0]
     }
 
     /// Stylus tip r_ee, base frame \[m\].
@@ -122,10 +128,18 @@ impl Kinematics {
     /// Tip \[m\] and Jacobian \[m/rad\] at once, for loops that need both.
     #[inline]
     pub fn forward_and_jacobian(&self, q: &Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>) {
-        let elbow = self.elbow(q);
-        let (sine, cosine) = (q.x + q.y).sin_cos();
-        let forearm = Vector2::new(self.lengths[1] * cosine, self.lengths[1] * sine);
-        let tip = elbow + forearm;
+        self.turned(unit(q.x), unit(q.x + q.y))
+    }
+
+    /// The same with links that point along `first` and `second`, of length 1.
+    #[inline]
+    pub(crate) fn turned(
+        &self,
+        first: Vector2<f64>,
+        second: Vector2<f64>,
+    ) -> (Vector2<f64>, Matrix2<f64>) {
+        let forearm = second * self.lengths[1];
+        let tip = first * self.lengths[0] + forearm;
         let jacobian = Matrix2::new(-tip.y, -forearm.y, tip.x, forearm.x);
         (tip, jacobian)
     }
@@ -133,9 +147,7 @@ impl Kinematics {
     /// Time derivative J̇ \[m/(rad s)\] at joint velocities `qd` \[rad/s\].
     pub fn jacobian_rate(&self, q: &Vector2<f64>, qd: &Vector2<f64>) -> Matrix2<f64> {
         let elbow = self.elbow(q);
-        let (sine, cosine) = (q.x + q.y).sin_cos();
-        let both = qd.x + qd.y;
-        let forearm = Vector2::new(self.lengths[1] * cosine, self.lengths[1] * sine) * both;
+        let forearm = unit(q.x + q.y) * self.lengths[1] * (qd.x + qd.y);
         let tip = elbow * qd.x + forearm;
         Matrix2::new(-tip.x, -forearm.x, -tip.y, -forearm.y)
     }

@@ -125,8 +125,8 @@ mod tests {
         observer.drive = (torque - arm.gravity(&q)).into();
         let dt = 1e-5;
         for step in 1..=10_000 {
-            let (inertia, bias) = arm.inertia_and_bias(&q, &qd);
-            qd += solve_symmetric(&inertia, &(torque + contact - bias)) * dt;
+            let links = arm.posture(&q);
+            qd += solve_symmetric(&links.inertia, &(torque + contact - links.bias(&qd))) * dt;
             q += qd * dt;
             let motion = observer.step(&arm, dt, &q.into(), &qd.into(), &torque.into());
             let residual = planar(&motion.contact_torque).unwrap();

@@ -258,8 +258,9 @@ mod tests {
                         (stiffness * (place - self.q[joint])).min(0.0)
                     })
                 });
-                let (inertia, bias) = self.links.inertia_and_bias(&self.q, &self.qd);
-                self.qd += solve_symmetric(&inertia, &(torque + contact - bias)) * dt;
+                let links = self.links.posture(&self.q);
+                let pulls = torque + contact - links.bias(&self.qd);
+                self.qd += solve_symmetric(&links.inertia, &pulls) * dt;
                 self.q += self.qd * dt;
             }
             Measurement {

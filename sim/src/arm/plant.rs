@@ -150,21 +150,20 @@ impl Plant {
         self.shift += self.shift_velocity * half;
 
         let torque = self.joint_torque();
-        let (tip, jacobian) = self.arm.kinematics().forward_and_jacobian(&self.q);
-        let velocity = jacobian * self.qd - self.shift_velocity;
-        let tip = tip - self.shift;
+        let posture = self.arm.posture(&self.q);
+        let velocity = posture.jacobian * self.qd - self.shift_velocity;
+        let tip = posture.tip - self.shift;
         self.force = self
             .fronts
             .iter_mut()
             .map(|front| front.step(&tip, &velocity, dt))
             .sum();
-        let drive = torque + jacobian.tr_mul(&self.force);
+        let drive = torque + posture.jacobian.tr_mul(&self.force);
         // Coriolis torques are quadratic in q̇: taken once with the velocity
         // at the beginning, once with the one in the middle.
-        let (inertia, bias) = self.arm.inertia_and_biases(&self.q);
-        let middle = self.qd + solve_symmetric(&inertia, &(drive - bias(&self.qd))) * half;
-        let changed = solve_symmetric(&inertia, &(drive - bias(&middle))) * dt;
-        self.qd += changed;
+        let accelerated = |qd| solve_symmetric(&posture.inertia, &(drive - posture.bias(qd)));
+        let middle = self.qd + accelerated(&self.qd) * half;
+        self.qd += accelerated(&middle) * dt;
 
         let motors = std::array::from_fn(|joint| {
             let parameters = &self.joints[joint];
@@ -188,7 +187,7 @@ impl Plant {
         self.theta += self.thetad * half;
         self.shift += self.shift_velocity * half;
         // As the integration has it: the force in the middle, over the whole way.
-        self.contact_work += self.force.dot(&(jacobian * (self.q - before)));
+        self.contact_work += self.force.dot(&(posture.jacobian * (self.q - before)));
         heat
     }
 }
