@@ -16,26 +16,21 @@ use ferntast_sim::arm::ArmConfig;
 /// The joint of the tests, from 0.
 pub const JOINT: usize = 1;
 
-/// The experiment of a joint, from 0.
-fn experiment(joint: usize) -> String {
-    let number = joint + 1;
-    format!(
-        r#"
+/// Its experiment.
+const EXPERIMENT: &str = r#"
 recording = "first"
 
 [signals]
-position = "/follower/measured_js.position[{joint}]"
-joint_torque = "/follower/measured_js.effort[{joint}]"
-motor_torque = "/follower/motor_js.effort[{joint}]"
-temperature = "/follower/joint_{number}/temperature.temperature"
+position = "/follower/measured_js.position[1]"
+joint_torque = "/follower/measured_js.effort[1]"
+motor_torque = "/follower/motor_js.effort[1]"
+temperature = "/follower/joint_2/temperature.temperature"
 
 [model]
 inertia = 0.5
 gear_ratio = 160
 effects = ["coulomb", "load_coulomb", "viscous", "quadratic_viscous", "cubic_viscous"]
-"#
-    )
-}
+"#;
 
 /// The scenario at 10 °C; where `free` the hand stays clear of everything and
 /// is quicker: so friction shows over speed.
@@ -66,13 +61,8 @@ pub fn scenario(seed: u64, free: bool) -> Loaded {
 
 /// All of joint 2's true friction times `factor`.
 pub fn worn(loaded: &mut Loaded, factor: f64) {
-    worn_at(loaded, JOINT, factor);
-}
-
-/// All of the true friction of a joint, from 0, times `factor`.
-pub fn worn_at(loaded: &mut Loaded, joint: usize, factor: f64) {
     change_arm(loaded, |arm| {
-        let friction = &mut arm.truth.joint[joint].friction;
+        let friction = &mut arm.truth.joint[JOINT].friction;
         for value in [
             &mut friction.b_0,
             &mut friction.b_0t,
@@ -103,23 +93,15 @@ pub fn session(loaded: &Loaded, bag: Option<&Path>, twins: Vec<PathBuf>) -> Lock
 
 /// A session of `loaded` with a twin of joint 2, fitted to 40 s of `fitted_to` with another seed.
 pub fn with_twin(loaded: &Loaded, fitted_to: &Loaded) -> LockstepSession {
-    with_twins(loaded, fitted_to, &[JOINT])
-}
-
-/// The same with twins of `joints`, from 0.
-pub fn with_twins(loaded: &Loaded, fitted_to: &Loaded, joints: &[usize]) -> LockstepSession {
     let folder = tempfile::tempdir().expect("a session in lockstep");
     let mut other = fitted_to.clone();
     other.scenario.seed += 1000;
     let mut first = session(&other, Some(&folder.path().join("first")), Vec::new());
     first.run(40.0);
     first.finish().expect("a session in lockstep");
-    let files = joints.iter().map(|joint| {
-        let file = folder.path().join(format!("joint_{joint}.toml"));
-        fs::write(&file, experiment(*joint)).expect("a session in lockstep");
-        file
-    });
-    session(loaded, None, files.collect())
+    let file = folder.path().join("joint.toml");
+    fs::write(&file, EXPERIMENT).expect("a session in lockstep");
+    session(loaded, None, vec![file])
 }
 
 /// Every message on `topic` of `session`, for as long as it is read each 0.2 s.

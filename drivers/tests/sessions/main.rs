@@ -1,7 +1,6 @@
 //! Whole sessions in virtual time. One program: a second one would compile once more what reads an
 //! arm's file.
 
-mod both_joints;
 mod clutch;
 mod common;
 mod motor_current;
