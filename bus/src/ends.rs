@@ -201,36 +201,3 @@ fn receiver<M: Message>(
         }
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use ferntast_msgs::{sample::JointNames, topics::Visitor};
-
-    use super::*;
-    use crate::MemoryBus;
-
-    #[test]
-    fn every_topic_of_the_table_has_its_ends() {
-        struct Open {
-            bus: Bus,
-            topics: usize,
-        }
-        impl Visitor for Open {
-            fn topic<M: Message>(&mut self, topic: Topic<M>) {
-                let depth = Depth::Newest;
-                let name = topic.name;
-                let mut from = subscriber(&self.bus, topic, depth)
-                    .unwrap_or_else(|error| panic!("{name}: {error}"));
-                publisher(&self.bus, topic).unwrap_or_else(|error| panic!("{name}: {error}"));
-                assert!(from.newest(Time::from_ros(1, 0)).is_none());
-                self.topics += 1;
-            }
-        }
-        let mut open = Open {
-            bus: Bus::Memory(MemoryBus::new()),
-            topics: 0,
-        };
-        topics::visit(&JointNames::numbered(2), &mut open).unwrap();
-        assert!(open.topics > 30, "{}", open.topics);
-    }
-}

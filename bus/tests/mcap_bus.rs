@@ -3,12 +3,11 @@
 
 #![allow(clippy::unwrap_used)] // A test may.
 
-mod mcap_samples;
+#[path = "../../bag/tests/samples/mod.rs"]
+mod samples;
 
-use ferntast_bus::{
-    CreateError, Depth, PublishError,
-    mcap::{McapBus, info},
-};
+use ferntast_bag::info;
+use ferntast_bus::{CreateError, Depth, McapBus, PublishError};
 use ferntast_msgs::{
     Time,
     sample::{JointSample, PoseSample},
@@ -16,7 +15,7 @@ use ferntast_msgs::{
         Delivery, FOLLOWER_MEASURED_JS, FOLLOWER_OPERATING_STATE, FOLLOWER_STATE_COMMAND, Topic,
     },
 };
-use mcap_samples::{START, joint, operating_state, state_command};
+use samples::{START, joint, operating_state, state_command};
 use tempfile::TempDir;
 
 /// `ms` milliseconds after the start.

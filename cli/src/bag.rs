@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use ferntast_bus::mcap::{self, BagInfo};
+use ferntast_bag::BagInfo;
 use ferntast_export::{self as export, lerobot};
 use ferntast_msgs::Time;
 
@@ -109,7 +109,7 @@ fn date(time: Time) -> String {
 pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     match arguments.action {
         Action::Info { recording } => {
-            let info = mcap::info(&recording).map_err(Failure::refused)?;
+            let info = ferntast_bag::info(&recording).map_err(Failure::refused)?;
             let start_date = info.start.map(date);
             match (json, &start_date) {
                 (true, _) => print_json(&Dated { start_date, info })?,
@@ -118,7 +118,8 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             }
         }
         Action::Repair { recording, output } => {
-            let report = mcap::repair(&recording, output.as_deref()).map_err(Failure::refused)?;
+            let report =
+                ferntast_bag::repair(&recording, output.as_deref()).map_err(Failure::refused)?;
             if json {
                 print_json(&report)?;
             } else {

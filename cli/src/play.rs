@@ -69,7 +69,7 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
             arguments.rate
         )));
     }
-    let info = ferntast_bus::mcap::info(&arguments.recording).map_err(Failure::refused)?;
+    let info = ferntast_bag::info(&arguments.recording).map_err(Failure::refused)?;
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.play = PlayOptions {

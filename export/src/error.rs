@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use ferntast_bus::mcap::{OpenBagError, ReadMessageError, SelectTopicError};
+use ferntast_bag::{OpenBagError, ReadMessageError, SelectTopicError};
 
 use ferntast_lab::schema::DecodeError;
 

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 use ferntast_msgs::Time;
 use serde::Serialize;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ferntast_bus::mcap::{BagReader, BagTopic, RawMessage};
+use ferntast_bag::{BagReader, BagTopic, RawMessage};
 use ferntast_msgs::Time;
 
 use super::{ExportError, error::nearest, unit::unit_at};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 use ferntast_msgs::{
     sample::{TemperatureSample, TwinParametersSample},
     topics::{FOLLOWER_JOINT_TEMPERATURE, TWIN_PARAMETERS},

@@ -1,6 +1,6 @@
 //! Which joints a recording is about.
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 use ferntast_msgs::{
     sample::{JointNames, JointSample},
     topics::{FOLLOWER_JOINT_TEMPERATURE, FOLLOWER_MEASURED_JS},

@@ -1,6 +1,6 @@
 //! The numbers of a recording that a signal can be.
 
-use ferntast_bus::mcap::{BagReader, RawMessage};
+use ferntast_bag::{BagReader, RawMessage};
 use ferntast_msgs::Time;
 
 use crate::schema::{Layout, Reader, numeric_paths};

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use ferntast_bus::mcap::{BagOptions, BagReader, BagWriter};
+use ferntast_bag::{BagOptions, BagReader, BagWriter};
 use ferntast_lab::joints::recorded_joints;
 use ferntast_msgs::{
     Time,

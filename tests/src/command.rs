@@ -2,7 +2,8 @@
 
 use std::{path::Path, time::Duration};
 
-use ferntast_bus::{Received, mcap::BagReader};
+use ferntast_bag::BagReader;
+use ferntast_bus::Received;
 use ferntast_msgs::{Message, topics::Topic};
 use serde_json::Value;
 

@@ -7,7 +7,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use ferntast_bus::mcap;
 use ferntast_msgs::Time;
 
 use crate::{
@@ -303,7 +302,7 @@ impl Pair {
             // One that was killed, or whose disk was full, did not close its own.
             for part in &parts {
                 let path = session.folder().join(part);
-                if !mcap::info(&path).is_ok_and(|info| info.closed) {
+                if !ferntast_bag::info(&path).is_ok_and(|info| info.closed) {
                     run(&session, &["bag", "repair", part, "--json"]).success();
                 }
             }

@@ -2,16 +2,16 @@
 
 use std::{path::Path, sync::Arc};
 
+use ferntast_bag::{
+    BagOptions, BagReader, BagSummary, BagWriter, CreateBagError, FinishBagError, OpenBagError,
+    SelectTopicError, WriteBagError,
+};
 use ferntast_msgs::{Message, Time, topics::Topic};
 
 use super::{
-    error::{CreateBagError, FinishBagError, OpenBagError, SelectTopicError, WriteBagError},
-    options::{BagOptions, BagSummary},
     publisher::McapPublisher,
-    reader::BagReader,
     shared::{Reading, SharedWriter},
     subscriber::McapSubscriber,
-    writer::BagWriter,
 };
 use crate::{
     error::CreateError,

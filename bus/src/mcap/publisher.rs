@@ -2,12 +2,13 @@
 
 use std::marker::PhantomData;
 
+use ferntast_bag::{ChannelId, WriteBagError};
 use ferntast_msgs::{
     Message, Time,
     topics::{Topic, TopicName},
 };
 
-use super::{error::WriteBagError, shared::SharedWriter, writer::ChannelId};
+use super::shared::SharedWriter;
 use crate::error::PublishError;
 
 /// Sends on one topic of a recording. It keeps the recording open.

@@ -5,9 +5,8 @@ use std::sync::{
     atomic::{AtomicI64, Ordering},
 };
 
+use ferntast_bag::{BagReader, BagWriter};
 use ferntast_msgs::Time;
-
-use super::{reader::BagReader, writer::BagWriter};
 
 /// A recording that several publishers write to; empty once closed.
 #[derive(Clone)]

@@ -2,16 +2,13 @@
 
 use std::{collections::VecDeque, marker::PhantomData, sync::Arc};
 
+use ferntast_bag::{RawMessage, RawMessages, SelectTopicError};
 use ferntast_msgs::{
     Message, Text, Time, cdr,
     topics::{Delivery, Topic},
 };
 
-use super::{
-    error::SelectTopicError,
-    messages::{RawMessage, RawMessages},
-    shared::Reading,
-};
+use super::shared::Reading;
 use crate::types::{Depth, Received, SubscriberCounts};
 
 /// Receives from one topic of a recording.

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod cases;
+mod every_topic;
 mod frames;
 mod garbage;
 mod opening;

@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use ferntast_bus::mcap::OpenBagError;
+use ferntast_bag::OpenBagError;
 
 /// Why there is no experiment.
 #[derive(Debug, thiserror::Error)]

@@ -163,6 +163,29 @@ fn folder_of(path: &Path) -> PathBuf {
 }
 
 impl Experiment {
+    /// The joint called `title` in one of our own recordings, no file beside it.
+    #[must_use]
+    pub fn of_recording(title: &str, recording: &Path, signals: Signals, model: ModelSpec) -> Self {
+        Experiment {
+            path: None,
+            title: title.to_owned(),
+            recordings: vec![recording.to_owned()],
+            joined: BTreeMap::new(),
+            conditions: BTreeMap::new(),
+            reading: Reading::default(),
+            held_out: Vec::new(),
+            unloaded: Vec::new(),
+            filter: None,
+            joint: JointType::Revolute,
+            torque_is_modelled: false,
+            contour: None,
+            arm: None,
+            signals,
+            model,
+            lineage: None,
+        }
+    }
+
     /// Reads what a command was given: an experiment file (`.toml`), or a
     /// recording of ferntast's own, which gives one experiment a joint.
     ///

@@ -1,16 +1,16 @@
 //! A recording of ferntast's own in place of an experiment file.
 
-use std::{collections::BTreeMap, path::Path};
+use std::path::Path;
 
-use ferntast_bus::mcap::BagReader;
-use ferntast_identification::{Inertia, JointType, ModelSpec, Term};
+use ferntast_bag::BagReader;
+use ferntast_identification::{Inertia, ModelSpec, Term};
 use ferntast_model::{friction, joint::JointParameters};
 use ferntast_msgs::{
     sample::{JointNames, MAX_JOINTS},
     topics,
 };
 
-use super::{Experiment, ExperimentError, Reading, Signals};
+use super::{Experiment, ExperimentError, Signals};
 use crate::{joints::recorded_joints, numbers::numbers_of};
 
 /// Name of the metadata record that a recording of ours carries: what it was
@@ -60,34 +60,19 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
         let temperature = bag
             .topics()
             .find(|topic| topics::FOLLOWER_JOINT_TEMPERATURE.joint_of(&topic.name) == Some(name));
-        Experiment {
-            path: None,
-            title: name.to_owned(),
-            recordings: vec![path.to_owned()],
-            joined: BTreeMap::new(),
-            conditions: BTreeMap::new(),
-            reading: Reading::default(),
-            held_out: Vec::new(),
-            unloaded: Vec::new(),
-            filter: None,
-            joint: JointType::Revolute,
-            torque_is_modelled: false,
-            contour: None,
-            arm: None,
-            signals: Signals {
-                position: format!("{measured}.position[{index}]"),
-                motor_torque: format!("{motor}.effort[{index}]"),
-                joint_torque: Some(format!("{measured}.effort[{index}]")),
-                temperature: temperature.map(|topic| format!("{}.temperature", topic.name)),
-                ..Signals::default()
-            },
-            model: ModelSpec {
-                inertia: Inertia::Given(joint.motor_inertia),
-                gear_ratio: Some(joint.gear_ratio),
-                effects: effects(joint),
-            },
-            lineage: None,
-        }
+        let signals = Signals {
+            position: format!("{measured}.position[{index}]"),
+            motor_torque: format!("{motor}.effort[{index}]"),
+            joint_torque: Some(format!("{measured}.effort[{index}]")),
+            temperature: temperature.map(|topic| format!("{}.temperature", topic.name)),
+            ..Signals::default()
+        };
+        let model = ModelSpec {
+            inertia: Inertia::Given(joint.motor_inertia),
+            gear_ratio: Some(joint.gear_ratio),
+            effects: effects(joint),
+        };
+        Experiment::of_recording(name, path, signals, model)
     });
     Ok(experiments.collect())
 }

@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use ferntast_bus::mcap::{BagReader, BagTopic, Place, RawMessage};
+use ferntast_bag::{BagReader, BagTopic, Place, RawMessage};
 use ferntast_msgs::Time;
 
 use super::{LoadError, Series, Wanted, tally::Tally};

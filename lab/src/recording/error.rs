@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use ferntast_bus::mcap::{OpenBagError, ReadMessageError, SelectTopicError};
+use ferntast_bag::{OpenBagError, ReadMessageError, SelectTopicError};
 
 use crate::{
     message_path::MessagePathError,

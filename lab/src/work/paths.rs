@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 use serde::Serialize;
 
 use super::WorkError;

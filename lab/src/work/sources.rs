@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 
 use super::{NewError, WorkError, chain::ArmChain, request::Request};
 use crate::{

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 use ferntast_identification::{Term, add};
 use ferntast_model::friction::{FASTEST_SEEN, REFERENCE_TEMPERATURE};
 use ferntast_msgs::{

@@ -3,10 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use ferntast_bus::{
-    Bus, OpenError, RawPublisher, RawTopic, ZenohBus, ZenohConfig, ZenohMode,
-    mcap::{BagReader, BagTopic, QosProfile},
-};
+use ferntast_bag::{BagReader, BagTopic, QosProfile};
+use ferntast_bus::{Bus, OpenError, RawPublisher, RawTopic, ZenohBus, ZenohConfig, ZenohMode};
 use ferntast_config::{GatewaySection, Middleware};
 use ferntast_msgs::{
     Message, Time,
@@ -212,7 +210,7 @@ pub struct Others {
     waiting: Option<Waiting>,
 }
 
-type Waiting = ferntast_bus::mcap::RawMessages;
+type Waiting = ferntast_bag::RawMessages;
 
 impl Others {
     /// Of `bag`, over `ros`.

@@ -3,10 +3,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use ferntast_bus::{
-    Bus, McapBus,
-    mcap::{self, BagReader},
-};
+use ferntast_bag::BagReader;
+use ferntast_bus::{Bus, McapBus};
 use ferntast_msgs::Time;
 
 use super::{
@@ -32,7 +30,7 @@ fn open(
         path: path.to_owned(),
         reason,
     };
-    let info = mcap::info(path).map_err(|error| bad(error.to_string()))?;
+    let info = ferntast_bag::info(path).map_err(|error| bad(error.to_string()))?;
     let (Some(start), Some(end)) = (info.start, info.end) else {
         return Err(bad("it holds no message".to_owned()));
     };

@@ -7,7 +7,8 @@ use std::{
 };
 
 use chrono::DateTime;
-use ferntast_bus::{Bus, Depth, McapBus, SharedMemoryBus, mcap::BagOptions};
+use ferntast_bag::BagOptions;
+use ferntast_bus::{Bus, Depth, McapBus, SharedMemoryBus};
 use ferntast_config::Loaded;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{

@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use ferntast_bus::{
-    Bus, CreateError, McapBus,
-    mcap::{self, BagReader},
-};
+use ferntast_bag::{BagInfo, BagReader};
+use ferntast_bus::{Bus, CreateError, McapBus};
 use ferntast_config::Loaded;
 use ferntast_lab::experiment::RECORD;
 use ferntast_msgs::{
@@ -24,7 +22,7 @@ use crate::{
 pub struct Recorded {
     /// Its topics.
     pub bus: Bus,
-    info: mcap::BagInfo,
+    info: BagInfo,
     /// Topics that it has, with messages or without.
     topics: Vec<String>,
     /// Time of its first message.
@@ -41,7 +39,7 @@ impl Recorded {
     /// It cannot be opened, or holds no message.
     pub fn open(path: &Path) -> Result<Recorded, ReplayError> {
         let open = |error: &dyn std::fmt::Display| ReplayError::Open(error.to_string());
-        let info = mcap::info(path).map_err(|error| open(&error))?;
+        let info = ferntast_bag::info(path).map_err(|error| open(&error))?;
         let (Some(start), Some(end)) = (info.start, info.end) else {
             return Err(ReplayError::Open(format!(
                 "{} holds no message",

@@ -5,10 +5,8 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use ferntast_bus::{
-    Bus, CreateError, SharedMemoryBus, SharedMemoryConfig,
-    mcap::{BagInfo, BagReader, Break},
-};
+use ferntast_bag::{BagInfo, BagReader, Break};
+use ferntast_bus::{Bus, CreateError, SharedMemoryBus, SharedMemoryConfig};
 use ferntast_msgs::sample::JointNames;
 use serde::Serialize;
 

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_bus::mcap::{self, BagInfo};
+use ferntast_bag::BagInfo;
 
 use super::summary::{NodeSummary, RecorderSummary};
 use crate::{bridge::recorder, process::SessionContext};
@@ -75,16 +75,16 @@ const RECORDING_FAILED: &str = ferntast_msgs::sample::Fault::RecordingFailed.nam
 
 /// The recording at `part`, closed if it was left open.
 fn whole(part: &Path) -> Result<BagInfo, String> {
-    let read = mcap::info(part);
+    let read = ferntast_bag::info(part);
     if let Ok(info) = &read
         && info.closed
         && info.breaks.is_empty()
     {
         return read.map_err(|error| error.to_string());
     }
-    let repaired = mcap::repair(part, None)
+    let repaired = ferntast_bag::repair(part, None)
         .map_err(|error| error.to_string())
-        .and_then(|_| mcap::info(part).map_err(|error| error.to_string()));
+        .and_then(|_| ferntast_bag::info(part).map_err(|error| error.to_string()));
     repaired.map_err(|error| {
         let state = match read {
             Ok(_) => "was left open".to_owned(),

@@ -5,11 +5,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ferntast_bag::{CreateBagError, FinishBagError};
 use ferntast_benches::bench::{BenchConfig, BenchError};
-use ferntast_bus::{
-    Bus, McapBus,
-    mcap::{CreateBagError, FinishBagError},
-};
+use ferntast_bus::{Bus, McapBus};
 use serde::{Deserialize, Serialize};
 
 use super::{TestBench, WriteError};

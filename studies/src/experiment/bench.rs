@@ -7,7 +7,8 @@ use std::{
     rc::Rc,
 };
 
-use ferntast_bus::{Bus, Depth, McapBus, Publisher, Subscriber, mcap::BagOptions};
+use ferntast_bag::BagOptions;
+use ferntast_bus::{Bus, Depth, McapBus, Publisher, Subscriber};
 use ferntast_config::{Loaded, joint_names};
 use ferntast_control::servo::ServoConfig;
 use ferntast_drivers::simulated;

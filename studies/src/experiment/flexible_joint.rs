@@ -11,17 +11,15 @@
 
 use std::{collections::BTreeMap, path::Path};
 
+use ferntast_bag::{BagOptions, BagReader};
 use ferntast_benches::flexible_joint_bench::{self, FlexibleJointParameters, FlexibleJointRun};
-use ferntast_bus::{
-    Bus, McapBus, PublishError, Publisher,
-    mcap::{BagOptions, BagReader},
-};
+use ferntast_bus::{Bus, McapBus, PublishError, Publisher};
 use ferntast_identification::{
-    Inertia, JointType, ModelSpec,
+    Inertia, ModelSpec,
     experiments::flexible_joint::{FlexibleJointSignals, Inertias, Row, rows},
 };
 use ferntast_lab::{
-    experiment::{Experiment, RECORD, Reading, Signals},
+    experiment::{Experiment, RECORD, Signals},
     recording,
 };
 use ferntast_msgs::{
@@ -111,34 +109,19 @@ pub fn read(folder: &Path) -> Result<[Vec<Row>; 3], IdentifyError> {
         ("q_link", format!("{measured}.position[1]")),
         ("brake", format!("{motor}.effort[1]")),
     ];
-    let experiment = Experiment {
-        path: None,
-        title: "flexible joint".to_owned(),
-        recordings: vec![folder.to_owned()],
-        joined: BTreeMap::new(),
-        conditions: BTreeMap::new(),
-        reading: Reading::default(),
-        held_out: Vec::new(),
-        unloaded: Vec::new(),
-        filter: None,
-        joint: JointType::Revolute,
-        torque_is_modelled: false,
-        contour: None,
-        arm: None,
-        signals: Signals {
-            position: format!("{measured}.position[0]"),
-            motor_torque: format!("{motor}.effort[0]"),
-            joint_torque: Some(format!("{measured}.effort[0]")),
-            extra: extra.map(|(name, path)| (name.to_owned(), path)).into(),
-            ..Signals::default()
-        },
-        model: ModelSpec {
-            inertia: Inertia::Given(inertias.motor),
-            gear_ratio: None,
-            effects: Vec::new(),
-        },
-        lineage: None,
+    let signals = Signals {
+        position: format!("{measured}.position[0]"),
+        motor_torque: format!("{motor}.effort[0]"),
+        joint_torque: Some(format!("{measured}.effort[0]")),
+        extra: extra.map(|(name, path)| (name.to_owned(), path)).into(),
+        ..Signals::default()
     };
+    let model = ModelSpec {
+        inertia: Inertia::Given(inertias.motor),
+        gear_ratio: None,
+        effects: Vec::new(),
+    };
+    let experiment = Experiment::of_recording("flexible joint", folder, signals, model);
     let dataset = recording::load(&experiment)?.dataset;
     let session = dataset.sessions.first().ok_or_else(empty)?;
     let channel = |name: &str| session.extra.get(name).ok_or_else(empty);

@@ -60,6 +60,18 @@ fn pure_crates_reach_no_middleware() {
     }
 }
 
+/// What works on recordings alone is compiled, linked and tested without the middleware.
+#[test]
+fn what_works_on_recordings_reaches_files_alone() {
+    for name in ["bag", "lab", "export"] {
+        assert_eq!(
+            dependencies::impure(&dependencies::tree(name)),
+            ["mcap"],
+            "`cargo tree -p ferntast-{name} -e normal` shows by which way"
+        );
+    }
+}
+
 #[test]
 fn the_bus_is_seen_to_reach_the_middleware() {
     // The same look at a crate that does: else the test above could not fail.

@@ -2,7 +2,6 @@
 
 use std::{thread, time::Duration};
 
-use ferntast_bus::mcap;
 use ferntast_tests::{
     PATIENCE, Process, Session, await_enabled, limit_files, node, rearmed, recording, run, signal,
     start, state, state_of_follower, wait_until,
@@ -107,7 +106,7 @@ fn a_recorder_that_dies_loses_at_most_what_it_had_not_written() {
     let mut messages = 0;
     for part in parts {
         let part = session.folder().join(part.as_str().expect("a path"));
-        let info = mcap::info(&part).unwrap_or_else(|error| panic!("{error}"));
+        let info = ferntast_bag::info(&part).unwrap_or_else(|error| panic!("{error}"));
         assert!(info.duration_s > 1.0, "{}: {info:?}", part.display());
         assert!(info.closed && info.breaks.is_empty(), "{info:?}");
         messages += info.messages;
@@ -139,7 +138,7 @@ fn a_recording_that_the_disk_has_no_room_for_is_a_failure() {
         ended.stderr
     );
     // What was written in time can be read.
-    let info = mcap::info(&recording(&session)).expect("mended");
+    let info = ferntast_bag::info(&recording(&session)).expect("mended");
     assert!(
         info.closed && info.breaks.is_empty() && info.duration_s > 2.0,
         "{info:?}"
@@ -155,7 +154,7 @@ fn a_supervisor_that_dies_takes_its_nodes_along_and_can_be_started_again() {
     drop(process);
     assert!(wait_until(PATIENCE, || session.processes().is_empty()));
     // Its recorder had the time to close the recording.
-    let info = mcap::info(&recording(&session)).expect("a recording");
+    let info = ferntast_bag::info(&recording(&session)).expect("a recording");
     assert!(info.closed && info.messages > 1000, "{info:?}");
     std::fs::rename(recording(&session), session.folder().join("before")).expect("the recording");
     start(&session, &["--duration", "1"])
@@ -171,7 +170,7 @@ fn a_recording_that_was_cut_off_is_mended() {
         .success();
     let file = recording(&session).join("run_0.mcap");
     let whole = std::fs::read(&file).expect("the recording's file");
-    let before = mcap::info(&recording(&session))
+    let before = ferntast_bag::info(&recording(&session))
         .expect("a recording")
         .messages;
     std::fs::write(&file, &whole[..whole.len() / 2]).expect("scratch folder");
@@ -182,6 +181,8 @@ fn a_recording_that_was_cut_off_is_mended() {
         &["run_0.mcap", "ferntast bag repair"],
     );
     run(&session, &["bag", "repair", "run", "--json"]).success();
-    let after = mcap::info(&recording(&session)).expect("mended").messages;
+    let after = ferntast_bag::info(&recording(&session))
+        .expect("mended")
+        .messages;
     assert!(after > before / 4 && after < before, "{after} of {before}");
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 use ferntast_msgs::{
     Message, Time,
     sample::{Fault, HealthSample, JointSample, Level, OperatingState},

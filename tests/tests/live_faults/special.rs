@@ -2,7 +2,6 @@
 
 use std::{thread, time::Duration};
 
-use ferntast_bus::mcap;
 use ferntast_control::delay::Law;
 use ferntast_msgs::{Time, sample::OperatingState};
 use ferntast_tests::{
@@ -181,7 +180,7 @@ pub fn supervisor(times: usize) -> Outcome {
         let next = session.ferntast_here(&["session", "--no-console", "--duration", "0.1"]);
         Process::spawn(next).wait(PATIENCE).success();
         outcome.times += 1;
-        let closed = || mcap::info(&recording(&session)).is_ok_and(|info| info.closed);
+        let closed = || ferntast_bag::info(&recording(&session)).is_ok_and(|info| info.closed);
         if !wait_until(Duration::from_secs(5), closed) {
             outcome.fail(format!("{number}: the recording is not closed"));
             continue;

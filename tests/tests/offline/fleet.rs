@@ -8,7 +8,7 @@ use std::{
     thread,
 };
 
-use ferntast_bus::mcap::{BagOptions, BagReader, BagWriter};
+use ferntast_bag::{BagOptions, BagReader, BagWriter};
 use ferntast_drivers::simulated;
 use ferntast_msgs::{Message, topics};
 use ferntast_nodes::{graph::Graph, process::SessionContext, session_graph};

@@ -13,7 +13,7 @@ pub use stiffness::stiffness;
 
 use std::{collections::BTreeMap, path::Path};
 
-use ferntast_bus::mcap::BagReader;
+use ferntast_bag::BagReader;
 use ferntast_control::estimator::Uncertainty;
 use ferntast_identification::{
     Dataset, Term,

@@ -2,15 +2,15 @@
 //! for tests of other programs that read recordings:
 //!
 //! ```text
-//! cargo run --release -p ferntast-bus --example write_sample_bag -- DIR [MESSAGES]
+//! cargo run --release -p ferntast-bag --example write_sample_bag -- DIR [MESSAGES]
 //! ```
 //!
 //! The same arguments give the same bytes. The summary goes to stdout as JSON.
 
 use std::{error::Error, path::PathBuf};
 
-#[path = "../tests/mcap_samples/mod.rs"]
-mod mcap_samples;
+#[path = "../tests/samples/mod.rs"]
+mod samples;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(PathBuf::from)
         .ok_or("name the directory to write: write_sample_bag DIR [MESSAGES]")?;
     let messages = arguments.next().map_or(Ok(100), |text| text.parse())?;
-    let summary = mcap_samples::write_sample_bag(&directory, messages)?;
+    let summary = samples::write_sample_bag(&directory, messages)?;
     println!("{}", serde_json::to_string(&summary)?);
     Ok(())
 }

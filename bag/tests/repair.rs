@@ -2,16 +2,16 @@
 
 #![allow(clippy::unwrap_used)] // A test may.
 
-mod mcap_samples;
+mod samples;
 
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-use ferntast_bus::mcap::{BagReader, BagWriter, OpenBagError, RepairError, info, repair};
+use ferntast_bag::{BagReader, BagWriter, OpenBagError, RepairError, info, repair};
 use ferntast_msgs::{Time, topics::FOLLOWER_MEASURED_JS};
-use mcap_samples::{START, joint, options, topic_count, write_sample_bag};
+use samples::{START, joint, options, topic_count, write_sample_bag};
 
 /// What stands in a recording, comparable.
 fn content(path: &Path) -> Vec<(String, Time, Time, u32, Vec<u8>)> {

@@ -151,13 +151,13 @@ pub(super) mod tests {
 
     /// A disk of limited size, held in memory.
     #[derive(Clone)]
-    pub(in crate::mcap) struct SmallDisk {
-        pub(in crate::mcap) content: Arc<Mutex<Vec<u8>>>,
-        pub(in crate::mcap) size: Arc<Mutex<usize>>,
+    pub(crate) struct SmallDisk {
+        pub(crate) content: Arc<Mutex<Vec<u8>>>,
+        pub(crate) size: Arc<Mutex<usize>>,
     }
 
     impl SmallDisk {
-        pub(in crate::mcap) fn new(size: usize) -> SmallDisk {
+        pub(crate) fn new(size: usize) -> SmallDisk {
             SmallDisk {
                 content: Arc::default(),
                 size: Arc::new(Mutex::new(size)),

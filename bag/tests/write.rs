@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used)] // A test may.
 
-mod mcap_samples;
+mod samples;
 
 use std::{collections::BTreeSet, fs};
 
-use ferntast_bus::mcap::{
+use ferntast_bag::{
     BagOptions, BagReader, BagWriter, ChunkCompression, CreateBagError, OpenBagError,
     SelectTopicError, WriteBagError, info,
 };
@@ -15,9 +15,7 @@ use ferntast_msgs::{
     sample::{JointNames, JointSample, PoseSample},
     topics::{self, Delivery, FOLLOWER_MEASURED_JS, LEADER_MEASURED_CP, Topic, Visitor},
 };
-use mcap_samples::{
-    START, joint, log_time, options, record, sample, topic_count, write_sample_bag,
-};
+use samples::{START, joint, log_time, options, record, sample, topic_count, write_sample_bag};
 
 struct Compare<'a> {
     reader: &'a BagReader,
@@ -289,7 +287,7 @@ fn a_killed_recording_has_lost_half_a_second_at_most() {
     assert!(matches!(error, OpenBagError::Truncated { .. }), "{error}");
     assert!(error.to_string().contains("ferntast bag repair"), "{error}");
 
-    let report = ferntast_bus::mcap::repair(&path, None).unwrap();
+    let report = ferntast_bag::repair(&path, None).unwrap();
     assert!(
         (950 * topic_count() as u64..1000 * topic_count() as u64).contains(&report.messages),
         "{}",

@@ -156,7 +156,7 @@ impl BagReader {
     }
 
     /// The messages of a topic whose type is what `M` is in ROS 2.
-    pub(super) fn typed_raw<M: Message>(
+    pub fn typed_raw<M: Message>(
         &self,
         topic: &str,
         from: Time,

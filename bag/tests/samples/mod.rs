@@ -4,7 +4,7 @@
 
 use std::{any::Any, error::Error, path::Path};
 
-use ferntast_bus::mcap::{BagOptions, BagSummary, BagWriter};
+use ferntast_bag::{BagOptions, BagSummary, BagWriter};
 use ferntast_msgs::{
     Message, Text, Time,
     sample::{

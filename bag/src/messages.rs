@@ -71,10 +71,7 @@ impl RawMessages {
     }
 
     /// The next message if it was logged before `end`.
-    pub(super) fn next_before(
-        &mut self,
-        end: Time,
-    ) -> Result<Option<RawMessage>, ReadMessageError> {
+    pub fn next_before(&mut self, end: Time) -> Result<Option<RawMessage>, ReadMessageError> {
         loop {
             match self.cursor.peek()? {
                 Some(log_time) if time(log_time) < end => {}

@@ -283,7 +283,7 @@ mod tests {
     use mcap::MessageStream;
 
     use super::*;
-    use crate::mcap::sink::tests::SmallDisk;
+    use crate::sink::tests::SmallDisk;
 
     const SECOND: u64 = 1_000_000_000;
 

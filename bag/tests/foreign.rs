@@ -5,7 +5,7 @@
 
 use std::{collections::BTreeMap, fs, io::Cursor, path::Path};
 
-use ferntast_bus::mcap::{BagReader, OpenBagError, RepairError, SelectTopicError, info, repair};
+use ferntast_bag::{BagReader, OpenBagError, RepairError, SelectTopicError, info, repair};
 use ferntast_msgs::{Time, sample::JointSample};
 use mcap::{Compression, WriteOptions, records::MessageHeader};
 

@@ -2,18 +2,15 @@
 
 #![allow(clippy::unwrap_used)] // A test may.
 
-mod mcap_samples;
+mod samples;
 
 use std::{fs, path::Path, sync::LazyLock};
 
-use ferntast_bus::{
-    Depth,
-    mcap::{BagReader, McapBus, info, repair},
-};
-use ferntast_msgs::{Time, sample::JointSample, topics::FOLLOWER_MEASURED_JS};
+use ferntast_bag::{BagReader, info, repair};
+use ferntast_msgs::sample::JointSample;
 use mcap::records::op;
-use mcap_samples::write_sample_bag;
 use proptest::prelude::*;
+use samples::write_sample_bag;
 
 static RECORDING: LazyLock<(Vec<u8>, String)> = LazyLock::new(|| {
     let directory = tempfile::tempdir().unwrap();
@@ -35,11 +32,6 @@ fn use_it(path: &Path, output: &Path) -> (usize, Option<u64>) {
             let _ = messages.count();
         }
         let _ = (reader.bounds(), reader.metadata());
-    }
-    if let Ok(bus) = McapBus::open(path)
-        && let Ok(mut subscriber) = bus.subscriber(FOLLOWER_MEASURED_JS, Depth::Queue(4))
-    {
-        while subscriber.next(Time::from_nanos(i64::MAX)).is_some() {}
     }
     let _ = info(path);
     let repaired = repair(path, Some(output)).ok();
