@@ -9,10 +9,10 @@ use mcap::{
 };
 
 /// Opcode and length in front of every record \[bytes\].
-pub(super) const FRAME: usize = 9;
+pub(crate) const FRAME: usize = 9;
 
 /// Channel, sequence, log time and publish time in front of a message's data \[bytes\].
-pub(super) const MESSAGE_HEADER: usize = 22;
+pub(crate) const MESSAGE_HEADER: usize = 22;
 
 /// The longest record and the largest chunk that is read \[bytes\]: what
 /// garbage may claim must not exhaust the memory. rosbag2's chunks have less
@@ -21,21 +21,21 @@ const MAX_RECORD: usize = 256 << 20;
 
 /// A part of a file's data section.
 #[derive(Clone, Debug)]
-pub(super) struct Block {
+pub(crate) struct Block {
     /// Where it begins \[byte\].
-    pub(super) offset: u64,
+    pub(crate) offset: u64,
     /// How long it is \[bytes\].
-    pub(super) length: u64,
-    pub(super) kind: BlockKind,
+    pub(crate) length: u64,
+    pub(crate) kind: BlockKind,
     /// Log time of its first and last message, as the file says \[ns\].
-    pub(super) start: u64,
-    pub(super) end: u64,
+    pub(crate) start: u64,
+    pub(crate) end: u64,
     /// The channels that have messages in it; `None` where unknown.
-    pub(super) channels: Option<BTreeSet<u16>>,
+    pub(crate) channels: Option<BTreeSet<u16>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum BlockKind {
+pub(crate) enum BlockKind {
     /// A whole chunk.
     Chunk,
     /// A chunk at the end of a file that was cut off.
@@ -47,17 +47,17 @@ pub(super) enum BlockKind {
 /// The messages of a block in the order of their log time; those of the same
 /// log time in the order of the file.
 #[derive(Debug, Default)]
-pub(super) struct DecodedBlock {
+pub(crate) struct DecodedBlock {
     /// Where it begins in its file \[byte\].
     offset: u64,
     bytes: Vec<u8>,
-    pub(super) entries: Vec<Entry>,
+    pub(crate) entries: Vec<Entry>,
 }
 
 /// One message of a decoded block.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
-    pub(super) header: MessageHeader,
+pub(crate) struct Entry {
+    pub(crate) header: MessageHeader,
     start: usize,
     end: usize,
 }
@@ -65,17 +65,17 @@ pub(super) struct Entry {
 impl DecodedBlock {
     /// Where the message stands in its file: ascending in the order in which
     /// messages were written.
-    pub(super) fn place(&self, entry: &Entry) -> (u64, usize) {
+    pub(crate) fn place(&self, entry: &Entry) -> (u64, usize) {
         (self.offset, entry.start)
     }
 
     /// The message's CDR.
-    pub(super) fn data(&self, entry: &Entry) -> &[u8] {
+    pub(crate) fn data(&self, entry: &Entry) -> &[u8] {
         self.bytes.get(entry.start..entry.end).unwrap_or_default()
     }
 
     /// Memory that it takes \[bytes\].
-    pub(super) fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.bytes.len() + self.entries.len() * size_of::<Entry>()
     }
 
@@ -101,21 +101,21 @@ impl DecodedBlock {
 
 /// What is wrong with a part of a file.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     /// Where \[byte\].
-    pub(super) offset: u64,
-    pub(super) reason: String,
+    pub(crate) offset: u64,
+    pub(crate) reason: String,
 }
 
 /// Why a block gives no messages.
 #[derive(Debug)]
-pub(super) enum BlockError {
+pub(crate) enum BlockError {
     Io(io::Error),
     Fault(Fault),
 }
 
 /// Reads `length` bytes at `offset`.
-pub(super) fn read_at(file: &File, offset: u64, length: u64) -> Result<Vec<u8>, BlockError> {
+pub(crate) fn read_at(file: &File, offset: u64, length: u64) -> Result<Vec<u8>, BlockError> {
     let fault = |reason: String| BlockError::Fault(Fault { offset, reason });
     let length = match usize::try_from(length) {
         Ok(length) if length <= MAX_RECORD => length,
@@ -137,7 +137,7 @@ pub(super) fn read_at(file: &File, offset: u64, length: u64) -> Result<Vec<u8>, 
 
 /// The messages of `block`. Schemas and channels that stand in it go to
 /// `definitions`. Of a [`BlockKind::CutChunk`] what is left of it.
-pub(super) fn decode(
+pub(crate) fn decode(
     file: &File,
     block: &Block,
     definitions: &mut Vec<Record<'static>>,
@@ -183,7 +183,7 @@ pub(super) fn decode(
 
 /// Hands opcode and content of every record in `bytes` to `each`, and in place
 /// of a chunk the records in it; `check` compares its checksum first.
-pub(super) fn for_each_record(
+pub(crate) fn for_each_record(
     bytes: &[u8],
     check: bool,
     mut each: impl FnMut(u8, &[u8]) -> Result<(), String>,
@@ -210,13 +210,13 @@ pub(super) fn for_each_record(
 }
 
 /// Opcode and length of the record at the front of `bytes`.
-pub(super) fn frame(bytes: &[u8]) -> Option<(u8, u64)> {
+pub(crate) fn frame(bytes: &[u8]) -> Option<(u8, u64)> {
     let (opcode, rest) = bytes.split_first()?;
     Some((*opcode, u64::from_le_bytes(*rest.first_chunk()?)))
 }
 
 /// The header in a message record's content; `None` when that is too short.
-pub(super) fn message_header(body: &[u8]) -> Option<MessageHeader> {
+pub(crate) fn message_header(body: &[u8]) -> Option<MessageHeader> {
     match mcap::parse_record(op::MESSAGE, body) {
         Ok(Record::Message { header, .. }) => Some(header),
         _ => None,
@@ -225,7 +225,7 @@ pub(super) fn message_header(body: &[u8]) -> Option<MessageHeader> {
 
 /// The record with that content. Records are parsed only where they are
 /// wanted: the library's parser panics at an attachment that is too short.
-pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
+pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
     mcap::parse_record(opcode, body).map_err(|error| describe(&error))
 }
 

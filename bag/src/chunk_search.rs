@@ -17,7 +17,7 @@ const WINDOW: usize = 1 << 20;
 
 /// Where the next chunk begins at `from` or later, in a file of `length` bytes. What a
 /// chunk says of itself fits together in a way that chance does not give.
-pub(super) fn next_chunk(file: &File, mut from: u64, length: u64) -> io::Result<Option<u64>> {
+pub(crate) fn next_chunk(file: &File, mut from: u64, length: u64) -> io::Result<Option<u64>> {
     let mut window = vec![0; WINDOW];
     while from < length {
         let wanted = usize::try_from(length - from).map_or(WINDOW, |left| left.min(WINDOW));

@@ -19,7 +19,7 @@ use super::{
 
 /// Copies all readable messages into a new file at `part`, which is to be
 /// named `target`.
-pub(super) fn copy(
+pub(crate) fn copy(
     layout: &Layout,
     target: &Path,
     part: &Path,
@@ -132,7 +132,7 @@ fn add_topic(topics: &mut Vec<TopicEntry>, topic: TopicEntry) {
 }
 
 /// What two files say together.
-pub(super) fn join(mut first: BagMetadata, second: BagMetadata) -> BagMetadata {
+pub(crate) fn join(mut first: BagMetadata, second: BagMetadata) -> BagMetadata {
     first.files.extend(second.files);
     for topic in second.topics {
         add_topic(&mut first.topics, topic);

@@ -21,13 +21,13 @@ const MAX_OVERLAP: usize = 1 << 30;
 
 /// One file, shared by all that read it.
 #[derive(Debug)]
-pub(super) struct SharedFile {
-    pub(super) layout: Layout,
+pub(crate) struct SharedFile {
+    pub(crate) layout: Layout,
     cache: Mutex<VecDeque<(usize, Arc<DecodedBlock>)>>,
 }
 
 impl SharedFile {
-    pub(super) fn new(layout: Layout) -> SharedFile {
+    pub(crate) fn new(layout: Layout) -> SharedFile {
         SharedFile {
             layout,
             cache: Mutex::new(VecDeque::with_capacity(CACHED_BLOCKS)),
@@ -35,7 +35,7 @@ impl SharedFile {
     }
 
     /// The block of that index, unpacked.
-    pub(super) fn load(&self, index: usize) -> Result<Arc<DecodedBlock>, ReadMessageError> {
+    pub(crate) fn load(&self, index: usize) -> Result<Arc<DecodedBlock>, ReadMessageError> {
         // A poisoned lock only says that another reader panicked; the cache
         // holds whole blocks at any time.
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
@@ -73,11 +73,11 @@ impl SharedFile {
 
 /// A message where it stands.
 #[derive(Clone, Debug)]
-pub(super) struct Found {
+pub(crate) struct Found {
     /// Which of the files.
-    pub(super) file: usize,
-    pub(super) block: Arc<DecodedBlock>,
-    pub(super) entry: Entry,
+    pub(crate) file: usize,
+    pub(crate) block: Arc<DecodedBlock>,
+    pub(crate) entry: Entry,
 }
 
 /// A block of a file.
@@ -106,7 +106,7 @@ impl Active {
 
 /// Goes through several files at once.
 #[derive(Debug)]
-pub(super) struct Cursor {
+pub(crate) struct Cursor {
     files: Vec<Arc<SharedFile>>,
     /// The channels wanted of each file; `None` for all.
     channels: Option<Vec<BTreeSet<u16>>>,
@@ -120,7 +120,7 @@ pub(super) struct Cursor {
 impl Cursor {
     /// `channels` are those wanted of each file, `None` for all; messages
     /// logged before `from` \[ns\] are passed over.
-    pub(super) fn new(
+    pub(crate) fn new(
         files: &[Arc<SharedFile>],
         channels: Option<Vec<BTreeSet<u16>>>,
         from: u64,
@@ -158,13 +158,13 @@ impl Cursor {
     }
 
     /// Log time of the next message \[ns\]; `None` at the end.
-    pub(super) fn peek(&mut self) -> Result<Option<u64>, ReadMessageError> {
+    pub(crate) fn peek(&mut self) -> Result<Option<u64>, ReadMessageError> {
         Ok(self.first()?.map(|(log_time, _)| log_time))
     }
 
     /// Takes the next message; `None` at the end. After an error reading goes
     /// on behind the fault.
-    pub(super) fn take(&mut self) -> Result<Option<Found>, ReadMessageError> {
+    pub(crate) fn take(&mut self) -> Result<Option<Found>, ReadMessageError> {
         let Some((_, place)) = self.first()? else {
             return Ok(None);
         };

@@ -19,7 +19,7 @@ const SPACING: u64 = 128;
 
 /// The records of all schemas and channels so far. A clone is another handle.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Definitions(Arc<Mutex<State>>);
+pub(crate) struct Definitions(Arc<Mutex<State>>);
 
 #[derive(Debug, Default)]
 struct State {
@@ -39,7 +39,7 @@ impl Definitions {
     }
 
     /// A copy for a file of `length` bytes that ends behind a chunk, if one is due.
-    pub(super) fn copy_due(&self, length: u64) -> Option<Vec<u8>> {
+    pub(crate) fn copy_due(&self, length: u64) -> Option<Vec<u8>> {
         let mut state = self.lock();
         let is_new = state.records.len() > state.copied;
         if state.ended || state.records.is_empty() || !(is_new || length >= state.due) {
@@ -51,7 +51,7 @@ impl Definitions {
     }
 
     /// No further copy: the summary comes next.
-    pub(super) fn end(&self) {
+    pub(crate) fn end(&self) {
         self.lock().ended = true;
     }
 }
@@ -79,13 +79,13 @@ impl Seek for Definitions {
 }
 
 /// Writes the records of schemas and channels into [`Definitions`].
-pub(super) struct DefinitionWriter {
+pub(crate) struct DefinitionWriter {
     writer: mcap::Writer<Definitions>,
 }
 
 impl DefinitionWriter {
     /// A writer into `definitions`, which are empty.
-    pub(super) fn new(definitions: Definitions) -> Result<DefinitionWriter, McapError> {
+    pub(crate) fn new(definitions: Definitions) -> Result<DefinitionWriter, McapError> {
         let writer = mcap::WriteOptions::new()
             .use_chunks(false)
             .create(definitions.clone())?;
@@ -95,7 +95,7 @@ impl DefinitionWriter {
     }
 
     /// The writer: of use are its schemas and channels only.
-    pub(super) fn writer(&mut self) -> &mut mcap::Writer<Definitions> {
+    pub(crate) fn writer(&mut self) -> &mut mcap::Writer<Definitions> {
         &mut self.writer
     }
 }

@@ -11,7 +11,7 @@ use super::{
 };
 
 /// The MCAP files of the recording at `path`, in order.
-pub(super) fn bag_files(path: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
+pub(crate) fn bag_files(path: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
     if !fs::metadata(path)
         .map_err(|error| io_error(path, &error))?
         .is_dir()
@@ -36,7 +36,7 @@ pub(super) fn bag_files(path: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
 }
 
 /// The same for repair: what a broken `metadata.yaml` says does not count.
-pub(super) fn bag_files_anyhow(directory: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
+pub(crate) fn bag_files_anyhow(directory: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
     match bag_files(directory) {
         Err(OpenBagError::Metadata { .. }) => found_files(directory),
         files => files,
@@ -66,7 +66,7 @@ fn found_files(directory: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
 
 /// Whether files are those of one recording by their names: `NAME_0.mcap`, `NAME_1.mcap`, …, or a
 /// single file of any name.
-pub(super) fn are_one_recording(files: &[PathBuf]) -> bool {
+pub(crate) fn are_one_recording(files: &[PathBuf]) -> bool {
     let name = |file: &PathBuf| {
         let stem = file.file_stem()?.to_str()?;
         let (name, number) = stem.rsplit_once('_')?;
@@ -87,7 +87,7 @@ fn is_number(text: &str) -> bool {
 
 /// The rosbag2 directory that a file stands in: one with `metadata.yaml`, or
 /// of the name that the file has in front of its number.
-pub(super) fn bag_directory(file: &Path) -> Option<PathBuf> {
+pub(crate) fn bag_directory(file: &Path) -> Option<PathBuf> {
     let directory = match file.parent()? {
         // A bare file name.
         parent if parent.as_os_str().is_empty() => Path::new("."),

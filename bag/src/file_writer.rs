@@ -28,7 +28,7 @@ const LIBRARY: &str = "ferntast";
 const MESSAGE_OVERHEAD: u64 = 31;
 
 /// An MCAP file with profile `ros2`.
-pub(super) struct FileWriter<S: Storage = File> {
+pub(crate) struct FileWriter<S: Storage = File> {
     /// `None` once closed.
     writer: Option<mcap::Writer<Sink<S>>>,
     definitions: Definitions,
@@ -49,7 +49,7 @@ pub(super) struct FileWriter<S: Storage = File> {
 
 impl FileWriter<File> {
     /// A new file; an existing one is refused.
-    pub(super) fn create(path: &Path, options: &BagOptions) -> io::Result<FileWriter<File>> {
+    pub(crate) fn create(path: &Path, options: &BagOptions) -> io::Result<FileWriter<File>> {
         let file = File::options().write(true).create_new(true).open(path)?;
         FileWriter::over(file, path, options)
     }
@@ -57,7 +57,7 @@ impl FileWriter<File> {
 
 impl<S: Storage> FileWriter<S> {
     /// A file over any store.
-    pub(super) fn over(store: S, path: &Path, options: &BagOptions) -> io::Result<FileWriter<S>> {
+    pub(crate) fn over(store: S, path: &Path, options: &BagOptions) -> io::Result<FileWriter<S>> {
         let definitions = Definitions::default();
         let definition_writer = DefinitionWriter::new(definitions.clone()).map_err(into_io)?;
         let sink = Sink::new(store, definitions.clone());
@@ -100,22 +100,22 @@ impl<S: Storage> FileWriter<S> {
         Ok(file)
     }
 
-    pub(super) fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Bytes in the file.
-    pub(super) fn stored(&self) -> u64 {
+    pub(crate) fn stored(&self) -> u64 {
         self.stored.bytes()
     }
 
     /// Messages by channel.
-    pub(super) fn counts(&self) -> &BTreeMap<u16, u64> {
+    pub(crate) fn counts(&self) -> &BTreeMap<u16, u64> {
         &self.counts
     }
 
     /// What `metadata.yaml` says of this file.
-    pub(super) fn entry(&self) -> FileEntry {
+    pub(crate) fn entry(&self) -> FileEntry {
         FileEntry {
             name: self
                 .path
@@ -128,7 +128,7 @@ impl<S: Storage> FileWriter<S> {
     }
 
     /// Registers a schema; the same content gives the same number.
-    pub(super) fn schema(
+    pub(crate) fn schema(
         &mut self,
         name: &str,
         encoding: &str,
@@ -141,7 +141,7 @@ impl<S: Storage> FileWriter<S> {
     }
 
     /// Registers a channel; the same content gives the same number.
-    pub(super) fn channel(
+    pub(crate) fn channel(
         &mut self,
         schema: u16,
         topic: &str,
@@ -156,12 +156,12 @@ impl<S: Storage> FileWriter<S> {
     }
 
     /// Writes a metadata record; closes the chunk.
-    pub(super) fn metadata(&mut self, metadata: &Metadata) -> Result<(), WriteBagError> {
+    pub(crate) fn metadata(&mut self, metadata: &Metadata) -> Result<(), WriteBagError> {
         self.with(|writer| writer.write_metadata(metadata))
     }
 
     /// Writes a message and, when it is time, closes the chunk.
-    pub(super) fn message(
+    pub(crate) fn message(
         &mut self,
         header: &MessageHeader,
         data: &[u8],
@@ -204,14 +204,14 @@ impl<S: Storage> FileWriter<S> {
     }
 
     /// Closes the chunk and hands it to the system.
-    pub(super) fn flush(&mut self) -> Result<(), WriteBagError> {
+    pub(crate) fn flush(&mut self) -> Result<(), WriteBagError> {
         self.pending = 0;
         self.pending_since = None;
         self.with(|writer| writer.flush())
     }
 
     /// Writes the summary and closes the file. Bytes in the file.
-    pub(super) fn finish(&mut self) -> Result<u64, WriteBagError> {
+    pub(crate) fn finish(&mut self) -> Result<u64, WriteBagError> {
         // With the chunks on disk first, a summary that finds no space leaves
         // a file that can be repaired.
         self.definitions.end();

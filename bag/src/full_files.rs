@@ -12,7 +12,7 @@ use super::{
 
 /// Files that are full: closed, but for the last one perhaps.
 #[derive(Default)]
-pub(super) struct FullFiles {
+pub(crate) struct FullFiles {
     files: Vec<FileEntry>,
     /// Messages by topic.
     counts: BTreeMap<String, u64>,
@@ -24,12 +24,12 @@ pub(super) struct FullFiles {
 
 impl FullFiles {
     /// How many there are.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.files.len()
     }
 
     /// Closes `file`, of which `metadata` tells.
-    pub(super) fn close(&mut self, mut file: FileWriter, metadata: BagMetadata) {
+    pub(crate) fn close(&mut self, mut file: FileWriter, metadata: BagMetadata) {
         // The one before has had the time of a whole file.
         self.join();
         self.files.extend(metadata.files.iter().cloned());
@@ -64,7 +64,7 @@ impl FullFiles {
     }
 
     /// Waits for the last one. Gives the files, messages by topic, and their bytes.
-    pub(super) fn end(
+    pub(crate) fn end(
         &mut self,
     ) -> (
         Vec<FileEntry>,

@@ -185,7 +185,7 @@ pub fn info(path: &Path) -> Result<BagInfo, InfoError> {
 }
 
 /// The places where a file is known to be broken.
-pub(super) fn breaks_of(layout: &Layout) -> Vec<Break> {
+pub(crate) fn breaks_of(layout: &Layout) -> Vec<Break> {
     layout
         .faults
         .iter()

@@ -22,30 +22,30 @@ use super::{
 const FOOTER: u64 = FRAME as u64 + 20;
 
 /// Footer and magic number at a file's end \[bytes\].
-pub(super) const TAIL: u64 = FOOTER + 8;
+pub(crate) const TAIL: u64 = FOOTER + 8;
 
 /// An open file, its channels, and where its messages are.
 #[derive(Debug)]
-pub(super) struct Layout {
-    pub(super) file: File,
-    pub(super) path: PathBuf,
+pub(crate) struct Layout {
+    pub(crate) file: File,
+    pub(crate) path: PathBuf,
     /// Size of the file \[bytes\].
-    pub(super) length: u64,
-    pub(super) schemas: BTreeMap<u16, Schema<'static>>,
-    pub(super) channels: BTreeMap<u16, Channel>,
+    pub(crate) length: u64,
+    pub(crate) schemas: BTreeMap<u16, Schema<'static>>,
+    pub(crate) channels: BTreeMap<u16, Channel>,
     /// In the order of the file.
-    pub(super) blocks: Vec<Block>,
-    pub(super) statistics: Option<Statistics>,
-    pub(super) metadata: Vec<Metadata>,
+    pub(crate) blocks: Vec<Block>,
+    pub(crate) statistics: Option<Statistics>,
+    pub(crate) metadata: Vec<Metadata>,
     /// Whether the file has its end.
-    pub(super) closed: bool,
+    pub(crate) closed: bool,
     /// What is broken, in the order of the file.
-    pub(super) faults: Vec<Fault>,
+    pub(crate) faults: Vec<Fault>,
 }
 
 impl Layout {
     /// Checksum of the bytes from `start` to `end`.
-    pub(super) fn checksum(&self, start: u64, end: u64) -> Result<u32, OpenBagError> {
+    pub(crate) fn checksum(&self, start: u64, end: u64) -> Result<u32, OpenBagError> {
         const PIECE: u64 = 1 << 20;
         let mut hasher = crc32fast::Hasher::new();
         for offset in (start..end).step_by(PIECE as usize) {
@@ -55,7 +55,7 @@ impl Layout {
     }
 
     /// Opens a file that begins as an MCAP file.
-    pub(super) fn begin(path: &Path) -> Result<Layout, OpenBagError> {
+    pub(crate) fn begin(path: &Path) -> Result<Layout, OpenBagError> {
         let owned = || path.to_owned();
         let io_error = |error: io::Error| match error.kind() {
             io::ErrorKind::NotFound => OpenBagError::Missing { path: owned() },
@@ -89,7 +89,7 @@ impl Layout {
     }
 
     /// The footer; `None` when the file does not end as one that was closed.
-    pub(super) fn footer(&self) -> Result<Option<Footer>, OpenBagError> {
+    pub(crate) fn footer(&self) -> Result<Option<Footer>, OpenBagError> {
         let Some(start) = self.length.checked_sub(TAIL).filter(|&start| start >= 8) else {
             return Ok(None);
         };
@@ -106,7 +106,7 @@ impl Layout {
     }
 
     /// Takes in what the summary that `footer` tells of says.
-    pub(super) fn read_summary(&mut self, footer: &Footer) -> Result<(), OpenBagError> {
+    pub(crate) fn read_summary(&mut self, footer: &Footer) -> Result<(), OpenBagError> {
         let end = self.length - TAIL;
         let offset = footer.summary_start;
         let fault = |reason: String| Fault { offset, reason };
@@ -162,7 +162,7 @@ impl Layout {
     }
 
     /// Whether the summary says where all messages are and what they are.
-    pub(super) fn is_indexed(&self) -> bool {
+    pub(crate) fn is_indexed(&self) -> bool {
         let Some(statistics) = &self.statistics else {
             return false;
         };
@@ -175,7 +175,7 @@ impl Layout {
     }
 
     /// Takes a schema or channel; a repetition must be the same.
-    pub(super) fn define(&mut self, record: Record<'_>) -> Result<(), String> {
+    pub(crate) fn define(&mut self, record: Record<'_>) -> Result<(), String> {
         match record {
             Record::Schema { header, .. } if header.id == 0 => {
                 Err("a schema has the number 0".to_owned())
@@ -199,7 +199,7 @@ impl Layout {
     }
 
     /// Reads bytes of the file.
-    pub(super) fn bytes(&self, offset: u64, length: u64) -> Result<Vec<u8>, OpenBagError> {
+    pub(crate) fn bytes(&self, offset: u64, length: u64) -> Result<Vec<u8>, OpenBagError> {
         read_at(&self.file, offset, length).map_err(|error| self.error(error))
     }
 
@@ -210,14 +210,14 @@ impl Layout {
         }
     }
 
-    pub(super) fn io_error(&self, error: &io::Error) -> OpenBagError {
+    pub(crate) fn io_error(&self, error: &io::Error) -> OpenBagError {
         OpenBagError::Io {
             path: self.path.clone(),
             reason: error.to_string(),
         }
     }
 
-    pub(super) fn damaged(&self, fault: Fault) -> OpenBagError {
+    pub(crate) fn damaged(&self, fault: Fault) -> OpenBagError {
         OpenBagError::Damaged {
             path: self.path.clone(),
             offset: fault.offset,
@@ -257,7 +257,7 @@ fn take_once<T: PartialEq>(
 }
 
 /// The metadata record at `offset`; `length` counts its frame.
-pub(super) fn read_metadata(file: &File, offset: u64, length: u64) -> Result<Metadata, BlockError> {
+pub(crate) fn read_metadata(file: &File, offset: u64, length: u64) -> Result<Metadata, BlockError> {
     let bytes = read_at(file, offset, length)?;
     match (frame(&bytes), bytes.get(FRAME..)) {
         (Some((op::METADATA, _)), Some(body)) => match parse(op::METADATA, body) {

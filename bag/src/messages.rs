@@ -60,7 +60,7 @@ pub struct RawMessages {
 
 impl RawMessages {
     /// `channels` says by file the topic of each channel.
-    pub(super) fn new(cursor: Cursor, channels: Vec<BTreeMap<u16, Arc<BagTopic>>>) -> RawMessages {
+    pub(crate) fn new(cursor: Cursor, channels: Vec<BTreeMap<u16, Arc<BagTopic>>>) -> RawMessages {
         RawMessages { cursor, channels }
     }
 
@@ -138,7 +138,7 @@ pub struct Messages<M: Message> {
 }
 
 impl<M: Message> Messages<M> {
-    pub(super) fn new(raw: RawMessages) -> Messages<M> {
+    pub(crate) fn new(raw: RawMessages) -> Messages<M> {
         Messages {
             raw,
             message: PhantomData,

@@ -10,46 +10,46 @@ use serde::Deserialize;
 use super::qos::{QosProfile, indented, to_yaml};
 
 /// The file's name in a rosbag2 directory.
-pub(super) const METADATA_FILE: &str = "metadata.yaml";
+pub(crate) const METADATA_FILE: &str = "metadata.yaml";
 
 /// rosbag2's format of the metadata that is written (Jazzy, Kilted).
 const VERSION: u32 = 9;
 
 /// The newest format that is read.
-pub(super) const NEWEST_VERSION: u32 = 9;
+pub(crate) const NEWEST_VERSION: u32 = 9;
 
 /// What `metadata.yaml` says of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct BagMetadata {
-    pub(super) files: Vec<FileEntry>,
-    pub(super) topics: Vec<TopicEntry>,
-    pub(super) custom_data: BTreeMap<String, String>,
-    pub(super) ros_distro: String,
+pub(crate) struct BagMetadata {
+    pub(crate) files: Vec<FileEntry>,
+    pub(crate) topics: Vec<TopicEntry>,
+    pub(crate) custom_data: BTreeMap<String, String>,
+    pub(crate) ros_distro: String,
 }
 
 /// One MCAP file.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct FileEntry {
+pub(crate) struct FileEntry {
     /// Name, relative to the directory.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// First and last log time; `None` without a message \[ns\].
-    pub(super) bounds: Option<(u64, u64)>,
-    pub(super) messages: u64,
+    pub(crate) bounds: Option<(u64, u64)>,
+    pub(crate) messages: u64,
 }
 
 /// One topic.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TopicEntry {
-    pub(super) name: String,
-    pub(super) schema_name: String,
-    pub(super) message_encoding: String,
-    pub(super) qos: Vec<QosProfile>,
-    pub(super) type_hash: String,
-    pub(super) messages: u64,
+pub(crate) struct TopicEntry {
+    pub(crate) name: String,
+    pub(crate) schema_name: String,
+    pub(crate) message_encoding: String,
+    pub(crate) qos: Vec<QosProfile>,
+    pub(crate) type_hash: String,
+    pub(crate) messages: u64,
 }
 
 /// First and last of several bounds.
-pub(super) fn join_bounds(
+pub(crate) fn join_bounds(
     bounds: impl IntoIterator<Item = Option<(u64, u64)>>,
 ) -> Option<(u64, u64)> {
     bounds
@@ -60,13 +60,13 @@ pub(super) fn join_bounds(
 
 impl BagMetadata {
     /// The content of `metadata.yaml`.
-    pub(super) fn to_file(&self) -> String {
+    pub(crate) fn to_file(&self) -> String {
         let content = indented(&self.to_yaml(), 2);
         format!("rosbag2_bagfile_information:\n{content}")
     }
 
     /// The same without the outermost key, as in the MCAP record `rosbag2`.
-    pub(super) fn to_yaml(&self) -> String {
+    pub(crate) fn to_yaml(&self) -> String {
         let messages: u64 = self.files.iter().map(|file| file.messages).sum();
         let (start, duration) = times(join_bounds(self.files.iter().map(|file| file.bounds)));
         let topics = self.topics.iter().map(TopicEntry::to_yaml).collect();
@@ -155,7 +155,7 @@ fn quoted(text: &str) -> String {
 
 /// What a reader needs of `metadata.yaml`.
 #[derive(Debug, Deserialize)]
-pub(super) struct FileList {
+pub(crate) struct FileList {
     rosbag2_bagfile_information: Information,
 }
 
@@ -175,7 +175,7 @@ impl FileList {
     ///
     /// What is wrong with the text, or what it asks for that is not
     /// supported.
-    pub(super) fn parse(text: &str) -> Result<Vec<String>, String> {
+    pub(crate) fn parse(text: &str) -> Result<Vec<String>, String> {
         let list: FileList = serde_saphyr::from_str(text).map_err(|error| error.to_string())?;
         let information = list.rosbag2_bagfile_information;
         if information.version > NEWEST_VERSION {

@@ -19,7 +19,7 @@ const DATA_END: u64 = FRAME as u64 + 4;
 
 impl Layout {
     /// Opens a file that is whole.
-    pub(super) fn open(path: &Path) -> Result<Layout, OpenBagError> {
+    pub(crate) fn open(path: &Path) -> Result<Layout, OpenBagError> {
         let mut layout = Layout::begin(path)?;
         let truncated = || OpenBagError::Truncated {
             path: path.to_owned(),
@@ -42,7 +42,7 @@ impl Layout {
     }
 
     /// Opens a file as far as it can be read; reads all of it once.
-    pub(super) fn salvage(path: &Path) -> Result<Layout, OpenBagError> {
+    pub(crate) fn salvage(path: &Path) -> Result<Layout, OpenBagError> {
         let mut layout = match Layout::open(path) {
             Err(OpenBagError::Truncated { .. } | OpenBagError::Damaged { .. }) => {
                 return scan(Layout::begin(path)?);

@@ -73,7 +73,7 @@ impl QosProfile {
 }
 
 /// The profiles as YAML.
-pub(super) fn to_yaml(profiles: &[QosProfile]) -> String {
+pub(crate) fn to_yaml(profiles: &[QosProfile]) -> String {
     let profile = |own: &QosProfile| {
         let QosProfile {
             history,
@@ -93,7 +93,7 @@ pub(super) fn to_yaml(profiles: &[QosProfile]) -> String {
 }
 
 /// Every line behind `indent` spaces.
-pub(super) fn indented(text: &str, indent: usize) -> String {
+pub(crate) fn indented(text: &str, indent: usize) -> String {
     text.lines()
         .map(|line| format!("{:indent$}{line}\n", ""))
         .collect()

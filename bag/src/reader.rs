@@ -45,7 +45,7 @@ impl BagReader {
         Ok(BagReader::over(path, layouts?))
     }
 
-    pub(super) fn over(path: &Path, layouts: Vec<Layout>) -> BagReader {
+    pub(crate) fn over(path: &Path, layouts: Vec<Layout>) -> BagReader {
         let mut topics: Vec<Arc<BagTopic>> = Vec::new();
         let channels = layouts
             .iter()

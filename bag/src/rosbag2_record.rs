@@ -8,7 +8,7 @@ use mcap::records::Metadata;
 use super::{error::FinishBagError, file_writer::FileWriter, metadata::BagMetadata};
 
 /// Writes what `metadata` says of the file into it, and closes it; gives its bytes.
-pub(super) fn finish_file(
+pub(crate) fn finish_file(
     file: &mut FileWriter,
     metadata: &BagMetadata,
 ) -> Result<u64, FinishBagError> {
@@ -21,7 +21,7 @@ pub(super) fn finish_file(
 }
 
 /// rosbag2's own record inside the MCAP file.
-pub(super) fn rosbag2_record(metadata: &BagMetadata) -> Metadata {
+pub(crate) fn rosbag2_record(metadata: &BagMetadata) -> Metadata {
     Metadata {
         name: ROSBAG2_RECORD.to_owned(),
         metadata: BTreeMap::from([("serialized_metadata".to_owned(), metadata.to_yaml())]),
@@ -29,10 +29,10 @@ pub(super) fn rosbag2_record(metadata: &BagMetadata) -> Metadata {
 }
 
 /// The name of that record.
-pub(super) const ROSBAG2_RECORD: &str = "rosbag2";
+pub(crate) const ROSBAG2_RECORD: &str = "rosbag2";
 
 /// Metadata records in one map, `name.key`.
-pub(super) fn custom_data(
+pub(crate) fn custom_data(
     records: &BTreeMap<String, BTreeMap<String, String>>,
 ) -> BTreeMap<String, String> {
     records

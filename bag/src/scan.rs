@@ -27,7 +27,7 @@ const PLAIN_BLOCK: u64 = 1 << 20;
 /// broken is left out, and what is left of a last one that was cut is kept.
 /// Schemas and channels in chunks, which have a checksum, come before those
 /// outside.
-pub(super) fn scan(mut layout: Layout) -> Result<Layout, OpenBagError> {
+pub(crate) fn scan(mut layout: Layout) -> Result<Layout, OpenBagError> {
     let file = match layout.file.try_clone() {
         Ok(file) => file,
         Err(error) => return Err(layout.io_error(&error)),

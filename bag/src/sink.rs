@@ -17,7 +17,7 @@ use super::{
 };
 
 /// A file, as far as a recording needs one.
-pub(super) trait Storage: Write + Send {
+pub(crate) trait Storage: Write + Send {
     /// Cuts the store to `length` bytes; the next write goes to its end.
     fn cut(&mut self, length: u64) -> io::Result<()>;
     /// Brings what was written to the disk.
@@ -37,11 +37,11 @@ impl Storage for File {
 
 /// How many bytes a store holds, for whoever gave the store away.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Stored(Arc<AtomicU64>);
+pub(crate) struct Stored(Arc<AtomicU64>);
 
 impl Stored {
     /// \[bytes\]
-    pub(super) fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
 }
@@ -51,7 +51,7 @@ impl Stored {
 /// flush, and the store ends behind the last chunk that is whole. Behind a
 /// flush, where no chunk is open, copies of the definitions are put in; so the
 /// checksum of all data is counted here.
-pub(super) struct Sink<S: Storage> {
+pub(crate) struct Sink<S: Storage> {
     store: S,
     stored: Stored,
     staged: Vec<u8>,
@@ -62,7 +62,7 @@ pub(super) struct Sink<S: Storage> {
 }
 
 impl<S: Storage> Sink<S> {
-    pub(super) fn new(store: S, definitions: Definitions) -> Sink<S> {
+    pub(crate) fn new(store: S, definitions: Definitions) -> Sink<S> {
         Sink {
             store,
             stored: Stored::default(),
@@ -85,12 +85,12 @@ impl<S: Storage> Sink<S> {
     }
 
     /// Bytes that the store holds.
-    pub(super) fn stored(&self) -> Stored {
+    pub(crate) fn stored(&self) -> Stored {
         self.stored.clone()
     }
 
     /// See [`Storage::sync`].
-    pub(super) fn sync(&mut self) -> io::Result<()> {
+    pub(crate) fn sync(&mut self) -> io::Result<()> {
         self.store.sync()
     }
 }
@@ -144,7 +144,7 @@ impl<S: Storage> Seek for Sink<S> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use std::sync::{Arc, Mutex};
 
     use super::*;

@@ -24,7 +24,7 @@ pub struct BagTopic {
 }
 
 /// The topic of a channel.
-pub(super) fn topic_of(layout: &Layout, channel: u16) -> Option<BagTopic> {
+pub(crate) fn topic_of(layout: &Layout, channel: u16) -> Option<BagTopic> {
     let channel = layout.channels.get(&channel)?;
     let schema = layout.schemas.get(&channel.schema_id);
     let entry = |key: &str| channel.metadata.get(key).cloned().unwrap_or_default();
@@ -44,6 +44,6 @@ pub(super) fn topic_of(layout: &Layout, channel: u16) -> Option<BagTopic> {
 }
 
 /// MCAP's time; what does not fit is the end of all time.
-pub(super) fn time(nanos: u64) -> Time {
+pub(crate) fn time(nanos: u64) -> Time {
     Time::from_nanos(i64::try_from(nanos).unwrap_or(i64::MAX))
 }

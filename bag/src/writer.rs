@@ -25,7 +25,7 @@ use super::{
 
 /// A topic of one recording that is being written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ChannelId(pub(super) u16);
+pub struct ChannelId(pub(crate) u16);
 
 struct Channel {
     topic: TopicName,
@@ -350,7 +350,7 @@ fn cannot_begin(path: &Path, error: &WriteBagError) -> CreateBagError {
 }
 
 /// Writes `metadata.yaml` whole or not at all.
-pub(super) fn write_metadata(
+pub(crate) fn write_metadata(
     directory: &Path,
     metadata: &BagMetadata,
 ) -> Result<(), FinishBagError> {

@@ -295,6 +295,36 @@ mod tests {
     }
 
     #[test]
+    fn where_there_is_no_room_the_oldest_gives_way() {
+        let mut playout = PlayOut::new(LONGEST_BUFFER);
+        let (first, after) = (10, 10 + SLOTS as u32);
+        for sequence in first..after {
+            assert_eq!(offered(&mut playout, sequence, 0, 20), Offered::Waiting);
+        }
+        assert_eq!(offered(&mut playout, first - 1, 0, 20), Offered::Late);
+        assert_eq!(offered(&mut playout, after, 0, 20), Offered::Waiting);
+        assert_eq!(offered(&mut playout, first, 0, 20), Offered::Late);
+        assert_eq!(offered(&mut playout, first + 1, 0, 20), Offered::Replayed);
+        assert_eq!(playout.waiting(), SLOTS);
+        // All are due at once, the newest is acted on.
+        assert_eq!(taken(&mut playout, 219), None);
+        assert_eq!(taken(&mut playout, 220), Some(after));
+        assert_eq!(playout.waiting(), 0);
+    }
+
+    /// Whatever a frame's stamp: who sent one with a later stamp before sent it sooner.
+    #[test]
+    fn no_frame_is_acted_on_before_those_sent_before_it() {
+        let mut playout = PlayOut::new(0.010);
+        offered(&mut playout, 0, 0, 20);
+        assert_eq!(taken(&mut playout, 30), Some(0));
+        offered(&mut playout, 2, 31, 51);
+        offered(&mut playout, 1, 35, 51);
+        assert_eq!(taken(&mut playout, 60), None);
+        assert_eq!(taken(&mut playout, 61), Some(2));
+    }
+
+    #[test]
     fn nothing_queued_is_acted_on_after_an_outage() {
         let mut playout = PlayOut::new(0.150);
         for k in 0..20 {

@@ -11,7 +11,7 @@ use ferntast_msgs::{
 };
 use iceoryx2::prelude::{FileName, NodeBuilder, SemanticString, SignalHandlingMode, ZeroCopySend};
 use serde::{Serialize, Serializer, ser::SerializeTuple};
-use zenoh::Wait;
+use zenoh::{Wait, qos::CongestionControl};
 
 use crate::world::{Way, World, sample};
 
@@ -247,18 +247,20 @@ fn over_zenoh(world: &World) {
     payloads.push([&[0, 7], &good[2..]].concat());
     payloads.push([good.as_slice(), &[0; 4]].concat());
     let bad = payloads.len() as u64;
+    // By default Zenoh drops what comes behind a long message on a busy machine.
+    let put = |payload| {
+        let put = session.put(&key, payload);
+        put.congestion_control(CongestionControl::Block)
+    };
     for payload in payloads {
-        session.put(&key, payload).wait().unwrap();
+        put(payload).wait().unwrap();
     }
     let mut oversized_payload = vec![0, 1, 0, 0];
     encode_unbounded(&oversized(), &mut oversized_payload);
-    session.put(&key, oversized_payload).wait().unwrap();
+    put(oversized_payload).wait().unwrap();
     // An attachment that is none.
-    session
-        .put(&key, good.clone())
-        .attachment(vec![0xff_u8; 5])
-        .wait()
-        .unwrap();
+    let attachment = vec![0xff_u8; 5];
+    put(good).attachment(attachment).wait().unwrap();
     let received = reader.next().unwrap();
     assert_eq!(received.message, sample(7));
     assert_ne!(received.source, 0);
