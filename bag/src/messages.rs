@@ -71,6 +71,10 @@ impl RawMessages {
     }
 
     /// The next message if it was logged before `end`.
+    ///
+    /// # Errors
+    ///
+    /// [`ReadMessageError`]; reading goes on behind what is damaged.
     pub fn next_before(&mut self, end: Time) -> Result<Option<RawMessage>, ReadMessageError> {
         loop {
             match self.cursor.peek()? {

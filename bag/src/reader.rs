@@ -155,7 +155,11 @@ impl BagReader {
         Ok(Messages::new(self.typed_raw::<M>(topic, from)?))
     }
 
-    /// The messages of a topic whose type is what `M` is in ROS 2.
+    /// The messages of a topic whose type is what `M` is in ROS 2, as bytes; logged at `from` or later.
+    ///
+    /// # Errors
+    ///
+    /// As [`BagReader::messages`].
     pub fn typed_raw<M: Message>(
         &self,
         topic: &str,

@@ -165,7 +165,7 @@ fn folder_of(path: &Path) -> PathBuf {
 impl Experiment {
     /// The joint called `title` in one of our own recordings, no file beside it.
     #[must_use]
-    pub fn of_recording(title: &str, recording: &Path, signals: Signals, model: ModelSpec) -> Self {
+    pub fn of_joint(title: &str, recording: &Path, signals: Signals, model: ModelSpec) -> Self {
         Experiment {
             path: None,
             title: title.to_owned(),

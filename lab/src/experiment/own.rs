@@ -72,7 +72,7 @@ pub(super) fn of_recording(path: &Path) -> Result<Vec<Experiment>, ExperimentErr
             gear_ratio: Some(joint.gear_ratio),
             effects: effects(joint),
         };
-        Experiment::of_recording(name, path, signals, model)
+        Experiment::of_joint(name, path, signals, model)
     });
     Ok(experiments.collect())
 }

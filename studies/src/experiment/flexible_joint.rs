@@ -121,7 +121,7 @@ pub fn read(folder: &Path) -> Result<[Vec<Row>; 3], IdentifyError> {
         gear_ratio: None,
         effects: Vec::new(),
     };
-    let experiment = Experiment::of_recording("flexible joint", folder, signals, model);
+    let experiment = Experiment::of_joint("flexible joint", folder, signals, model);
     let dataset = recording::load(&experiment)?.dataset;
     let session = dataset.sessions.first().ok_or_else(empty)?;
     let channel = |name: &str| session.extra.get(name).ok_or_else(empty);
