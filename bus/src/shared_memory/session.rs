@@ -9,7 +9,7 @@ use iceoryx2::{
     prelude::{CallbackProgression, FileName, Path as IoxPath, SemanticString},
 };
 
-use super::Service;
+use super::{MAX_PUBLISHERS, Service};
 use crate::error::{CleanUpError, OpenError};
 
 /// Longest session name \[byte\].
@@ -51,6 +51,12 @@ pub(super) fn config(session: &str) -> Result<Config, OpenError> {
     let root = IoxPath::new(directory(session).as_bytes())
         .map_err(|error| bad_name(&format!("{error:?}")))?;
     config.global.set_root_path(&root);
+    // A subscriber looks at this many places more each time that it asks whether something
+    // came; what publishers that ended have left fills no more than this.
+    config
+        .defaults
+        .publish_subscribe
+        .subscriber_expired_connection_buffer = MAX_PUBLISHERS;
     Ok(config)
 }
 

@@ -22,18 +22,20 @@ row!(
     acts_on_channels: true,
 );
 
-/// Most steps of Newton's method, which converges from above; four or five are the rule.
+/// Most steps of Newton's method; five or six are the rule.
 const STEPS: usize = 12;
 
 /// f of f + f³ = u, u the `load`: deflection of a stiffening joint, scaled by that at
 /// which the cubic term equals the linear one.
 fn wound_up(load: f64) -> f64 {
-    // Above where it turns back nowhere.
-    let mut twist = load.abs().min(load.abs().cbrt());
+    let most = load.abs();
+    // Above where it turns back nowhere; (u + 2)/3 is the tangent of ∛u at 1.
+    let mut twist = most.min((most + 2.0) / 3.0);
     for _ in 0..STEPS {
-        let left = twist + twist.powi(3) - load.abs();
-        let next = twist - left / (1.0 + 3.0 * twist * twist);
-        if next == twist {
+        let square = twist * twist;
+        let next = twist - (twist * (1.0 + square) - most) / (1.0 + 3.0 * square);
+        // It comes down to the root; where it no longer does, only rounding is left.
+        if next.is_nan() || next >= twist {
             break;
         }
         twist = next;

@@ -47,14 +47,15 @@ fn who_claims_passivity_gives_out_no_more_than_it_took_in() {
     );
     let (arm, stiffness) = stiff_arm();
     let arms = [stopping(), arm];
-    let layers = |draw: &mut Draw| two_layer(draw, InnerLaw::default(), stiffness);
+    // Each of the four pairs of arm and law has a quarter of the cases.
     report(&failures(CASES, |seed| {
-        let arm = &arms[(seed % 2) as usize];
-        trial(arm, seed, |draw| Law::TwoLayer(layers(draw)))
-    }));
-    report(&failures(CASES, |seed| {
-        let arm = &arms[(seed % 2) as usize];
-        trial(arm, seed, |draw| Law::Auto(layers(draw).into()))
+        trial(&arms[(seed % 2) as usize], seed, |draw| {
+            let layers = two_layer(draw, InnerLaw::default(), stiffness);
+            match seed / 2 % 2 {
+                0 => Law::TwoLayer(layers),
+                _ => Law::Auto(layers.into()),
+            }
+        })
     }));
 }
 
