@@ -30,3 +30,9 @@ pub(crate) fn seconds(nanos: i64) -> f64 {
 pub(crate) fn nanoseconds(seconds: f64) -> i64 {
     (seconds * 1e9).round() as i64
 }
+
+/// Share of the way to its input that a low pass of first order with that `time_constant` \[s\]
+/// goes within `dt` \[s\]: implicit Euler, which overshoots for no `dt`.
+pub(crate) fn low_pass_share(dt: f64, time_constant: f64) -> f64 {
+    dt / (dt + time_constant)
+}

@@ -11,6 +11,7 @@
 
 use super::FollowerInput;
 use super::mapping::Mapping;
+use crate::low_pass_share;
 use nalgebra::Vector3;
 
 /// Time constant τ of the filter [s]: longer than the servo's lag.
@@ -153,7 +154,11 @@ impl CommandForce {
         if free {
             self.wound = 0.5 * self.stiffness * lead.norm_squared();
         }
-        let share = if own.led { dt / (dt + TIME) } else { 1.0 };
+        let share = if own.led {
+            low_pass_share(dt, TIME)
+        } else {
+            1.0
+        };
         self.low += share * (-contact - spring - self.low);
         self.force = self.low + spring;
         self.force

@@ -38,6 +38,7 @@ use super::{
     Energy, Follower, FollowerInput, FollowerOutput, Leader, LeaderInput, LeaderOutput, Packet,
     Samples, vector,
 };
+use crate::low_pass_share;
 use nalgebra::Vector3;
 
 law_parameters! {
@@ -93,7 +94,7 @@ impl Other {
         match (newest, self.position) {
             (None, _) => *self = Other::default(),
             (Some((now, true)), Some(before)) if self.since > 0.0 => {
-                let share = self.since / (self.since + VELOCITY_FILTER);
+                let share = low_pass_share(self.since, VELOCITY_FILTER);
                 self.velocity += share * ((now - before) / self.since - self.velocity);
                 self.position = Some(now);
                 self.since = 0.0;
@@ -167,7 +168,7 @@ impl Leader for FourChannelLeader {
         let damping = (own.stiffness * late).min(own.damping);
         let force = share * (self.contact + own.stiffness * apart + own.damping * rate)
             - damping * Vector3::from(hand.velocity);
-        self.given += dt / (dt + late) * (-force - self.given);
+        self.given += low_pass_share(dt, late) * (-force - self.given);
         LeaderOutput {
             force: force.into(),
             packet: Packet::new(hand.position, self.given.into(), energy),

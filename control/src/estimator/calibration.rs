@@ -22,6 +22,7 @@
 //! where nothing is stated.
 
 use super::Uncertainty;
+use crate::low_pass_share;
 use ferntast_model::contour::Feature;
 use ferntast_model::{Matrix2, Vector2};
 use nalgebra::{SMatrix, SVector};
@@ -246,7 +247,7 @@ impl SelfCalibration {
 
     /// Leads what is in use over to what was found, `dt` \[s\] after the last time.
     pub fn step(&mut self, dt: f64) {
-        let share = dt / (dt + LEAD);
+        let share = low_pass_share(dt, LEAD);
         let found = [self.found.ratio.value, self.found.common.value];
         for (own, found) in self.in_use.iter_mut().zip(found) {
             *own += share * (found - *own);

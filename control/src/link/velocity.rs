@@ -3,6 +3,7 @@
 use super::StampedPosition;
 use super::end::seconds_between;
 use crate::delay::Motion;
+use crate::low_pass_share;
 
 /// Time constant of the low pass on the difference quotient \[s\].
 const TIME_CONSTANT: f64 = 0.005;
@@ -76,7 +77,7 @@ impl VelocityFilter {
             if !(0.0..=LONGEST_GAP).contains(&dt) {
                 self.velocity = [0.0; 3];
             } else if dt > 0.0 {
-                let share = dt / (dt + TIME_CONSTANT);
+                let share = low_pass_share(dt, TIME_CONSTANT);
                 let axes = self.velocity.iter_mut().zip(measured.position);
                 for ((velocity, now), before) in axes.zip(position) {
                     *velocity += share * ((now - before) / dt - *velocity);

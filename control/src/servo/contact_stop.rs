@@ -24,7 +24,7 @@ mod noise;
 
 use super::Measurement;
 use crate::contact_torque::{Form, Links, MeasuredContact};
-use crate::seconds;
+use crate::{low_pass_share, seconds};
 use ferntast_model::joint::JointParameters;
 use ferntast_model::{JointCount, Joints, parameters};
 use noise::Noise;
@@ -160,7 +160,7 @@ impl ContactStop {
             self.lately = contact;
             return false;
         }
-        let share = passed / (passed + SUDDEN);
+        let share = low_pass_share(passed, SUDDEN);
         let sudden = Joints::from_fn(contact.count(), |joint| contact[joint] - self.lately[joint]);
         let before = self.lately;
         let (mut power, mut speed_squared) = (0.0, 0.0);

@@ -15,6 +15,7 @@ use super::chord::{CHORD_SPREAD, CHORD_WAIT, Chord};
 use super::compliance::{Known, SPREAD, STIFFEST, Slope};
 use super::noise::Noise;
 use super::surface::{SAME_TANGENT, SurfaceModel};
+use crate::low_pass_share;
 use nalgebra::Vector3;
 
 /// Time constant of the window [s].
@@ -172,7 +173,7 @@ impl SurfaceEstimator {
         let way = slid.norm();
         if way > SLIDING * dt && normal_force > self.scale.threshold {
             let ratio = -force.dot(&slid) / way / normal_force;
-            let share = dt / (dt + MEMORY);
+            let share = low_pass_share(dt, MEMORY);
             model.friction += share * (ratio.clamp(0.0, 2.0) - model.friction);
             self.slid += dt;
         }

@@ -1,6 +1,7 @@
 //! Damping of the hand: as much as there is to touch.
 
 use super::SurfaceModel;
+use crate::low_pass_share;
 use nalgebra::Vector3;
 
 /// From so far before the surface on the damping of contact begins [m].
@@ -54,7 +55,7 @@ impl HandDamping {
             near * stiffness.sqrt()
         });
         let needed = needed.fold(0.0, f64::max);
-        self.nearness += dt / (dt + CHANGE) * (needed - self.nearness);
+        self.nearness += low_pass_share(dt, CHANGE) * (needed - self.nearness);
     }
 }
 

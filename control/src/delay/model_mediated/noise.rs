@@ -1,6 +1,7 @@
 //! Noise of the force of a contact, as far as no surface explains it.
 
 use super::compliance::STIFFEST;
+use crate::low_pass_share;
 
 /// What is noise shows over this time [s].
 const WINDOW: f64 = 0.3;
@@ -26,7 +27,7 @@ pub(super) struct Noise {
 impl Noise {
     /// After `dt` \[s\] in which the force changed by `apart` \[N\] and the depth by `away` \[m\].
     pub fn add(&mut self, dt: f64, [apart, away]: [f64; 2]) {
-        let share = dt / (dt + WINDOW);
+        let share = low_pass_share(dt, WINDOW);
         self.changed += share * (apart * apart - self.changed);
         self.explained += share * ((STIFFEST * away).powi(2) - self.explained);
         self.explained = self.explained.min(MOST * self.changed);

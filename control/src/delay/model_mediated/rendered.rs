@@ -5,6 +5,7 @@ use super::surface::SurfaceModel;
 use super::told::Told;
 use super::{ModelMediated, PLACE_SPEED};
 use crate::delay::mapping::ForceRamp;
+use crate::low_pass_share;
 use nalgebra::Vector3;
 
 /// v_0: below this speed friction is viscous [m/s].
@@ -79,7 +80,7 @@ impl Rendered {
         lacking: &Vector3<f64>,
     ) {
         let target = self.told.surface;
-        let share = dt / (dt + law.blend_time);
+        let share = low_pass_share(dt, law.blend_time);
         let stiffness = target.stiffness.min(law.largest_stiffness);
         let anew = SurfaceModel {
             place: target.place.max(-target.normal.dot(hand)),

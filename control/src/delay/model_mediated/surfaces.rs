@@ -9,6 +9,7 @@
 use super::estimate::{GONE, Scale, SurfaceEstimator};
 use super::place::Place;
 use super::surface::{SURFACES, SurfaceModel, shares};
+use crate::low_pass_share;
 use nalgebra::Vector3;
 
 /// There is another surface once the tip was pushed so much from where none is known, without a
@@ -172,7 +173,7 @@ impl Surfaces {
             if !touches {
                 known.calm = 0.0;
             } else if self.strange == Vector3::zeros() {
-                known.calm += dt / (dt + CALM) * (own[at] - known.calm);
+                known.calm += low_pass_share(dt, CALM) * (own[at] - known.calm);
             }
         }
         let rests = self.latest().is_none_or(|own| !own.place.touches);
