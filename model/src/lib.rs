@@ -19,6 +19,7 @@ pub mod recursive_least_squares;
 pub mod rigid_body;
 pub mod section;
 pub mod serial_arm;
+pub mod shape;
 
 pub use joints::{JointCount, Joints, MAX_JOINTS};
 pub use nalgebra::{Matrix2, Vector2};

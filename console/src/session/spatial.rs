@@ -1,5 +1,6 @@
 //! An arm in space and what its tip can touch, as pages draw it. Lengths \[m\], angles \[rad\].
 
+use ferntast_model::shape::Shape;
 use serde::{Deserialize, Serialize};
 
 /// What is drawn of an arm. The page moves it by the joint positions of the snapshots.
@@ -87,46 +88,5 @@ pub struct ThingView {
     /// What it is called.
     pub name: String,
     /// Its shape and place, base frame.
-    pub shape: ThingShape,
-}
-
-/// The shape of something to touch, written as in `[[truth.object]]` of an arm's file.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum ThingShape {
-    /// All that is behind a plane.
-    Plane {
-        /// A point of it.
-        point: [f64; 3],
-        /// Towards the free side.
-        normal: [f64; 3],
-    },
-    /// A box.
-    Box {
-        /// Its middle.
-        center: [f64; 3],
-        /// Lengths of its edges.
-        size: [f64; 3],
-        /// Its orientation, as URDF has it.
-        #[serde(default)]
-        roll_pitch_yaw: [f64; 3],
-    },
-    /// A ball.
-    Sphere {
-        /// Its middle.
-        center: [f64; 3],
-        /// Its radius.
-        radius: f64,
-    },
-    /// The head of a spring.
-    Disc {
-        /// The middle of the plate while nothing presses it.
-        center: [f64; 3],
-        /// Out of the spring.
-        normal: [f64; 3],
-        /// Radius of the plate.
-        radius: f64,
-        /// How far it can be pressed.
-        travel: f64,
-    },
+    pub shape: Shape,
 }

@@ -16,9 +16,7 @@
 //! servo. What the admittance takes off the motion is drift; the
 //! follower makes up for it as fast as `drift_speed` while its tank pays
 //! (Artigas, Ryu, Preusche 2010, "Position drift compensation in time domain
-//! passivity based teleoperation", IROS; Coelho, Singh, Muskardin, Balachandran,
-//! Kondak 2018, "Smoother position-drift compensation for time domain passivity
-//! approach based teleoperation", IROS).
+//! passivity based teleoperation", IROS).
 //!
 //! The damping b at the hand takes in the energy of moving it, which pays for the first
 //! contact: an end that has taken in nothing may give out nothing. Each end

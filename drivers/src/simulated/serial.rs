@@ -5,11 +5,11 @@ use ferntast_config::{
     serial::{Serial, SerialFile},
 };
 use ferntast_control::estimator::Form;
-use ferntast_model::{Joints, joint::JointParameters, serial_arm::Plane};
+use ferntast_model::{Joints, joint::JointParameters, serial_arm::Plane, shape::Shape};
 use ferntast_nodes::process::NodeError;
 use ferntast_sim::{
     arm::{SensorParameters, TrueSurface},
-    serial_arm::{ObjectParameters, SerialArmParameters, SerialJointParameters, Shape},
+    serial_arm::{ObjectParameters, SerialArmParameters, SerialJointParameters},
 };
 
 use super::serial_description::describe_serial;

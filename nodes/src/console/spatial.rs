@@ -5,13 +5,14 @@ use ferntast_config::{
     serial::{Serial, SerialFile},
 };
 use ferntast_console::session::spatial::{
-    FrameView, JointView, LinkShape, SolidView, SpatialView, ThingShape, ThingView,
+    FrameView, JointView, LinkShape, SolidView, SpatialView, ThingView,
 };
 use ferntast_model::{
     ArmModel, Joints,
     contour::{EdgeParameters, SpringParameters, Surface},
     rigid_body::{JointKind, Placement},
     serial_arm::Plane,
+    shape::Shape,
 };
 use ferntast_urdf::{Placed, Robot, Solid};
 use serde_json::Value;
@@ -99,7 +100,7 @@ fn things(file: &SerialFile) -> Vec<ThingView> {
     let planes = file.surface.iter().take(MOST_THINGS);
     let view = |plane: &Plane| ThingView {
         name: plane.name.clone(),
-        shape: ThingShape::Plane {
+        shape: Shape::Plane {
             point: plane.point,
             normal: plane.normal,
         },
@@ -145,7 +146,7 @@ fn wall(edge: &EdgeParameters) -> ThingView {
             Surface::Spring => "spring",
         }
         .to_owned(),
-        shape: ThingShape::Box {
+        shape: Shape::Box {
             center: [middle(0), middle(1), 0.0],
             size: [length, THICKNESS, HEIGHT],
             roll_pitch_yaw: [0.0, 0.0, along[1].atan2(along[0])],
@@ -160,7 +161,7 @@ fn head(spring: &SpringParameters) -> ThingView {
     let [foot_x, foot_y] = spring.anchor;
     ThingView {
         name: "spring".to_owned(),
-        shape: ThingShape::Disc {
+        shape: Shape::Disc {
             center: [
                 foot_x + spring.rest_length * normal[0],
                 foot_y + spring.rest_length * normal[1],
@@ -225,7 +226,7 @@ mod tests {
         let arm = load_model_only("rokviss").unwrap();
         let view = spatial(&arm);
         let edge = arm.model.planar().unwrap().contour.edge[0];
-        let ThingShape::Box { center, size, .. } = view.things[0].shape else {
+        let Shape::Box { center, size, .. } = view.things[0].shape else {
             panic!("a wall is a box");
         };
         // The bare edge goes up; its free side is towards smaller x.

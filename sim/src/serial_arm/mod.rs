@@ -23,7 +23,7 @@ mod world;
 pub use grip::Grip;
 pub use output::{DriveFlags, Measurement, Truth};
 pub use parameters::{SerialArmParameters, SerialJointParameters};
-pub use world::{Motion, Near, ObjectParameters, Shape};
+pub use world::{Motion, Near, ObjectParameters};
 
 use ferntast_model::{
     JointCount, Joints, ParameterError,

@@ -1,8 +1,8 @@
 //! What the tip of a serial arm can touch.
 
 mod object;
-mod shape;
+mod surface;
 
 pub(super) use object::Object;
 pub use object::{Motion, ObjectParameters};
-pub use shape::{Near, Shape};
+pub use surface::Near;

@@ -4,9 +4,9 @@
 //! bristle: it bends elastically while the tip sticks, and slips when Coulomb's limit is
 //! reached, so a tip can rest on the surface under load.
 
-use ferntast_model::{ParameterError, parameters, rigid_body::Vector3};
+use ferntast_model::{ParameterError, parameters, rigid_body::Vector3, shape::Shape};
 
-use super::shape::{Near, Shape, Surface};
+use super::surface::{Near, Surface};
 use crate::arm::TrueSurface;
 
 parameters! {
