@@ -51,11 +51,11 @@ pub fn run(graph: &Graph, arguments: &Arguments, json: bool) -> Result<ExitCode,
         }
         Plan::KIND => {
             let (plan, answers) = merge::<Plan>(parts).map_err(Failure::refused)?;
-            challenge::tell_blind(&plan, answers, json)
+            challenge::blind::tell(&plan, answers, json)
         }
         LawPlan::KIND => {
             let (plan, answers) = merge::<LawPlan>(parts).map_err(Failure::refused)?;
-            challenge::tell_discovered(&plan, answers, json)
+            challenge::discover::tell(&plan, answers, json)
         }
         FaultStudy::KIND => {
             let (study, answers) = merge::<FaultStudy>(parts).map_err(Failure::refused)?;

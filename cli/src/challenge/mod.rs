@@ -1,7 +1,7 @@
 //! `ferntast challenge`.
 
-mod blind;
-mod discover;
+pub mod blind;
+pub mod discover;
 mod reveal;
 
 use std::{
@@ -15,9 +15,6 @@ use ferntast_nodes::process::stop_on_signals;
 use ferntast_studies::challenge::{self, Asked, LawPlan, Plan};
 use indicatif::ProgressBar;
 use serde_json::json;
-
-pub use blind::tell as tell_blind;
-pub use discover::tell as tell_discovered;
 
 use super::{Failure, output::print_json, shard_options::ShardOptions};
 
@@ -200,7 +197,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             let (answers, stopped) =
                 with_bar(|stop, progress| plan.run(parts.shard(), stop, progress))?;
             match parts.keep(plan, answers, stopped)? {
-                Some((plan, answers)) => tell_blind(&plan, answers, json),
+                Some((plan, answers)) => blind::tell(&plan, answers, json),
                 None => Ok(ExitCode::SUCCESS),
             }
         }
@@ -220,7 +217,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             let (answers, stopped) =
                 with_bar(|stop, progress| plan.run(parts.shard(), stop, progress))?;
             match parts.keep(plan, answers, stopped)? {
-                Some((plan, answers)) => tell_discovered(&plan, answers, json),
+                Some((plan, answers)) => discover::tell(&plan, answers, json),
                 None => Ok(ExitCode::SUCCESS),
             }
         }
