@@ -1,6 +1,6 @@
 //! What goes into the estimator, and what comes out.
 
-use super::Coefficient;
+use super::ContactState;
 use ferntast_model::contour::Surface;
 use ferntast_model::{JointCount, Joints};
 
@@ -13,8 +13,7 @@ pub struct JointMeasurement {
     pub joint_torque: Joints<f64>,
 }
 
-/// What is known of tip and contact. Always finite, but for the error of a
-/// coefficient that is not identified, which is infinite.
+/// What is known of tip and contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactEstimate {
     /// Link-side positions q \[rad\], newest, not filtered.
@@ -31,37 +30,12 @@ pub struct ContactEstimate {
     /// The same in the contact frame \[N\]: along the tangent (normal turned
     /// by −90°), and along the normal; zero without contact.
     pub contact_force: [f64; 2],
-    /// Normal force F_N ≥ 0 \[N\]; zero without contact.
-    pub normal_force: f64,
-    /// Tangential force F_T \[N\], positive against the tip's motion; zero
-    /// without contact. Near rest the last direction of motion is taken,
-    /// so it may become negative (Fig. 16).
-    pub tangential_force: f64,
     /// The surface touched.
     pub surface: Option<Surface>,
     /// Its index in [`Contour::features`](ferntast_model::contour::Contour::features).
     pub feature: Option<usize>,
-    /// b_0T of equation (6) of the surface touched, or touched last.
-    pub friction: Coefficient,
-    /// The tip touches something: a surface of the contour, or, by a force of three times as
-    /// much for 50 ms, something that is not in it.
-    pub touches: bool,
-    /// The tip touches a surface of the contour.
-    pub in_contact: bool,
-    /// The forces can be used.
-    pub valid: bool,
-    /// In contact, and the tip rests or turns or is in a corner: F_T is not defined.
-    pub near_rest: bool,
-    /// The tip touches two surfaces at once: `force` holds, its split does not.
-    pub corner: bool,
-    /// The arm is too near its singularity to tell forces.
-    pub singular: bool,
-    /// A torque sensor is, or was a moment ago, at the end of its range.
-    pub saturated: bool,
-    /// A torque sensor gives the same number again and again while its joint turns.
-    pub stuck: Joints<bool>,
-    /// The measurement or the time step was not usable; the rest is from before.
-    pub input_invalid: bool,
+    /// What there is to say whatever the arm's shape.
+    pub state: ContactState,
 }
 
 impl ContactEstimate {
@@ -74,20 +48,9 @@ impl ContactEstimate {
             tip_velocity: [0.0; 2],
             force: [0.0; 2],
             contact_force: [0.0; 2],
-            normal_force: 0.0,
-            tangential_force: 0.0,
             surface: None,
             feature: None,
-            friction: Coefficient::UNKNOWN,
-            touches: false,
-            in_contact: false,
-            valid: false,
-            near_rest: false,
-            corner: false,
-            singular: false,
-            saturated: false,
-            stuck: Joints::filled(joints, false),
-            input_invalid: false,
+            state: ContactState::unknown(joints),
         }
     }
 }

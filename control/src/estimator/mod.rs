@@ -16,6 +16,7 @@
 
 mod calibration;
 mod coefficient;
+mod contact_state;
 mod estimate;
 mod intake;
 mod motor_current;
@@ -30,6 +31,7 @@ mod zeroing;
 pub use crate::contact_torque::{DerivativeFilter, Form};
 pub use calibration::{Calibrated, Calibration, Push, SelfCalibration};
 pub use coefficient::{Coefficient, CoefficientEstimator};
+pub use contact_state::ContactState;
 pub use estimate::{ContactEstimate, JointMeasurement};
 pub use motor_current::{
     MotorCurrentParameters, MotorMeasurement, TorqueByMotorCurrent, TorqueFromMotor,
@@ -155,14 +157,16 @@ impl ContactEstimator {
             tip: tip.into(),
             tip_velocity: tip_velocity.into(),
             force: force.into(),
-            friction: self.last.friction,
-            singular,
-            saturated: sensors.saturated,
-            stuck: sensors.stuck,
-            valid: !singular && !sensors.saturated && taken.settled,
+            state: ContactState {
+                valid: !singular && !sensors.saturated && taken.settled,
+                singular,
+                saturated: sensors.saturated,
+                stuck: sensors.stuck,
+                ..self.last.state.without_contact()
+            },
             ..ContactEstimate::unknown(self.joints())
         };
-        if estimate.valid {
+        if estimate.state.valid {
             let free = self.split.is_free(&self.parameters, &tip);
             let torque = &motion.contact_torque;
             self.zeroing
@@ -215,7 +219,7 @@ impl ContactEstimator {
         let touched = estimate
             .feature
             .and_then(|at| Some((at, features.get(at)?)));
-        let usable = estimate.in_contact && estimate.valid && !estimate.corner;
+        let usable = estimate.state.in_contact && estimate.state.valid && !estimate.state.corner;
         let (Some(own), Some((at, feature)), true) = (&mut self.calibration, touched, usable)
         else {
             return;
@@ -239,7 +243,7 @@ impl ContactEstimator {
         let memory = self.parameters.calibration_time;
         match feature.surface {
             Surface::Spring => own.press(memory, &push),
-            _ if !estimate.near_rest => own.slide(at, memory, &push),
+            _ if !estimate.state.near_rest => own.slide(at, memory, &push),
             _ => {}
         }
     }
@@ -250,12 +254,12 @@ impl ContactEstimator {
             self.last = ContactEstimate {
                 position: self.last.position,
                 tip: self.last.tip,
-                friction: self.last.friction,
+                state: self.last.state.without_contact(),
                 ..ContactEstimate::unknown(self.joints())
             };
         }
-        self.last.input_invalid = true;
-        self.last.valid = false;
+        self.last.state.input_invalid = true;
+        self.last.state.valid = false;
         self.last
     }
 }

@@ -88,7 +88,7 @@ impl Split {
         estimate: &mut ContactEstimate,
     ) {
         let tip = &motion.tip;
-        let threshold = threshold(parameters, last.in_contact);
+        let threshold = threshold(parameters, last.state.in_contact);
         let near = |pressed: bool| {
             let counts = |index, feature: &Feature| {
                 !pressed || force.dot(&motion.turned(index, feature).normal) > threshold
@@ -106,7 +106,8 @@ impl Split {
             None => near(false).map(|_| false),
         };
         let size = force.norm();
-        estimate.touches = (self.touch).step(parameters.contact_on, dt, size, known, last.touches);
+        estimate.state.touches =
+            (self.touch).step(parameters.contact_on, dt, size, known, last.state.touches);
         let Some((index, feature)) = touched else {
             self.slide.end();
             return;
@@ -124,18 +125,19 @@ impl Split {
         }
         let present = motion.present_velocity.dot(&feature.tangent());
         let stopping = present * self.direction < parameters.rest_speed;
-        estimate.in_contact = true;
+        estimate.state.in_contact = true;
         estimate.surface = Some(feature.surface);
         estimate.feature = Some(index);
         estimate.contact_force = [tangential, normal];
-        estimate.normal_force = normal;
-        estimate.tangential_force = -tangential * self.direction;
-        estimate.corner = self.features.iter().enumerate().any(|(other, f)| {
+        estimate.state.normal_force = normal;
+        estimate.state.tangential_force = -tangential * self.direction;
+        estimate.state.corner = self.features.iter().enumerate().any(|(other, f)| {
             other != index && f.faces(tip) && (-REACH..=0.0).contains(&f.distance(tip))
         });
         // Two normals, two tangents: the split is no more defined than at rest.
         let turned_lately = self.slide.turned_lately(parameters, motion.delay);
-        estimate.near_rest = stopping || turned_lately || estimate.corner || motion.undetermined;
+        estimate.state.near_rest =
+            stopping || turned_lately || estimate.state.corner || motion.undetermined;
         self.identify(parameters, dt, &feature, motion, estimate);
     }
 
@@ -155,7 +157,7 @@ impl Split {
             Surface::Spring => return,
         };
         let coefficient = &mut self.coefficients[slot];
-        if estimate.valid && !estimate.near_rest {
+        if estimate.state.valid && !estimate.state.near_rest {
             let index = estimate.feature.unwrap_or(usize::MAX);
             let turn = motion.calibration.and_then(|own| own.turn(index));
             let errors = split_errors(
@@ -167,14 +169,14 @@ impl Split {
                 turn.map_or(parameters.uncertainty.contour_turn, |turn| turn.error),
             );
             coefficient.step(
-                estimate.normal_force,
-                estimate.tangential_force,
+                estimate.state.normal_force,
+                estimate.state.tangential_force,
                 &errors,
                 dt,
                 parameters.friction_memory,
                 parameters.cut_off,
             );
         }
-        estimate.friction = coefficient.coefficient();
+        estimate.state.friction = coefficient.coefficient();
     }
 }

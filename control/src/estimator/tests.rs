@@ -56,7 +56,7 @@ fn a_sensor_beyond_its_range_leads_the_tip_no_further_astray() {
             joint_torque: [torque, 0.0].into(),
         };
         let estimate = estimator.step(1e-3, &measurement);
-        assert_eq!(estimate.saturated, torque.abs() >= range);
+        assert_eq!(estimate.state.saturated, torque.abs() >= range);
         estimate.tip
     };
     assert_eq!(tip(3.0 * range), tip(range));
@@ -78,12 +78,17 @@ fn the_split_follows_the_surface() {
     for _ in 0..100 {
         estimate = estimator.step(1e-3, &measurement);
     }
-    assert!(estimate.in_contact && estimate.valid && estimate.near_rest && !estimate.corner);
+    assert!(
+        estimate.state.in_contact
+            && estimate.state.valid
+            && estimate.state.near_rest
+            && !estimate.state.corner
+    );
     assert_eq!(estimate.surface, Some(Surface::Unlubricated));
-    assert!((estimate.normal_force - 20.0).abs() < 1e-9);
+    assert!((estimate.state.normal_force - 20.0).abs() < 1e-9);
     // The normal −x turned by −90° is +y.
     assert!((estimate.contact_force[0] - 5.0).abs() < 1e-9);
-    assert_eq!(estimate.friction, Coefficient::UNKNOWN);
+    assert_eq!(estimate.state.friction, Coefficient::UNKNOWN);
 
     // Less than the switching-on force keeps the contact, less than the other ends it.
     for (force, in_contact) in [(1.3, true), (0.7, true), (0.3, false), (0.7, false)] {
@@ -91,8 +96,8 @@ fn the_split_follows_the_surface() {
         for _ in 0..100 {
             estimate = estimator.step(1e-3, &measurement);
         }
-        assert_eq!(estimate.in_contact, in_contact, "{force} N");
-        assert_eq!(estimate.touches, in_contact, "{force} N");
+        assert_eq!(estimate.state.in_contact, in_contact, "{force} N");
+        assert_eq!(estimate.state.touches, in_contact, "{force} N");
     }
 }
 
@@ -109,8 +114,8 @@ fn what_is_not_in_the_contour_is_touched_by_a_larger_force_that_lasts() {
         let measurement = at_rest(&model, q, Vector2::new(-force, 0.0));
         let estimates = (0..steps).map(|_| estimator.step(1e-3, &measurement));
         let estimate = estimates.last().unwrap();
-        assert!(!estimate.in_contact && estimate.surface.is_none());
-        estimate.touches
+        assert!(!estimate.state.in_contact && estimate.surface.is_none());
+        estimate.state.touches
     };
     let on = parameters.contact_on;
     // The sensors' zeros are found first.
@@ -139,7 +144,7 @@ fn in_the_corner_the_split_is_not_trusted() {
         .map(|_| estimator.step(1e-3, &measurement))
         .last()
         .unwrap();
-    assert!(estimate.corner && estimate.in_contact);
+    assert!(estimate.state.corner && estimate.state.in_contact);
     assert!((Vector2::from(estimate.force) - Vector2::new(-20.0, 16.0)).norm() < 1e-9);
 }
 
@@ -197,15 +202,15 @@ fn a_sensor_that_is_lost_for_long_leaves_no_contact() {
                 .unwrap()
         };
         let seen = run(&good, 100);
-        assert!(seen.in_contact && seen.valid);
+        assert!(seen.state.in_contact && seen.state.valid);
         let held = run(&lost, 10);
-        assert!(held.in_contact && !held.valid && held.input_invalid);
+        assert!(held.state.in_contact && !held.state.valid && held.state.input_invalid);
         assert_eq!(held.force, seen.force);
         let gone = run(&lost, 100);
-        assert!(!gone.in_contact && !gone.valid && gone.input_invalid);
+        assert!(!gone.state.in_contact && !gone.state.valid && gone.state.input_invalid);
         assert_eq!((gone.force, gone.tip), ([0.0, 0.0], seen.tip));
         let back = run(&good, 100);
-        assert!(back.in_contact && back.valid && !back.input_invalid);
+        assert!(back.state.in_contact && back.state.valid && !back.state.input_invalid);
     }
 }
 
@@ -216,7 +221,13 @@ fn a_torque_sensor_that_is_stuck_is_told_from_one_at_rest() {
         let mut estimator = ContactEstimator::new(&model, &parameters).unwrap();
         let mut measurement = at_rest(&model, Vector2::new(-0.785, 1.571), Vector2::zeros());
         for _ in 0..1000 {
-            assert!(!estimator.step(1e-3, &measurement).stuck.contains(&true));
+            assert!(
+                !estimator
+                    .step(1e-3, &measurement)
+                    .state
+                    .stuck
+                    .contains(&true)
+            );
         }
         // Joint 2 turns at 5 °/s; the torque of joint 1 changes, that of joint 2 does not.
         let mut estimate = ContactEstimate::unknown(estimator.joints());
@@ -225,13 +236,13 @@ fn a_torque_sensor_that_is_stuck_is_told_from_one_at_rest() {
             measurement.joint_torque[0] = 0.01 * f64::from(tick % 2);
             estimate = estimator.step(1e-3, &measurement);
         }
-        assert_eq!(estimate.stuck, [false, true]);
-        assert!(!estimate.valid && !estimate.input_invalid);
+        assert_eq!(estimate.state.stuck, [false, true]);
+        assert!(!estimate.state.valid && !estimate.state.input_invalid);
         for tick in 0..200 {
             measurement.joint_torque = [0.01 * f64::from(tick % 2); 2].into();
             estimate = estimator.step(1e-3, &measurement);
         }
-        assert!(estimate.valid && estimate.stuck == [false, false]);
+        assert!(estimate.state.valid && estimate.state.stuck == [false, false]);
     }
 }
 
@@ -247,7 +258,7 @@ fn it_recovers_from_broken_time() {
         .map(|_| estimator.step(1e-3, &measurement))
         .last()
         .unwrap();
-    assert!(estimate.valid && !estimate.input_invalid);
+    assert!(estimate.state.valid && !estimate.state.input_invalid);
     assert!((Vector2::from(estimate.force) - Vector2::new(3.0, 4.0)).norm() < 1e-9);
 }
 
@@ -286,11 +297,11 @@ proptest! {
             prop_assert!(numbers.iter().flatten().all(|x| x.is_finite()));
             let numbers = [e.tip, e.tip_velocity, e.force, e.contact_force];
             prop_assert!(numbers.iter().flatten().all(|x| x.is_finite()));
-            prop_assert!(e.normal_force >= 0.0 && e.tangential_force.is_finite() && e.friction.value.is_finite());
-            prop_assert!(!e.friction.error.is_nan());
+            prop_assert!(e.state.normal_force >= 0.0 && e.state.tangential_force.is_finite() && e.state.friction.value.is_finite());
+            prop_assert!(!e.state.friction.error.is_nan());
             let broken = [a, b, c, d].iter().any(|x| !x.is_finite()) || !dt.is_finite() || dt <= 0.0;
-            prop_assert!(!broken || (e.input_invalid && !e.valid));
-            prop_assert!(!(e.valid && (e.singular || e.saturated || e.stuck.contains(&true))));
+            prop_assert!(!broken || (e.state.input_invalid && !e.state.valid));
+            prop_assert!(!(e.state.valid && (e.state.singular || e.state.saturated || e.state.stuck.contains(&true))));
         }
     }
 }

@@ -61,7 +61,8 @@ impl Judged {
                 };
                 let truth = last.replace(estimate).unwrap_or(estimate);
                 let slides = state.message.in_contact == 1 && state.message.near_rest == 0;
-                if !(slides && truth.in_contact && !truth.near_rest && truth.valid) {
+                let contact = truth.state;
+                if !(slides && contact.in_contact && !contact.near_rest && contact.valid) {
                     continue;
                 }
                 for (told, truth) in told.message.force.iter().zip(truth.force) {

@@ -2,7 +2,7 @@
 
 use ferntast_config::{Believed, serial::Serial};
 use ferntast_control::estimator::{
-    Coefficient, ContactEstimate, ContactEstimator, EstimatorParameters, JointMeasurement,
+    ContactEstimate, ContactEstimator, ContactState, EstimatorParameters, JointMeasurement,
     SpatialEstimate, SpatialEstimator, TorqueFromMotor,
 };
 use ferntast_model::{JointCount, Joints, ParameterError, contour::Surface, kinematics::LINKS};
@@ -35,19 +35,8 @@ pub(super) struct Told {
     /// About the tip.
     pub(super) torque: [f64; 3],
     pub(super) contact_force: [f64; 3],
-    pub(super) normal_force: f64,
-    pub(super) tangential_force: f64,
-    pub(super) friction: Coefficient,
+    pub(super) state: ContactState,
     pub(super) edge: Edge,
-    pub(super) touches: bool,
-    pub(super) in_contact: bool,
-    pub(super) valid: bool,
-    pub(super) near_rest: bool,
-    pub(super) corner: bool,
-    pub(super) singular: bool,
-    pub(super) saturated: bool,
-    pub(super) stuck: Joints<bool>,
-    pub(super) input_invalid: bool,
     /// Of an arm in a plane.
     pub(super) planar: bool,
 }
@@ -118,24 +107,13 @@ impl From<ContactEstimate> for Told {
             force: [fx, fy, 0.0],
             torque: [0.0; 3],
             contact_force: [tangential, 0.0, normal],
-            normal_force: own.normal_force,
-            tangential_force: own.tangential_force,
-            friction: own.friction,
+            state: own.state,
             edge: match own.surface {
                 None => Edge::NONE,
                 Some(Surface::Lubricated) => Edge::LUBRICATED,
                 Some(Surface::Unlubricated) => Edge::UNLUBRICATED,
                 Some(Surface::Spring) => Edge::SPRING,
             },
-            touches: own.touches,
-            in_contact: own.in_contact,
-            valid: own.valid,
-            near_rest: own.near_rest,
-            corner: own.corner,
-            singular: own.singular,
-            saturated: own.saturated,
-            stuck: own.stuck,
-            input_invalid: own.input_invalid,
             planar: true,
         }
     }
@@ -151,22 +129,11 @@ impl From<SpatialEstimate> for Told {
             force,
             torque,
             contact_force: own.contact_force,
-            normal_force: own.normal_force,
-            tangential_force: own.tangential_force,
-            friction: own.friction,
+            state: own.state,
             edge: match own.surface {
                 None => Edge::NONE,
                 Some(_) => Edge::SURFACE,
             },
-            touches: own.touches,
-            in_contact: own.in_contact,
-            valid: own.valid,
-            near_rest: own.near_rest,
-            corner: own.corner,
-            singular: own.singular,
-            saturated: own.saturated,
-            stuck: own.stuck,
-            input_invalid: own.input_invalid,
             planar: false,
         }
     }

@@ -180,7 +180,7 @@ impl EstimatorNode {
         };
         tell(health, corner);
         tell(health, singular);
-        for (joint, stuck) in estimate.stuck.iter().enumerate() {
+        for (joint, stuck) in estimate.state.stuck.iter().enumerate() {
             if *stuck && let Some(joint) = self.joints.get(joint) {
                 health.raise(Fault::TorqueStuck, Level::WARN);
                 health.message = Text::display(format_args!(
@@ -197,12 +197,12 @@ impl EstimatorNode {
 fn reasons(estimate: &Told) -> [(bool, Fault, &'static str); 4] {
     [
         (
-            estimate.corner,
+            estimate.state.corner,
             Fault::ContactAmbiguous,
             "the tip touches two surfaces: only measured_cf holds",
         ),
         (
-            estimate.singular,
+            estimate.state.singular,
             Fault::Singular,
             match estimate.planar {
                 true => "the elbow is stretched or folded: no force can be estimated; bend it",
@@ -210,12 +210,12 @@ fn reasons(estimate: &Told) -> [(bool, Fault, &'static str); 4] {
             },
         ),
         (
-            estimate.saturated,
+            estimate.state.saturated,
             Fault::TorqueSaturated,
             "a torque sensor is at the end of its range: press less",
         ),
         (
-            estimate.input_invalid,
+            estimate.state.input_invalid,
             Fault::MeasurementInvalid,
             "/follower/measured_js lacks position or effort, they are no numbers, or of other joints",
         ),
@@ -223,6 +223,7 @@ fn reasons(estimate: &Told) -> [(bool, Fault, &'static str); 4] {
 }
 
 fn publish(stamp: Time, estimate: &Told, output: &mut EstimatorOutput) {
+    let contact = &estimate.state;
     output.measured_cp = Some(PoseSample {
         orientation: estimate.orientation,
         ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, estimate.tip)
@@ -237,17 +238,17 @@ fn publish(stamp: Time, estimate: &Told, output: &mut EstimatorOutput) {
         estimate.contact_force,
     ));
     output.contact_state = Some(ContactStateSample {
-        normal_force: estimate.normal_force,
-        tangential_force: estimate.tangential_force,
-        friction_coefficient: match estimate.friction.error == f64::INFINITY {
+        normal_force: contact.normal_force,
+        tangential_force: contact.tangential_force,
+        friction_coefficient: match contact.friction.error == f64::INFINITY {
             true => f64::NAN,
-            false => estimate.friction.value,
+            false => contact.friction.value,
         },
-        friction_coefficient_error: estimate.friction.error,
-        in_contact: u8::from(estimate.in_contact),
-        touches: u8::from(estimate.touches),
-        valid: u8::from(estimate.valid),
-        near_rest: u8::from(estimate.near_rest),
+        friction_coefficient_error: contact.friction.error,
+        in_contact: u8::from(contact.in_contact),
+        touches: u8::from(contact.touches),
+        valid: u8::from(contact.valid),
+        near_rest: u8::from(contact.near_rest),
         edge: estimate.edge,
         ..ContactStateSample::initial(stamp)
     });

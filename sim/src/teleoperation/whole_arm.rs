@@ -111,10 +111,10 @@ impl TrialArm for WholeArm {
             },
         );
         Estimated {
-            tip: (!estimate.input_invalid).then_some([estimate.tip[0], estimate.tip[1], 0.0]),
+            tip: (!estimate.state.input_invalid).then_some([estimate.tip[0], estimate.tip[1], 0.0]),
             force: FollowerReadings::force_of(
-                estimate.valid,
-                estimate.touches,
+                estimate.state.valid,
+                estimate.state.touches,
                 [estimate.force[0], estimate.force[1], 0.0],
             ),
         }

@@ -62,7 +62,10 @@ fn score(ticks: &[(Truth, ContactEstimate)]) -> Score {
     let sliding: Vec<_> = ticks
         .iter()
         .filter(|(truth, estimate)| {
-            truth.normal_force > 0.0 && estimate.valid && !estimate.near_rest && estimate.in_contact
+            truth.normal_force > 0.0
+                && estimate.state.valid
+                && !estimate.state.near_rest
+                && estimate.state.in_contact
         })
         .collect();
     let against = |truth: &Truth| -truth.tangential_force * truth.sliding_velocity.signum();
@@ -77,9 +80,9 @@ fn score(ticks: &[(Truth, ContactEstimate)]) -> Score {
             .fold(0.0, f64::max)
     };
     Score {
-        normal_error: rms(&|t, e| e.normal_force - t.normal_force),
+        normal_error: rms(&|t, e| e.state.normal_force - t.normal_force),
         normal_peak: peak(&|t| t.normal_force),
-        tangential_error: rms(&|t, e| e.tangential_force - against(t)),
+        tangential_error: rms(&|t, e| e.state.tangential_force - against(t)),
         tangential_peak: peak(&against),
         samples: sliding.len(),
     }
@@ -126,8 +129,8 @@ fn forces_in_sliding_are_within_five_percent_of_their_peak() {
                     score.normal_peak,
                     score.tangential_error,
                     score.tangential_peak,
-                    last.friction.value,
-                    last.friction.error,
+                    last.state.friction.value,
+                    last.state.friction.error,
                     score.samples,
                     ticks.len(),
                 );
@@ -136,8 +139,8 @@ fn forces_in_sliding_are_within_five_percent_of_their_peak() {
                 assert!(score.normal_error < 0.05 * score.normal_peak);
                 assert!(score.tangential_error < 0.05 * score.tangential_peak);
                 assert_eq!(last.surface, Some(surface));
-                assert!((last.friction.value - coefficient).abs() < 0.03);
-                assert!(last.friction.error > 1e-6 && last.friction.error < 0.02);
+                assert!((last.state.friction.value - coefficient).abs() < 0.03);
+                assert!(last.state.friction.error > 1e-6 && last.state.friction.error < 0.02);
             }
         }
     }
@@ -157,7 +160,7 @@ fn contact_is_told_within_ten_milliseconds_and_not_before() {
             };
             let on = rokviss().estimator.contact_on;
             let truth = first(&|(truth, _)| truth.normal_force > on);
-            let told = first(&|(_, estimate)| estimate.in_contact);
+            let told = first(&|(_, estimate)| estimate.state.in_contact);
             println!("{form:?} {toward:?} {speed} m/s: contact at {truth} ms, told at {told} ms");
             assert!(told <= truth + 10, "{told} against {truth}");
             assert!(told + 1 >= truth, "{told} against {truth}");
@@ -184,7 +187,7 @@ fn no_contact_is_told_where_there_is_none() {
         assert!(
             ticks
                 .iter()
-                .all(|(truth, e)| truth.surface.is_none() && !e.in_contact)
+                .all(|(truth, e)| truth.surface.is_none() && !e.state.in_contact)
         );
         assert!(noise > 0.0 && noise < 1.0);
     }
@@ -209,9 +212,9 @@ fn turning_points_are_masked() {
         for pair in ticks[1500..].windows(2) {
             let ((before, _), (after, estimate)) = (&pair[0], &pair[1]);
             let turned = before.sliding_velocity * after.sliding_velocity <= 0.0;
-            if turned && estimate.in_contact {
+            if turned && estimate.state.in_contact {
                 turns += 1;
-                assert!(estimate.near_rest, "{after:?}");
+                assert!(estimate.state.near_rest, "{after:?}");
             }
         }
         assert!(turns >= 3, "{turns}");
@@ -227,7 +230,7 @@ fn springs_are_told_with_their_force() {
     assert_eq!(truth.surface, Some(Surface::Spring));
     assert_eq!(estimate.surface, Some(Surface::Spring));
     assert!(truth.normal_force > 10.0);
-    assert!((estimate.normal_force - truth.normal_force).abs() < 0.5);
+    assert!((estimate.state.normal_force - truth.normal_force).abs() < 0.5);
 }
 
 #[test]
@@ -245,15 +248,15 @@ fn broken_measurements_are_flagged_and_survived() {
                 [f64::NAN, f64::INFINITY, 1e300][tick as usize / 100 % 3];
         }
         let estimate = estimator.step(TICK, &measurement);
-        assert_eq!(estimate.input_invalid, broken);
+        assert_eq!(estimate.state.input_invalid, broken);
         if broken {
-            assert!(!estimate.valid);
+            assert!(!estimate.state.valid);
             assert_eq!(estimate.force, before.force);
         }
         let numbers = [
-            estimate.normal_force,
-            estimate.tangential_force,
-            estimate.friction.value,
+            estimate.state.normal_force,
+            estimate.state.tangential_force,
+            estimate.state.friction.value,
             estimate.tip[0],
             estimate.tip_velocity[1],
             estimate.force[0],
@@ -267,7 +270,7 @@ fn broken_measurements_are_flagged_and_survived() {
             joint_torque: [0.0; 2].into(),
         };
         let estimate = estimator.step(dt, &rest);
-        assert!(estimate.input_invalid && !estimate.valid);
+        assert!(estimate.state.input_invalid && !estimate.state.valid);
         assert_eq!(estimate.tip, before.tip);
     }
 }
@@ -291,25 +294,25 @@ fn flags_of(form: Form) {
             .last()
             .expect("ticks")
     };
-    assert!(settle(&mut estimator, &bent).valid);
+    assert!(settle(&mut estimator, &bent).state.valid);
     // The end of the torque sensor's range, until the filter has forgotten it.
     let loaded = JointMeasurement {
         joint_torque: [40.0, 0.0].into(),
         ..bent
     };
     let estimate = estimator.step(TICK, &loaded);
-    assert!(estimate.saturated && !estimate.valid);
-    assert!(estimator.step(TICK, &bent).saturated);
-    assert!(settle(&mut estimator, &bent).valid);
+    assert!(estimate.state.saturated && !estimate.state.valid);
+    assert!(estimator.step(TICK, &bent).state.saturated);
+    assert!(settle(&mut estimator, &bent).state.valid);
     // A gap of measurements: it starts over and settles.
     let estimate = estimator.step(0.2, &bent);
-    assert!(!estimate.valid && !estimate.input_invalid);
-    assert!(settle(&mut estimator, &bent).valid);
+    assert!(!estimate.state.valid && !estimate.state.input_invalid);
+    assert!(settle(&mut estimator, &bent).state.valid);
     let stretched = JointMeasurement {
         motor_position: [0.0, 0.01].into(),
         ..bent
     };
     let estimate = settle(&mut new(), &stretched);
-    assert!(estimate.singular && !estimate.valid);
+    assert!(estimate.state.singular && !estimate.state.valid);
     assert_eq!(estimate.force, [0.0, 0.0]);
 }

@@ -158,7 +158,7 @@ fn score(
             continue;
         }
         sliding += 1.0;
-        if !estimate.valid || own.undetermined.contains(&true) {
+        if !estimate.state.valid || own.undetermined.contains(&true) {
             continue;
         }
         counted += 1.0;

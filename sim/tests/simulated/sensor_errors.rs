@@ -92,11 +92,14 @@ fn score(ticks: &[(Truth, ContactEstimate)], coefficient: f64, from: f64) -> Sco
     let sliding: Vec<_> = ticks[(from / TICK) as usize..]
         .iter()
         .filter(|(truth, seen)| {
-            truth.normal_force > 0.0 && seen.valid && seen.in_contact && !seen.near_rest
+            truth.normal_force > 0.0
+                && seen.state.valid
+                && seen.state.in_contact
+                && !seen.state.near_rest
         })
         .map(|(truth, seen)| {
             let against = -truth.tangential_force * truth.sliding_velocity.signum();
-            (against, seen.tangential_force)
+            (against, seen.state.tangential_force)
         })
         .collect();
     assert!(sliding.len() > 2000, "{}", sliding.len());
@@ -109,9 +112,9 @@ fn score(ticks: &[(Truth, ContactEstimate)], coefficient: f64, from: f64) -> Sco
     let hover = &ticks[(HOVER_FROM / TICK) as usize..(HOVER_UNTIL / TICK) as usize];
     let told = hover
         .iter()
-        .filter(|(truth, seen)| truth.surface.is_none() && seen.in_contact);
+        .filter(|(truth, seen)| truth.surface.is_none() && seen.state.in_contact);
     let false_contact = told.count() as f64 / hover.len() as f64;
-    let found = ticks.last().expect("ticks").1.friction;
+    let found = ticks.last().expect("ticks").1.state.friction;
     Score {
         tangential: (square / sliding.len() as f64).sqrt() / peak,
         off: (found.value - coefficient) / found.error,

@@ -169,7 +169,7 @@ impl Bench {
             },
         );
         self.tip = truth.tip.translation;
-        self.friction = estimate.friction.value;
+        self.friction = estimate.state.friction.value;
         self.forces.push([estimate.force.into(), truth.force]);
         let home = self.believed.home_tip().translation;
         let output = self.servo.step(

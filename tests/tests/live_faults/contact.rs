@@ -26,8 +26,8 @@ pub fn forces(measured: &[Joints]) -> Vec<(Time, f64)> {
             joint_torque: Each::from_fn(two, |joint| own.effort[joint]),
         };
         let estimate = estimator.step(passed, &measurement);
-        let force = if estimate.valid {
-            estimate.normal_force
+        let force = if estimate.state.valid {
+            estimate.state.normal_force
         } else {
             0.0
         };

@@ -1,6 +1,6 @@
 //! Schedules of faults from the command line.
 
-use std::{collections::BTreeSet, fs};
+use std::{collections::BTreeSet, fs, path::Path};
 
 use ferntast_tests::{Session, number, refused, run};
 use serde_json::Value;
@@ -97,174 +97,22 @@ fn a_schedule_in_a_file_is_run_again_and_recorded() {
     );
 }
 
-/// Two of a million schedules in which the arm held late: what a dead master had said is good
-/// for 4 ms, and the servo waited 25 ms more.
-const LATE: [&str; 2] = [
-    r#"
-scenario = "rokviss"
-seed = 119569
-law = "model_mediated"
-length_ms = 2200
-event = [
-    { at_ms = 444, fault = "clock_jump", side = "arm", ms = 4 },
-    { at_ms = 2130, fault = "crash", node = "master" },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 123225
-law = "position_position"
-length_ms = 1200
-event = [
-    { at_ms = 348, fault = "clock_jump", side = "arm", ms = -10 },
-    { at_ms = 693, fault = "loss", way = "forth", share = 0.7844969014442567, ms = 18 },
-    { at_ms = 1087, fault = "loss", way = "forth", share = 0.7303030969275016, ms = 31 },
-    { at_ms = 1093, fault = "word", device = "follower", word = "enable" },
-    { at_ms = 1117, fault = "crash", node = "master" },
-]
-"#,
-];
-
-/// What a million schedules found beyond them, one of each kind. A hand after a gap of its host
-/// was good, and led on, for longer than one that is silent; friction went with a torque that
-/// no sensor measures; an arm was enabled by what was measured before it stood still, and
-/// began with the torque of before a fault. And the judge's own: speed of a joint whose
-/// sensor is stuck, a clock that jumps together with an encoder, a copy that overtakes its
-/// frame. And after it: a release that drove a joint that nobody measured, and one whose way
-/// was used up by ringing.
-const FOUND: [&str; 11] = [
-    r#"
-scenario = "rokviss"
-seed = 6231179
-law = "position_force"
-length_ms = 658
-event = [
-    { at_ms = 586, fault = "host_stall", side = "operator", ms = 9 },
-    { at_ms = 592, fault = "second_hand", ms = 1 },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6567613
-law = "four_channel"
-length_ms = 870
-event = [
-    { at_ms = 715, fault = "sensor", ms = 166, sensor = { torque_error = -120.28886859626454 } },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6183726
-law = "tdpa"
-length_ms = 1473
-event = [
-    { at_ms = 431, fault = "stall", node = "master", ms = 47 },
-    { at_ms = 935, fault = "word", device = "leader", word = "pause" },
-    { at_ms = 1194, fault = "sensor", sensor = "stuck", ms = 355 },
-    { at_ms = 1205, fault = "word", device = "leader", word = "resume" },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6253704
-law = "four_channel"
-length_ms = 947
-event = [
-    { at_ms = 675, fault = "crash", node = "arm" },
-    { at_ms = 815, fault = "word", device = "both", word = "disable" },
-    { at_ms = 896, fault = "word", device = "both", word = "enable" },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6595512
-law = "model_mediated"
-length_ms = 2186
-event = [
-    { at_ms = 1951, fault = "host_stall", side = "arm", ms = 75 },
-    { at_ms = 2007, fault = "channel", round_trip_ms = 20.620296252991224, jitter_ms = 6.047047104904568, loss = 0.10936754741355795 },
-    { at_ms = 2122, fault = "stall", node = "arm", ms = 12 },
-    { at_ms = 2123, fault = "word", device = "follower", word = "resume" },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6720356
-law = "model_mediated"
-length_ms = 1833
-event = [
-    { at_ms = 1275, fault = "loss", way = "back", share = 0.20588556477894898, ms = 44 },
-    { at_ms = 1599, fault = "law_switch", law = "tdpa" },
-    { at_ms = 1719, fault = "word", device = "follower", word = "pause" },
-    { at_ms = 1753, fault = "word", device = "both", word = "resume" },
-    { at_ms = 1771, fault = "stall", node = "arm", ms = 10 },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6644635
-law = "position_force"
-length_ms = 1977
-event = [
-    { at_ms = 1922, fault = "clock_jump", side = "arm", ms = 60 },
-    { at_ms = 1922, fault = "sensor", ms = 8, sensor = { zero_error = -0.03297302608466407 } },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6847817
-law = "position_force"
-length_ms = 453
-event = [
-    { at_ms = 247, fault = "clock_jump", side = "arm", ms = 15 },
-    { at_ms = 350, fault = "stall", node = "link_leader", ms = 11 },
-    { at_ms = 359, fault = "crash", node = "master" },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 6398424
-law = "position_position"
-length_ms = 1456
-event = [
-    { at_ms = 803, fault = "loss", way = "back", share = 0.882103235593738, ms = 8 },
-    { at_ms = 986, fault = "stall", node = "link_follower", ms = 396 },
-    { at_ms = 1266, fault = "jitter", way = "back", most_ms = 6, ms = 210 },
-    { at_ms = 1297, fault = "word", device = "follower", word = "resume" },
-    { at_ms = 1380, fault = "duplicate", way = "back", share = 0.5674703200606066, ms = 23 },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 8025800
-law = "position_position"
-length_ms = 827
-event = [
-    { at_ms = 598, fault = "crash", node = "estimator" },
-    { at_ms = 634, fault = "sensor", sensor = "stuck", ms = 158 },
-    { at_ms = 747, fault = "word", device = "both", word = "resume" },
-]
-"#,
-    r#"
-scenario = "rokviss"
-seed = 8003474
-law = "four_channel"
-length_ms = 2056
-event = [
-    { at_ms = 1614, fault = "blackout", way = "back", ms = 420 },
-    { at_ms = 1701, fault = "word", device = "both", word = "resume" },
-]
-"#,
-];
-
+/// Schedules of which a million found that something did not hold, one of each kind, a file
+/// each by its seed. Arms held late, led on, or began with what was of before; and the judge's own:
+/// the speed of a joint whose sensor is stuck, a clock that jumps together with an encoder, a
+/// copy that overtakes its frame.
 #[test]
 fn what_a_million_schedules_found_holds() {
-    for schedule in LATE.iter().chain(&FOUND) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/offline/schedules");
+    let files = fs::read_dir(&folder).expect("schedules");
+    let files: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
+    assert_eq!(files.len(), 13, "{files:#?}");
+    for schedule in files {
         let session = Session::new();
-        fs::write(session.folder().join("late.toml"), schedule).expect("scratch folder");
-        let json = faults(&session, &["--replay", "late.toml"]);
+        let path = schedule.to_str().expect("UTF-8");
+        let json = faults(&session, &["--replay", path, "-o", "again"]);
         let found = json["violations"].as_array();
-        assert!(found.is_some_and(Vec::is_empty), "{json:#}");
+        assert!(found.is_some_and(Vec::is_empty), "{path}: {json:#}");
     }
 }
 

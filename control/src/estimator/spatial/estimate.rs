@@ -1,10 +1,9 @@
 //! What comes out of the estimator of a serial arm.
 
-use super::super::Coefficient;
+use super::super::ContactState;
 use ferntast_model::{JointCount, Joints};
 
-/// What is known of tip and contact in space. Always finite, but for the error of a
-/// coefficient that is not identified, which is infinite.
+/// What is known of tip and contact in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialEstimate {
     /// Link-side positions q \[rad\] or \[m\], newest, not filtered.
@@ -27,35 +26,10 @@ pub struct SpatialEstimate {
     /// `force` in the contact frame \[N\]: along two tangents, which are right-handed with
     /// the normal, and along the normal; zero without contact.
     pub contact_force: [f64; 3],
-    /// Normal force F_N ≥ 0 \[N\]; zero without contact.
-    pub normal_force: f64,
-    /// Tangential force F_T \[N\], positive against the tip's motion along the surface; zero
-    /// without contact. Near rest the last direction of motion is taken.
-    pub tangential_force: f64,
     /// The surface touched, of those that are believed in.
     pub surface: Option<usize>,
-    /// b_0T of equation (6) of the surface touched, or touched last.
-    pub friction: Coefficient,
-    /// The tip touches something: a believed surface, or, by a force of three times as much
-    /// for 50 ms, something else.
-    pub touches: bool,
-    /// As `touches`, where a force is split: along a believed surface, or else along and
-    /// across the tip's motion.
-    pub in_contact: bool,
-    /// The forces can be used.
-    pub valid: bool,
-    /// In contact, and the tip rests or turns or is in a corner: F_T is not defined.
-    pub near_rest: bool,
-    /// The tip touches two surfaces at once: `force` holds, its split does not.
-    pub corner: bool,
-    /// The arm is too near a singularity to tell forces.
-    pub singular: bool,
-    /// A torque sensor is, or was a moment ago, at the end of its range.
-    pub saturated: bool,
-    /// A torque sensor gives the same number again and again while its joint turns.
-    pub stuck: Joints<bool>,
-    /// The measurement or the time step was not usable; the rest is from before.
-    pub input_invalid: bool,
+    /// What there is to say whatever the arm's shape.
+    pub state: ContactState,
 }
 
 impl SpatialEstimate {
@@ -70,19 +44,8 @@ impl SpatialEstimate {
             force: [0.0; 3],
             wrench: [[0.0; 3]; 2],
             contact_force: [0.0; 3],
-            normal_force: 0.0,
-            tangential_force: 0.0,
             surface: None,
-            friction: Coefficient::UNKNOWN,
-            touches: false,
-            in_contact: false,
-            valid: false,
-            near_rest: false,
-            corner: false,
-            singular: false,
-            saturated: false,
-            stuck: Joints::filled(joints, false),
-            input_invalid: false,
+            state: ContactState::unknown(joints),
         }
     }
 }

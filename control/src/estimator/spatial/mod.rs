@@ -19,7 +19,7 @@ pub use estimate::SpatialEstimate;
 use super::intake::Intake;
 use super::systematic::SensorErrors;
 use super::zeroing::Zeroing;
-use super::{EstimatorParameters, Form, JointMeasurement, TorqueFromMotor};
+use super::{ContactState, EstimatorParameters, Form, JointMeasurement, TorqueFromMotor};
 use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, ParameterError};
 use force::TipForce;
@@ -123,14 +123,16 @@ impl SpatialEstimator {
             tip_velocity: velocity.into(),
             force: force.into(),
             wrench,
-            friction: self.last.friction,
-            singular: solver.is_singular(),
-            saturated: taken.sensors.saturated,
-            stuck: taken.sensors.stuck,
-            valid: !solver.is_singular() && !taken.sensors.saturated && taken.settled,
+            state: ContactState {
+                valid: !solver.is_singular() && !taken.sensors.saturated && taken.settled,
+                singular: solver.is_singular(),
+                saturated: taken.sensors.saturated,
+                stuck: taken.sensors.stuck,
+                ..self.last.state.without_contact()
+            },
             ..SpatialEstimate::unknown(self.joints())
         };
-        if estimate.valid {
+        if estimate.state.valid {
             let free = self.split.is_free(&self.parameters, &tip.translation);
             let with_zero = &motion.contact_torque;
             self.zeroing.learn(
@@ -176,12 +178,12 @@ impl SpatialEstimator {
                 position: self.last.position,
                 tip: self.last.tip,
                 orientation: self.last.orientation,
-                friction: self.last.friction,
+                state: self.last.state.without_contact(),
                 ..SpatialEstimate::unknown(self.joints())
             };
         }
-        self.last.input_invalid = true;
-        self.last.valid = false;
+        self.last.state.input_invalid = true;
+        self.last.state.valid = false;
         self.last
     }
 }

@@ -81,7 +81,7 @@ impl Split {
         force: &Vector3<f64>,
         estimate: &mut SpatialEstimate,
     ) {
-        let threshold = threshold(parameters, last.in_contact);
+        let threshold = threshold(parameters, last.state.in_contact);
         let is_near = |own: &Surface| {
             let distance = own.distance(&motion.tip);
             (-REACH..=parameters.contact_distance).contains(&distance)
@@ -95,8 +95,9 @@ impl Split {
 
         let known = near.map(|_| touched.is_some());
         let size = force.norm();
-        estimate.touches = (self.touch).step(parameters.contact_on, dt, size, known, last.touches);
-        if !estimate.touches {
+        estimate.state.touches =
+            (self.touch).step(parameters.contact_on, dt, size, known, last.state.touches);
+        if !estimate.state.touches {
             self.slide.end();
             return;
         }
@@ -114,17 +115,17 @@ impl Split {
         let present = motion.present_velocity.dot(&self.direction);
         let turned_lately = self.slide.turned_lately(parameters, motion.delay);
         let along = tangent(&normal);
-        estimate.in_contact = true;
+        estimate.state.in_contact = true;
         estimate.surface = surface;
-        estimate.corner = corner;
+        estimate.state.corner = corner;
         estimate.contact_force = [
             force.dot(&along),
             force.dot(&normal.cross(&along)),
             force.dot(&normal),
         ];
-        estimate.normal_force = force.dot(&normal).max(0.0);
-        estimate.tangential_force = -force.dot(&self.direction);
-        estimate.near_rest =
+        estimate.state.normal_force = force.dot(&normal).max(0.0);
+        estimate.state.tangential_force = -force.dot(&self.direction);
+        estimate.state.near_rest =
             present < parameters.rest_speed || turned_lately || corner || motion.undetermined;
         if let Some(surface) = surface {
             self.identify(parameters, dt, surface, motion.errors, estimate);
@@ -166,9 +167,9 @@ impl Split {
         let Some(own) = self.surfaces.get_mut(surface) else {
             return;
         };
-        if estimate.valid && !estimate.near_rest {
+        if estimate.state.valid && !estimate.state.near_rest {
             let normal = own.normal;
-            let (n, t) = (estimate.normal_force, estimate.tangential_force);
+            let (n, t) = (estimate.state.normal_force, estimate.state.tangential_force);
             // A plane turned by δ about the axis across the motion: see the planar split.
             let turn = parameters.uncertainty.contour_turn;
             let of = |error: &Vector3<f64>| [error.dot(&normal), -error.dot(&direction)];
@@ -176,7 +177,7 @@ impl Split {
             let (memory, cut_off) = (parameters.friction_memory, parameters.cut_off);
             own.coefficient.step(n, t, &errors, dt, memory, cut_off);
         }
-        estimate.friction = own.coefficient.coefficient();
+        estimate.state.friction = own.coefficient.coefficient();
     }
 }
 

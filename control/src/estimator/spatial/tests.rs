@@ -139,9 +139,9 @@ fn at_rest_the_force_is_that_on_the_tip_in_both_forms() {
         }
         let apart = (Vector3::from(estimate.force) - force).norm();
         assert!(apart < 1e-3, "{form:?}: {apart} N");
-        assert!(estimate.valid && estimate.in_contact && estimate.near_rest);
+        assert!(estimate.state.valid && estimate.state.in_contact && estimate.state.near_rest);
         assert_eq!(estimate.surface, Some(0));
-        assert!((estimate.normal_force - 15.0).abs() < 1e-3);
+        assert!((estimate.state.normal_force - 15.0).abs() < 1e-3);
         let tangents = Vector3::from(estimate.contact_force).xy().norm();
         assert!((tangents - 13f64.sqrt()).abs() < 1e-3, "{tangents} N");
         let tip = Vector3::from(estimate.tip) - arm.home_tip().translation;
@@ -229,13 +229,22 @@ fn sliding_on_the_table_tells_its_friction() {
         let force = Vector3::new(0.0, -3.0, 10.0);
         estimate = estimator.step(1e-3, &sensed(&arm, &resting(q), force));
     }
-    assert!(estimate.valid && !estimate.near_rest, "{estimate:?}");
-    assert!((estimate.normal_force - 10.0).abs() < 0.1, "{estimate:?}");
     assert!(
-        (estimate.tangential_force - 3.0).abs() < 0.1,
+        estimate.state.valid && !estimate.state.near_rest,
         "{estimate:?}"
     );
-    assert!((estimate.friction.value - 0.3).abs() < 0.01, "{estimate:?}");
+    assert!(
+        (estimate.state.normal_force - 10.0).abs() < 0.1,
+        "{estimate:?}"
+    );
+    assert!(
+        (estimate.state.tangential_force - 3.0).abs() < 0.1,
+        "{estimate:?}"
+    );
+    assert!(
+        (estimate.state.friction.value - 0.3).abs() < 0.01,
+        "{estimate:?}"
+    );
 }
 
 #[test]
@@ -253,13 +262,16 @@ fn what_nobody_believes_in_is_felt_by_a_larger_force_that_lasts() {
         }
         estimate
     };
-    assert!(!after(0.0, 100).touches);
-    assert!(!after(2.0, 200).touches);
+    assert!(!after(0.0, 100).state.touches);
+    assert!(!after(2.0, 200).state.touches);
     let touched = after(8.0, 200);
-    assert!(touched.touches && touched.in_contact && touched.near_rest);
+    assert!(touched.state.touches && touched.state.in_contact && touched.state.near_rest);
     assert_eq!(touched.surface, None);
-    assert!((touched.normal_force - 8.0).abs() < 1e-3, "{touched:?}");
-    assert!(!after(0.0, 500).touches);
+    assert!(
+        (touched.state.normal_force - 8.0).abs() < 1e-3,
+        "{touched:?}"
+    );
+    assert!(!after(0.0, 500).state.touches);
 }
 
 #[test]
@@ -272,7 +284,7 @@ fn a_stretched_arm_tells_no_force_and_a_zero_is_found_while_free() {
     for _ in 0..100 {
         estimate = estimator.step(1e-3, &sensed(&arm, &resting(stretched), force));
     }
-    assert!(estimate.singular && !estimate.valid);
+    assert!(estimate.state.singular && !estimate.state.valid);
     assert_eq!(estimate.force, [0.0; 3]);
 
     let mut own = parameters(Form::Direct);
@@ -292,7 +304,7 @@ fn a_stretched_arm_tells_no_force_and_a_zero_is_found_while_free() {
     let left = Vector3::from(estimate.force).norm();
     assert!(left < 0.02, "{left} N");
     // Without it: 0.1 Nm of seven joints are more than 0.2 N.
-    assert!(estimate.valid);
+    assert!(estimate.state.valid);
 }
 
 #[test]
@@ -313,10 +325,10 @@ fn without_numbers_it_says_so_and_goes_on_after() {
         },
     ] {
         let estimate = estimator.step(1e-3, &measured);
-        assert!(estimate.input_invalid && !estimate.valid);
+        assert!(estimate.state.input_invalid && !estimate.state.valid);
     }
     for _ in 0..50 {
         estimator.step(1e-3, &good);
     }
-    assert!(estimator.step(1e-3, &good).valid);
+    assert!(estimator.step(1e-3, &good).state.valid);
 }

@@ -172,8 +172,12 @@ impl TrialArm for DrivenArm {
     fn estimate(&mut self, measured: &Measurement) -> Estimated {
         let estimate = self.step_estimator(measured);
         Estimated {
-            tip: (!estimate.input_invalid).then_some(estimate.tip),
-            force: FollowerReadings::force_of(estimate.valid, estimate.touches, estimate.force),
+            tip: (!estimate.state.input_invalid).then_some(estimate.tip),
+            force: FollowerReadings::force_of(
+                estimate.state.valid,
+                estimate.state.touches,
+                estimate.force,
+            ),
         }
     }
 
