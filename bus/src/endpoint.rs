@@ -72,6 +72,16 @@ pub fn is_loopback(endpoint: &str) -> bool {
     })
 }
 
+/// Where an end connects to whose other end listens at `endpoint`: what listens at all addresses of
+/// this host is met on its loopback.
+pub(crate) fn to_connect_to(endpoint: &str) -> String {
+    ["/0.0.0.0:", "/[::]:"]
+        .iter()
+        .fold(endpoint.to_owned(), |own, all| {
+            own.replace(all, "/localhost:")
+        })
+}
+
 /// The link's endpoint as Zenoh writes it: datagrams of QUIC, not its streams.
 pub(crate) fn of_zenoh(endpoint: &str) -> String {
     match endpoint.strip_prefix(SEALED_UDP) {
@@ -190,6 +200,13 @@ mod tests {
         assert_eq!(of_zenoh("sealed-udp/10.0.0.2:7448"), "udp/10.0.0.2:7448");
         assert!(check_server("quic/[::1]:7448").is_err());
         assert!(check_server("tcp/[::1]:7448").is_ok());
+    }
+
+    #[test]
+    fn what_listens_everywhere_is_met_on_the_loopback() {
+        assert_eq!(to_connect_to("quic/0.0.0.0:7448"), "quic/localhost:7448");
+        assert_eq!(to_connect_to("quic/[::]:7448"), "quic/localhost:7448");
+        assert_eq!(to_connect_to("quic/10.0.0.0:7448"), "quic/10.0.0.0:7448");
     }
 
     #[test]

@@ -17,7 +17,8 @@ use ferntast_nodes::node::NodeHealth;
 ///
 /// Neither function of a step fails. What goes wrong is raised in the node's health, with
 /// words, and a reading that is not to be trusted is not given: a servo that hears nothing
-/// holds, and does not begin.
+/// for its `measurement_watchdog` is in FAULT, gives no torque, and does not begin. What then
+/// holds an arm without brakes is its driver.
 pub trait Driver: Any {
     /// Its joints, from the base on.
     fn joints(&self) -> JointNames;

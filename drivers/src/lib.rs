@@ -13,6 +13,7 @@ pub mod dynamixel;
 pub mod feetech;
 pub mod leader;
 pub mod motors;
+mod newest;
 mod node;
 pub mod process;
 pub mod ros2;

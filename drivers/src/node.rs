@@ -2,7 +2,10 @@
 
 use std::any::Any;
 
-use ferntast_control::planted::{Planted, Rule};
+use ferntast_control::{
+    planted::{Planted, Rule},
+    servo::TORQUE_LIFE,
+};
 use ferntast_model::{JointCount, Joints, ParameterError};
 use ferntast_msgs::{
     Time,
@@ -16,8 +19,6 @@ use ferntast_nodes::{
 
 use crate::driver::{Driver, DriverCommand, Reading};
 
-/// A torque command older than this \[s\] no longer counts: the drives are off.
-const COMMAND_LIFE: f64 = 0.010;
 /// Longest time that passes in one step \[s\]; a loop that slept longer lets a simulated arm
 /// lose time rather than computing on.
 const LONGEST_STEP: f64 = 0.020;
@@ -105,7 +106,7 @@ impl ArmNode {
             output.health.raise(Fault::CommandInvalid, Level::ERROR);
             return None;
         };
-        if silence > COMMAND_LIFE && !self.planted.lacks(Rule::DrivesOff) {
+        if silence > TORQUE_LIFE && !self.planted.lacks(Rule::DrivesOff) {
             output.health.raise(Fault::CommandSilent, Level::WARN);
             return None;
         }

@@ -5,6 +5,10 @@
 mod motor_bus;
 
 use std::{
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
     thread::sleep,
     time::{Duration, Instant},
 };
@@ -15,6 +19,7 @@ use ferntast_drivers::{
     dynamixel::Dynamixel,
     motors::{
         MotorArm, MotorError,
+        error::Lost,
         family::{Drive, Family, Missed, States},
         section::Section,
     },
@@ -181,6 +186,91 @@ fn an_arm_whose_servo_is_silent_is_held() {
 }
 
 #[test]
+fn a_motor_that_does_not_hear_that_it_is_switched_on_is_told_again() {
+    for times in [1, 2, 5] {
+        let mut bus = bus(&[]);
+        let mut arm = start(&section(&bus.port, json!({}))).unwrap();
+        bus.ask(&json!({"do": "unheard", "id": 7, "times": times}));
+        arm.enable(true);
+        drive(&mut arm, 0.2, |_| [0.0; 2]);
+        assert_eq!(arm.failure(), None, "{times}");
+        assert!(bus.motors().iter().all(|motor| motor["on"] == json!(true)));
+    }
+}
+
+/// Motors that answer or not, and what they were told when.
+struct Answering {
+    answers: Arc<AtomicBool>,
+    told: Arc<Mutex<Vec<(Instant, Drive)>>>,
+}
+
+impl Family for Answering {
+    const GIVES_TORQUE: bool = true;
+
+    fn start(&mut self) -> Result<States, MotorError> {
+        Ok(States::default())
+    }
+
+    fn step(&mut self, drive: &Drive, _states: &mut States) -> Result<(), Missed> {
+        self.told.lock().unwrap().push((Instant::now(), *drive));
+        match self.answers.load(Ordering::Acquire) {
+            true => Ok(()),
+            false => Err(Missed::Motor(0, Lost::Silent)),
+        }
+    }
+
+    fn release(&mut self) {}
+
+    fn silent(&mut self) -> Vec<usize> {
+        Vec::new()
+    }
+
+    fn damaged(&self) -> u32 {
+        0
+    }
+}
+
+/// The servo gives no torque once it has heard nothing for 20 ms: before that they are held.
+#[test]
+fn motors_that_do_not_answer_are_held_until_they_do() {
+    let (answers, told) = (Arc::new(AtomicBool::new(true)), Arc::default());
+    let family = Answering {
+        answers: Arc::clone(&answers),
+        told: Arc::clone(&told),
+    };
+    let mut arm = MotorArm::start(joints(), section("none", json!({})), family).unwrap();
+    arm.enable(true);
+    drive(&mut arm, 0.05, |_| [0.1, 0.0]);
+    let before = Instant::now();
+    answers.store(false, Ordering::Release);
+    let after = Instant::now();
+    drive(&mut arm, 0.08, |_| [0.0; 2]);
+    let again = Instant::now();
+    answers.store(true, Ordering::Release);
+    let heard = Instant::now();
+    drive(&mut arm, 0.05, |_| [0.1, 0.0]);
+    assert_eq!(arm.failure(), None, "it is not lost yet");
+    let end = Instant::now();
+    drop(arm);
+
+    let told = told.lock().unwrap();
+    let between = |from: Instant, to: Instant| {
+        let own = told.iter().filter(move |(at, _)| (from..to).contains(at));
+        own.map(|(_, drive)| *drive)
+    };
+    let is_held = |drive: Drive| drive == Drive::Hold;
+    let ms = Duration::from_millis;
+    assert!(between(after + ms(13), again).all(is_held));
+    assert!(between(after + ms(13), again).count() > 10);
+    assert!(
+        !between(before, before + ms(5)).any(is_held),
+        "one lost answer"
+    );
+    // The cycle in which they answer again is begun before that is known.
+    assert!(!between(heard + ms(10), end).any(is_held));
+}
+
+#[test]
 fn motors_that_hear_nothing_stop_and_follow_again() {
     let mut bus = bus(&[]);
     let mut section = section(&bus.port, json!({}));
@@ -309,6 +399,10 @@ fn what_goes_wrong_on_the_way_is_told_and_the_others_are_held() {
         (
             json!({"do": "damage", "answers": 1_000_000}),
             "damaged); check power and cable",
+        ),
+        (
+            json!({"do": "switch_off", "id": 7}),
+            "off by itself (was its power interrupted?)",
         ),
         (json!({"do": "close"}), "has gone away"),
     ];

@@ -190,12 +190,16 @@ impl SecureEnd {
         Some(Message::of(HELLO))
     }
 
+    /// Whether nobody was heard for so long.
+    fn is_alone(&self, now_ns: i64, patience_ns: i64) -> bool {
+        self.heard_ns.is_none_or(|heard_ns| {
+            is_due(heard_ns.saturating_add(patience_ns), now_ns, patience_ns)
+        })
+    }
+
     /// Whether there are no keys, or none that still serve.
     fn wants_keys(&self, now_ns: i64, patience_ns: i64) -> bool {
-        let silent = self.heard_ns.is_none_or(|heard_ns| {
-            is_due(heard_ns.saturating_add(patience_ns), now_ns, patience_ns)
-        });
-        silent || self.keys.as_ref().is_none_or(Keys::is_worn)
+        self.is_alone(now_ns, patience_ns) || self.keys.as_ref().is_none_or(Keys::is_worn)
     }
 
     /// Seals a frame of one of the two lengths; `None` before the first handshake.
@@ -326,7 +330,8 @@ impl SecureEnd {
         let found = bytes.len();
         let (challenge, message) = parts(bytes).ok_or(Refusal::Length { found })?;
         // Whoever is heard keeps the arm, from strangers and from those who may have it next.
-        if !self.wants_keys(now_ns, SILENCE) {
+        let is_free = self.is_alone(now_ns, SILENCE);
+        if !is_free && !self.keys.as_ref().is_none_or(Keys::may_be_renewed) {
             return Err(Refusal::Taken);
         }
         if challenge != self.challenge || !is_due(self.handshake_due_ns, now_ns, HANDSHAKE_PERIOD) {
@@ -344,6 +349,9 @@ impl SecureEnd {
         let Some(&peer) = known.iter().find(|own| own.exchange() == asking) else {
             return Err(Refusal::UnknownPeer(asking));
         };
+        if !is_free && self.established.is_none_or(|own| own.peer != peer) {
+            return Err(Refusal::Taken);
+        }
         // Received and sent within one step: one time stands for both.
         let answer = Message::with_challenge(ANSWER, &challenge)
             .append(|room| handshake.write(&now_ns.to_le_bytes(), room))

@@ -94,6 +94,7 @@ pub(crate) struct Keys {
     receives: Cipher,
     window: ReplayWindow,
     sealed: u32,
+    opened: u32,
 }
 
 impl Keys {
@@ -104,12 +105,29 @@ impl Keys {
             receives: Cipher::new(receives.into()),
             window: ReplayWindow::default(),
             sealed: 0,
+            opened: 0,
         }
     }
 
     /// Whether it is time for another handshake.
     pub fn is_worn(&self) -> bool {
-        self.sealed >= MOST_FRAMES / 2
+        self.most() >= MOST_FRAMES / 2
+    }
+
+    /// Whether it is for an end that sends more, or has counted what was lost on its way here.
+    pub fn may_be_renewed(&self) -> bool {
+        self.most() >= MOST_FRAMES / 4
+    }
+
+    /// Frames that went one way, of that with more.
+    fn most(&self) -> u32 {
+        self.sealed.max(self.opened)
+    }
+
+    /// As if so many frames had been sealed and opened.
+    #[cfg(test)]
+    pub fn wear(&mut self, sealed: u32, opened: u32) {
+        (self.sealed, self.opened) = (sealed, opened);
     }
 
     /// Seals `plain`, of one of the three lengths, whose number must not have been used before;
@@ -155,6 +173,7 @@ impl Keys {
             return Err(Refusal::Replayed);
         }
         self.window.take(number);
+        self.opened = self.opened.saturating_add(1);
         Ok(plain)
     }
 }

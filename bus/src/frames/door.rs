@@ -23,6 +23,10 @@ const TURNED_AWAY: &str = "zenoh_link_commons::quic";
 /// Where it tells why a connecting end was not let in.
 const NOT_LET_IN: &str = "zenoh::net::runtime::orchestrator";
 
+/// What it tells there of every connection, whether it comes about or not: the ends are known by
+/// their keys, not by names.
+const OF_ALL: &str = "Skipping name verification";
+
 /// Why a connection did not come about, in the library's words.
 pub type Reason = Text<96>;
 
@@ -117,6 +121,14 @@ fn is_turned_away(metadata: &Metadata<'_>) -> bool {
     *metadata.level() == Level::WARN && target.starts_with(TURNED_AWAY)
 }
 
+/// Whether that line is of a connection that did not come about: other things are told there too.
+fn tells_why(turned_away: bool, line: &str) -> bool {
+    match turned_away {
+        true => !line.starts_with(OF_ALL),
+        false => line.starts_with("Unable to connect"),
+    }
+}
+
 fn is_not_let_in(metadata: &Metadata<'_>) -> bool {
     *metadata.level() == Level::DEBUG && metadata.target() == NOT_LET_IN
 }
@@ -141,8 +153,7 @@ impl Subscriber for Log {
         let turned_away = is_turned_away(event.metadata());
         let mut line = Line::default();
         event.record(&mut line);
-        // Other things are told there too.
-        if turned_away || line.0.starts_with("Unable to connect") {
+        if tells_why(turned_away, &line.0) {
             self.0.note(turned_away, &line.0);
         }
     }
@@ -194,6 +205,20 @@ mod tests {
         ] {
             assert_eq!(essence(text), expected);
         }
+    }
+
+    #[test]
+    fn what_is_told_of_every_connection_is_no_reason() {
+        assert!(!tells_why(
+            true,
+            "Skipping name verification of QUIC server"
+        ));
+        assert!(tells_why(true, "QUIC acceptor failed"));
+        assert!(tells_why(
+            false,
+            "Unable to connect to x! two. Retry in 1s."
+        ));
+        assert!(!tells_why(false, "Connected to x"));
     }
 
     #[test]

@@ -120,7 +120,7 @@ impl ZenohLink {
         let (LinkEndpoint::Listen(endpoint) | LinkEndpoint::Connect(endpoint)) = &config.endpoint;
         endpoint::check_link(endpoint)?;
         if matches!(config.endpoint, LinkEndpoint::Connect(_)) {
-            endpoint::check_server(endpoint)?;
+            endpoint::check_server(&endpoint::to_connect_to(endpoint))?;
         }
         let settings = settings(&config)?;
         let door = Door::of_process();
@@ -251,7 +251,7 @@ fn zenoh_settings(
             set("listen/timeout_ms", "0")?;
         }
         LinkEndpoint::Connect(endpoint) => {
-            let endpoint = endpoint::of_zenoh(endpoint);
+            let endpoint = endpoint::of_zenoh(&endpoint::to_connect_to(endpoint));
             set("listen/endpoints", "[]")?;
             set("connect/endpoints", &format!("[{endpoint:?}]"))?;
             set("connect/exit_on_failure", "false")?;

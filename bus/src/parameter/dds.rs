@@ -108,6 +108,7 @@ impl ParameterServices {
         for own in parameters {
             if let Some(choice) = self.choice(&own.name) {
                 choice.check(text(&own.value))?;
+                choice.check_open()?;
             } else if node.get_parameter(&own.name).is_none() {
                 let has = node.list_parameters().join(", ");
                 return Err(format!("no parameter {}; there are {has}", own.name));

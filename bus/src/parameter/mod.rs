@@ -24,12 +24,19 @@ pub struct Choice {
     pub choices: Vec<String>,
     /// What is chosen at first.
     pub value: String,
+    /// Why peers may look and not choose, where that is so.
+    pub closed: Option<String>,
 }
 
 impl Choice {
     /// What may be chosen, in words.
     fn constraint(&self) -> String {
         format!("one of: {}", self.choices.join(", "))
+    }
+
+    /// Whether peers may choose.
+    fn check_open(&self) -> Result<(), String> {
+        self.closed.clone().map_or(Ok(()), Err)
     }
 
     /// Whether `value` may be chosen.

@@ -52,6 +52,7 @@ impl Judge {
         if thread::current().id() == self.teller {
             return Ok(());
         }
+        self.choice.check_open()?;
         self.wish
             .try_send(value.to_owned())
             .map_err(|_| "busy with earlier wishes; try again".to_owned())

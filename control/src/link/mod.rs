@@ -19,7 +19,9 @@
 //! old. An end that hears nothing for
 //! [`RETURN_SILENCE`] (with a jitter buffer: that had nothing to play out, so the buffer's
 //! length later), or whose device is not ENABLED, asks the other to hold: the
-//! arm's end then commands nothing either, and the hand's force fades out.
+//! arm's end then commands nothing either, and the hand's force fades out, at once or, where the
+//! law renders a model of what was touched, after that has outlived the arm
+//! (`outlives`, [`crate::delay::ModelMediated`]).
 //!
 //! Times are `i64` nanoseconds since the UNIX epoch. An end allocates when it is
 //! made, never afterwards.

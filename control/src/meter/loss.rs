@@ -80,6 +80,10 @@ impl LossWindow {
                 // Of a gap longer than the memory only the end is remembered.
                 let kept = gap.min(REMEMBERED as u32 - 1);
                 self.lost += u64::from(gap - kept);
+                if kept < gap {
+                    // What is remembered from before does not join on to it.
+                    (self.remembered, self.inside, self.missing) = (0, 0, 0);
+                }
                 for missing in (1..=kept).rev() {
                     self.append(sequence.wrapping_sub(missing), false, now_ns);
                 }
@@ -167,4 +171,36 @@ impl LossWindow {
 
 fn index(sequence: u32) -> usize {
     sequence as usize % REMEMBERED
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_longer_than_the_memory_is_all_that_was_lost() {
+        const MS: i64 = 1_000_000;
+        for before in [1, 700, 5000] {
+            for gap in [4094_u32, 4095, 4096, 5000, 100_000] {
+                let mut window = LossWindow::new();
+                for sequence in 0..before {
+                    window.arrived(sequence, i64::from(sequence) * MS);
+                }
+                // Of the second before, and of the number after the gap.
+                let held_up = i64::from(before) * MS + 10_000 * MS;
+                window.arrived(before + gap, held_up);
+                assert_eq!(window.lost(), u64::from(gap), "{before}, {gap}");
+                let kept = f64::from(gap.min(4095));
+                let loss = window.loss(held_up);
+                assert!((loss - kept / (kept + 1.0)).abs() < 1e-3, "{loss}");
+                // A second of frames without loss later nothing is missing.
+                for after in 1..=1100 {
+                    let at = held_up + i64::from(after) * MS;
+                    window.arrived(before + gap + after, at);
+                }
+                let end = held_up + 1100 * MS;
+                assert_eq!(window.loss(end), 0.0, "{before}, {gap}");
+            }
+        }
+    }
 }

@@ -166,6 +166,9 @@ impl LinkMeter {
         self.newest = None;
         self.heard = None;
         self.transit_ns = None;
+        self.round_trip_ns = None;
+        self.delay_ns = None;
+        self.jitter = 0.0;
         self.clock.begin(now_ns, clock_ahead_ns, error_ns);
     }
 

@@ -141,7 +141,7 @@ impl std::fmt::Display for Range {
 }
 
 /// Clocks on one host may disagree by this much \[s\].
-const CLOCK_TOLERANCE: f64 = 0.005;
+pub const CLOCK_TOLERANCE: f64 = 0.005;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Accepted {

@@ -42,7 +42,8 @@ mod tip;
 mod turning;
 
 pub use command::{
-    CartesianModel, Command, CommandCheck, CommandRefusal, Range, RefusalCounts, Target,
+    CLOCK_TOLERANCE, CartesianModel, Command, CommandCheck, CommandRefusal, Range, RefusalCounts,
+    Target,
 };
 pub use compliance::{stiffest, stiffest_serial, tip_compliance};
 pub use config::{JointTuning, ReleaseConfig, ServoConfig};
@@ -57,7 +58,7 @@ use self::frozen::FrozenWatch;
 use self::joint::{JointServo, Seen};
 use self::jumped::JumpWatch;
 use self::serial::Carried;
-use self::stall::{BEGINS_ANEW, Stall};
+use self::stall::Stall;
 use crate::operating::{Event, OperatingState, Reason, StateCommand, StateMachine, StateRefusal};
 use crate::planted::{Planted, Rule};
 use crate::{nanoseconds, seconds};
@@ -66,6 +67,11 @@ use ferntast_model::joint::JointParameters;
 use ferntast_model::kinematics::planar;
 use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, ParameterError};
+
+/// A torque that is older than this counts no more: the arm's node lets go of the drives \[s\].
+/// A servo that was held up for longer begins where the arm is, as other hands may have moved
+/// it.
+pub const TORQUE_LIFE: f64 = 0.010;
 
 /// After the servo was held up a measurement is of the time after that when it is not
 /// older than this \[periods\].
@@ -318,7 +324,7 @@ impl Servo {
     /// One period at `now_ns` \[ns since the UNIX epoch\].
     pub fn step(&mut self, now_ns: i64, input: &ServoInput) -> ServoOutput {
         let stalled_ns = self.stall.step(now_ns);
-        if self.stall.has_just_ended(BEGINS_ANEW) && !self.planted.lacks(Rule::BeginAfterStall) {
+        if self.stall.has_just_ended(TORQUE_LIFE) && !self.planted.lacks(Rule::BeginAfterStall) {
             self.was_held_up = true;
             // It stands: those who were held up as well have the time of a watchdog to be heard.
             self.last_command_ns = self.last_command_ns.map(|_| now_ns);
@@ -433,7 +439,7 @@ impl Servo {
     /// Whether it was measured so long ago that the arm is not where it was any more: who
     /// measures it drives it, too, and lets go of the drives meanwhile.
     fn is_stale(&self, measured: &Measurement, now_ns: i64) -> bool {
-        measured.age_ns(now_ns) > nanoseconds(BEGINS_ANEW)
+        measured.age_ns(now_ns) > nanoseconds(TORQUE_LIFE)
             && !self.planted.lacks(Rule::BeginAfterStall)
     }
 

@@ -8,9 +8,6 @@ const LATE: f64 = 0.002;
 /// For so long after it was held up, the servo is patient with others \[s\]:
 /// they were held up as well, and are about to be heard again.
 const RECOVERY: f64 = 0.005;
-/// After it was held up for longer than this, it begins where the arm is \[s\]: the drives
-/// are let go of after as long, and other hands may have moved the arm.
-pub(super) const BEGINS_ANEW: f64 = 0.010;
 
 /// Notes when the servo itself was held up, as a computer without a real-time
 /// kernel holds up all its processes now and then. What fell silent only in
@@ -53,6 +50,7 @@ impl Stall {
 
 #[cfg(test)]
 mod tests {
+    use super::super::TORQUE_LIFE;
     use super::*;
 
     const MS: i64 = 1_000_000;
@@ -63,13 +61,13 @@ mod tests {
         let start = 1_700_000_000_000 * MS;
         for tick in 0..100 {
             assert_eq!(stall.step(start + tick * MS), 0);
-            assert!(!stall.has_just_ended(BEGINS_ANEW));
+            assert!(!stall.has_just_ended(TORQUE_LIFE));
         }
         // Held up for 40 ms.
         let after = start + 139 * MS;
         for tick in 0..=5 {
             assert_eq!(stall.step(after + tick * MS), 40 * MS);
-            assert_eq!(stall.has_just_ended(BEGINS_ANEW), tick == 0);
+            assert_eq!(stall.has_just_ended(TORQUE_LIFE), tick == 0);
             assert!(!stall.has_just_ended(0.04));
         }
         assert_eq!(stall.step(after + 6 * MS), 0);

@@ -25,8 +25,6 @@ const AHEAD: f64 = 1.5;
 const FARTHEST: f64 = 512.0;
 /// Cycles between two looks at something that changes slowly.
 const SLOWLY: u32 = 32;
-/// What the watchdog says once it has stopped the motor.
-const TRIPPED: [u8; 1] = [0xFF];
 
 /// Dynamixel motors on a bus.
 pub struct Dynamixel {
@@ -165,17 +163,23 @@ impl Dynamixel {
             self.set_goals(|place| (states[place].position, 0.0))?;
             self.watch()?;
         } else {
-            self.line.set_all(BUS_WATCHDOG, [0])?;
+            self.line.set_surely(BUS_WATCHDOG, &[0])?;
         }
-        self.line.set_all(TORQUE_ENABLE, [u8::from(on)])?;
+        // A joint whose motor did not hear this would be limp, and tell its place all the same.
+        self.line.set_surely(TORQUE_ENABLE, &[u8::from(on)])?;
         self.on = on;
         Ok(())
     }
 
     /// Has the motors stop by themselves once the bus is silent.
     fn watch(&mut self) -> Result<(), Missed> {
-        let counts = (self.line.section.watchdog / WATCHDOG_UNIT).ceil();
-        self.line.set_all(BUS_WATCHDOG, [counts as u8])
+        let counts = self.patience();
+        self.line.set_surely(BUS_WATCHDOG, &counts)
+    }
+
+    /// How long a silence they bear, as they count it.
+    fn patience(&self) -> [u8; 1] {
+        [(self.line.section.watchdog / WATCHDOG_UNIT).ceil() as u8]
     }
 
     fn read_states(&mut self, states: &mut States) -> Result<(), Missed> {
@@ -216,18 +220,20 @@ impl Dynamixel {
                     states[place].temperature = f64::from(temperature);
                 }),
             half if half == SLOWLY / 2 && self.on => {
-                let mut tripped = false;
-                let each = |_, _, own: &[u8; 1]| tripped |= *own == TRIPPED;
+                let wanted = self.patience();
+                let mut watched = true;
+                let each = |_, _, own: &[u8; 1]| watched &= *own == wanted;
                 self.line.get_all(BUS_WATCHDOG, each)?;
-                match tripped {
-                    false => Ok(()),
-                    // The motors have stopped; from here on they follow again.
-                    true => {
-                        self.line.set_all(BUS_WATCHDOG, [0])?;
+                match watched {
+                    true => Ok(()),
+                    // Motors that have stopped follow again from here on.
+                    false => {
+                        self.line.set_surely(BUS_WATCHDOG, &[0])?;
                         self.watch()
                     }
                 }
             }
+            quarter if quarter == SLOWLY / 4 && self.on => self.line.are_on(TORQUE_ENABLE),
             _ => Ok(()),
         }
     }

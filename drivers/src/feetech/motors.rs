@@ -18,6 +18,8 @@ use crate::motors::{
 
 /// Kinds of motors: names, and what they call themselves.
 const MODELS: [(&str, u16); 2] = [("STS3215", 777), ("STS3250", 2825)];
+/// Cycles between two looks at whether the drives are on.
+const SLOWLY: u32 = 32;
 /// Goals of motors of a single turn \[count\].
 const GOALS: (f64, f64) = (0.0, COUNTS - 1.0);
 
@@ -29,6 +31,7 @@ pub struct Feetech {
     on: bool,
     /// Where they are held \[count\].
     held: Option<States>,
+    cycles: u32,
 }
 
 impl Feetech {
@@ -54,6 +57,7 @@ impl Feetech {
             duty_by_count: vec![0.0; section.motor.len()],
             on: false,
             held: None,
+            cycles: 0,
         })
     }
 
@@ -134,7 +138,8 @@ impl Feetech {
         if on {
             self.set_goals(states)?;
         }
-        self.line.set_all(TORQUE_ENABLE, [u8::from(on)])?;
+        // A joint whose motor did not hear this would be limp, and tell its place all the same.
+        self.line.set_surely(TORQUE_ENABLE, &[u8::from(on)])?;
         self.on = on;
         Ok(())
     }
@@ -204,7 +209,12 @@ impl Family for Feetech {
 
     fn step(&mut self, drive: &Drive, states: &mut States) -> Result<(), Missed> {
         self.tell(drive, states)?;
-        self.read_states(states)
+        self.read_states(states)?;
+        self.cycles = self.cycles.wrapping_add(1);
+        match self.on && self.cycles.is_multiple_of(SLOWLY) {
+            true => self.line.are_on(TORQUE_ENABLE),
+            false => Ok(()),
+        }
     }
 
     fn release(&mut self) {

@@ -3,10 +3,10 @@
 //! Its tip is `/leader/measured_cp`, under a source of its own; `/leader/servo_cf`, which the master
 //! has limited, is what its joints give beside its own weight
 //! ([`LeaderArm`](ferntast_control::haptics::LeaderArm)). They give the weight alone where the
-//! master is not enabled, another hand holds the authority, or the force is silent; and nothing,
-//! so that the arm is limp, where its drives cannot be told a torque
-//! ([`Driver::gives_torque`](crate::Driver::gives_torque)), or its joints are silent. Silent joints are no hand: the
-//! master lets go and the arm pauses, as with any client.
+//! master is not enabled, another hand holds the authority, or the force is silent. Drives that cannot
+//! be told a torque ([`Driver::gives_torque`](crate::Driver::gives_torque)) are off, so that the arm is limp. While its
+//! joints are silent, its driver lets go of it or, as motors on a bus, holds it where it was. Silent
+//! joints are no hand: the master lets go and the arm pauses, as with any client.
 
 mod device;
 mod held;

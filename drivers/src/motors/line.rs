@@ -92,7 +92,44 @@ impl<P: Protocol> Line<P> {
         self.accepted(place, address, answer).map(drop)
     }
 
-    /// Gives all motors the same registers.
+    /// Gives all motors the same registers, one after the other, and hears of each that it took
+    /// them.
+    ///
+    /// # Errors
+    ///
+    /// The first that does not.
+    pub fn set_surely(&mut self, address: u16, data: &[u8]) -> Result<(), Missed> {
+        for place in 0..self.ids.len() {
+            let id = self.ids[place];
+            let answer = self.tried(|bus| bus.write(id, address, data));
+            let answer = answer.map_err(|lost| Missed::Motor(place, lost))?;
+            self.accepted(place, address, Ok(answer))?;
+        }
+        Ok(())
+    }
+
+    /// Whether all drives are on, as register `address` says.
+    ///
+    /// # Errors
+    ///
+    /// One that is off, by itself or as it was without power; one that does not say.
+    pub fn are_on(&mut self, address: u16) -> Result<(), Missed> {
+        let mut off = None;
+        self.get_all(address, |place, _, &[on]| {
+            if on == 0 {
+                off = off.or(Some(place));
+            }
+        })?;
+        match off {
+            None => Ok(()),
+            Some(place) => {
+                let what = "off by itself (was its power interrupted?)".to_owned();
+                Err(self.hardware(place, what).into())
+            }
+        }
+    }
+
+    /// Gives all motors the same registers; nothing answers to this.
     ///
     /// # Errors
     ///

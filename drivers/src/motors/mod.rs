@@ -11,7 +11,6 @@ pub mod bus;
 pub mod error;
 pub mod family;
 pub mod line;
-mod newest;
 pub mod port;
 pub mod protocol;
 pub mod section;

@@ -10,8 +10,8 @@ use ferntast_model::MAX_JOINTS;
 use super::{
     error::MotorError,
     family::{Drive, MotorState, States},
-    newest::Newest,
 };
+use crate::newest::Newest;
 
 /// Numbers of a motor's state.
 const FIELDS: usize = 5;

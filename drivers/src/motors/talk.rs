@@ -17,6 +17,9 @@ use super::{
 const SHORTEST: Duration = Duration::from_millis(1);
 /// A node that commands nothing for so long stands still, and so does its arm.
 const STALE: Duration = Duration::from_millis(50);
+/// Motors that did not answer, and were heard for so long ago, are held: who is told of no
+/// measurement gives no torque after twice that, and these arms have no brakes.
+const HELD: Duration = Duration::from_millis(10);
 /// A motor that was not heard for so long is lost.
 const LOST: Duration = Duration::from_millis(150);
 
@@ -34,6 +37,7 @@ pub fn start<F: Family>(
         states,
         shared,
         heard: Instant::now(),
+        answered: true,
         command: (0, Instant::now()),
     };
     let thread = thread::Builder::new().name("motors".to_owned());
@@ -48,6 +52,8 @@ struct Talk<F> {
     states: States,
     shared: Arc<Shared>,
     heard: Instant,
+    /// Whether all did in the last cycle.
+    answered: bool,
     /// The newest command's version, and since when it is there.
     command: (u64, Instant),
 }
@@ -57,7 +63,9 @@ impl<F: Family> Talk<F> {
         while !self.shared.ends.load(Ordering::Acquire) {
             let begin = Instant::now();
             let drive = self.drive(begin);
-            if let Err(missed) = self.family.step(&drive, &mut self.states) {
+            let answers = self.family.step(&drive, &mut self.states);
+            self.answered = answers.is_ok();
+            if let Err(missed) = answers {
                 self.shared.missed.fetch_add(1, Ordering::Relaxed);
                 self.missed(missed);
             } else {
@@ -79,8 +87,11 @@ impl<F: Family> Talk<F> {
             self.command = (version, now);
         }
         let stale = now - self.command.1 > STALE;
+        let silent = !self.answered && now - self.heard > HELD;
         match drive {
-            Drive::Currents(_) if stale || self.shared.failure.get().is_some() => Drive::Hold,
+            Drive::Currents(_) if stale || silent || self.shared.failure.get().is_some() => {
+                Drive::Hold
+            }
             drive => drive,
         }
     }

@@ -1,7 +1,7 @@
 //! The ROS 2 side, on a thread of its own: joint states in, commands out.
 //!
-//! No 1 kHz loop waits for DDS or Zenoh: both directions are short queues that neither side
-//! ever waits at. The thread, and those of the middleware that it starts, stand behind all loops
+//! No 1 kHz loop waits for DDS or Zenoh: joint states come through a short queue, of commands
+//! there is the newest, and neither side ever waits for the other. The thread, and those of the middleware that it starts, stand behind all loops
 //! of the control path and before all other programs.
 
 use std::{
@@ -20,7 +20,7 @@ use ferntast_bus::{
     ZenohMode,
 };
 use ferntast_config::{GatewaySection, Middleware};
-use ferntast_model::{JointCount, Joints};
+use ferntast_model::{JointCount, Joints, MAX_JOINTS};
 use ferntast_msgs::{
     Text, Time,
     sample::{ControllerCommandSample, JointNames, RobotJointsSample},
@@ -29,13 +29,14 @@ use ferntast_msgs::{
 use ferntast_nodes::process::{Clock, Priority, end_after_a_stop, periodic};
 
 use super::states::JointState;
+use crate::newest::Newest;
 
 /// How often the thread looks \[ns\].
 const PERIOD_NANOS: i64 = 500_000;
-/// How many wait at most, either way.
+/// How many joint states wait at most.
 const QUEUE: usize = 32;
 /// A command that was made longer ago is not sent any more \[s\].
-const COMMAND_LIFE: f64 = 0.05;
+const SENT_WITHIN: f64 = 0.05;
 /// From one try to reach ROS 2 to the next.
 const AGAIN: Duration = Duration::from_millis(500);
 /// What was sent last has so long to leave.
@@ -62,7 +63,7 @@ pub struct Wiring {
 /// The thread, as the driver sees it.
 pub struct Exchange {
     states: Receiver<JointState>,
-    commands: SyncSender<(Time, Joints<f64>)>,
+    commands: Arc<NewestCommand>,
     problems: Receiver<Text<96>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -82,13 +83,13 @@ impl Exchange {
             )?;
         }
         let (to_driver, states) = sync_channel(QUEUE);
-        let (commands, from_driver) = sync_channel(QUEUE);
+        let commands = Arc::new(NewestCommand::new());
         let (tell, problems) = sync_channel(QUEUE);
         let stop = Arc::new(AtomicBool::new(false));
         let worker = Worker {
             wiring,
             states: to_driver,
-            commands: from_driver,
+            commands: Arc::clone(&commands),
             problems: tell,
             stop: Arc::clone(&stop),
         };
@@ -115,9 +116,14 @@ impl Exchange {
 
     /// Sends a command, made at `now`. Where the thread is behind, the newest counts.
     pub fn send(&self, now: Time, command: &Joints<f64>) {
-        // A full queue is one of a thread that stands still: it has newer ones before it than it
-        // could send.
-        let _ = self.commands.try_send((now, *command));
+        let mut values = [0.0; 1 + MAX_JOINTS];
+        let [made, joints @ ..] = &mut values;
+        // To a quarter of a microsecond.
+        *made = now.nanos() as f64;
+        for (place, value) in joints.iter_mut().zip(command.iter()) {
+            *place = *value;
+        }
+        self.commands.write(&values);
     }
 
     /// Whether the thread has ended.
@@ -136,10 +142,13 @@ impl Drop for Exchange {
     }
 }
 
+/// When a command was made \[ns\], and its values, by the arm's joints.
+type NewestCommand = Newest<{ 1 + MAX_JOINTS }>;
+
 struct Worker {
     wiring: Wiring,
     states: SyncSender<JointState>,
-    commands: Receiver<(Time, Joints<f64>)>,
+    commands: Arc<NewestCommand>,
     problems: SyncSender<Text<96>>,
     stop: Arc<AtomicBool>,
 }
@@ -168,7 +177,7 @@ impl Worker {
             Ok(ports) => ports,
             Err(error) => return self.tell(Text::display(error)),
         };
-        let mut refused = 0;
+        let (mut refused, mut sent) = (0, 0);
         let go_on = || !self.stop.load(Ordering::Relaxed);
         periodic::run_while(self.wiring.clock, PERIOD_NANOS, go_on, |wake| {
             self.take_in(wake.now, &mut states);
@@ -177,9 +186,9 @@ impl Worker {
                 refused = counts.refused();
                 self.tell(counts.last_refusal);
             }
-            self.send(wake.now, &mut commands);
+            self.send(wake.now, &mut sent, &mut commands);
         });
-        self.send(self.wiring.clock.now(), &mut commands);
+        self.send(self.wiring.clock.now(), &mut sent, &mut commands);
         thread::sleep(LAST_WORD);
     }
 
@@ -210,17 +219,18 @@ impl Worker {
         }
     }
 
-    fn send(&self, now: Time, commands: &mut Publisher<ControllerCommandSample>) {
-        let Some((made, command)) = self.commands.try_iter().last() else {
+    /// Sends the newest command, if it is another than the one of version `sent`.
+    fn send(&self, now: Time, sent: &mut u64, commands: &mut Publisher<ControllerCommandSample>) {
+        let newest = self.commands.read().filter(|(version, _)| version != sent);
+        let Some((version, [made, command @ ..])) = newest else {
             return;
         };
-        if now.seconds_since(made) > COMMAND_LIFE {
+        *sent = version;
+        if now.seconds_since(Time::from_nanos(made as i64)) > SENT_WITHIN {
             return;
         }
-        let mut values = command;
-        for (value, joint) in values.iter_mut().zip(&self.wiring.order) {
-            *value = command[*joint];
-        }
+        let order = &self.wiring.order;
+        let values = Joints::from_fn(self.wiring.count, |place| command[order[place]]);
         if let Err(error) = commands.publish(now, &ControllerCommandSample::new(&values)) {
             self.tell(Text::display(error));
         }

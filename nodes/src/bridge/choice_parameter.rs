@@ -18,6 +18,14 @@ const PATIENCE: f64 = 5.0;
 /// A value of a parameter.
 type Value = Text<24>;
 
+/// Why peers may not choose, where the scenario does not let them.
+fn closed(process: &ProcessContext) -> Option<String> {
+    let why = "peers on ROS 2 may look and not choose: begin the session with --ros-commands, or say it \
+         on the page or by `ferntast link law` and `ferntast twin`";
+    let open = process.session.loaded.scenario.gateway.commands;
+    (!open).then(|| why.to_owned())
+}
+
 /// Passes wishes on to a node, and tells what that node does.
 pub struct ChoiceParameter {
     node: Option<ParameterNode>,
@@ -28,8 +36,6 @@ pub struct ChoiceParameter {
     does: Value,
     /// A wish, and when it was passed on.
     wished: Option<(Value, Time)>,
-    /// Peers may not choose: a wish is taken back at once.
-    forbidden: bool,
 }
 
 impl ChoiceParameter {
@@ -45,6 +51,7 @@ impl ChoiceParameter {
             description: "The delay law, at both ends of the link".to_owned(),
             choices: Law::NAMES.iter().map(|name| (*name).to_owned()).collect(),
             value: process.session.loaded.scenario.law.name().to_owned(),
+            closed: closed(process),
         };
         let mut command = process.bus.publisher(topics::LINK_LAW_COMMAND)?;
         let mut status = process.bus.subscriber(topics::LINK_STATUS, Depth::Newest)?;
@@ -71,6 +78,7 @@ impl ChoiceParameter {
             description: "Where the friction that is fed forward comes from".to_owned(),
             choices: names.map(str::to_owned).collect(),
             value: "configured".to_owned(),
+            closed: closed(process),
         };
         let bus = &process.bus;
         let mut command = bus.publisher(topics::FOLLOWER_FRICTION_COMMAND)?;
@@ -112,13 +120,7 @@ impl ChoiceParameter {
             pass_on,
             heard,
             wished: None,
-            forbidden: false,
         })
-    }
-
-    /// Peers may look and not choose from now on.
-    pub fn forbid(&mut self) {
-        self.forbidden = true;
     }
 
     /// One round.
@@ -127,14 +129,9 @@ impl ChoiceParameter {
             return;
         };
         if let Some(name) = node.wish() {
-            if self.forbidden {
-                // What the node does now is a choice.
-                let _ = node.tell(self.does.as_str());
-            } else {
-                let wish = Text::new(&name);
-                (self.pass_on)(now, wish);
-                self.wished = Some((wish, now));
-            }
+            let wish = Text::new(&name);
+            (self.pass_on)(now, wish);
+            self.wished = Some((wish, now));
         }
         let Some(does) = (self.heard)(now) else {
             return;

@@ -138,9 +138,6 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         ChoiceParameter::law(process, &ros)?,
         ChoiceParameter::friction(process, &ros)?,
     ];
-    if !section.commands {
-        parameters.iter_mut().for_each(ChoiceParameter::forbid);
-    }
     let own_parameters = BusParameters::open(&ros)?;
     let mut states = StateServices::open(&process.bus, &ros, section.commands)?;
     let mut forwarding = ForwardingLoop::new(process)?;

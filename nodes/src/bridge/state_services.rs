@@ -2,8 +2,8 @@
 //! `/follower/enable`, `disable`, `pause`, `resume`, the same of `/leader`, and `/stop`, which
 //! disables both. `ros2 service call /stop std_srvs/srv/Trigger`.
 //!
-//! A call is answered once the device is in the state that was asked for, or is not in time; a
-//! caller who may not is told so at once.
+//! A call is answered once the device says, after it, that it is in the state that was asked for, or
+//! does not in time; a caller who may not is told so at once.
 
 use ferntast_bus::{
     Bus, Call, CreateError, Depth, OpenError, Publisher, Subscriber, TriggerService,
@@ -57,13 +57,18 @@ impl Device {
             .publish(now, &StateCommandSample::new(now, word));
     }
 
-    fn is(&self, wanted: OperatingState) -> bool {
-        self.last.as_ref().is_some_and(|own| own.state == wanted)
+    /// What it said after `since`.
+    fn said(&self, since: Time) -> Option<&OperatingStateSample> {
+        self.last.as_ref().filter(|own| own.stamp > since)
+    }
+
+    fn is(&self, wanted: OperatingState, since: Time) -> bool {
+        self.said(since).is_some_and(|own| own.state == wanted)
     }
 
     /// State and reason, in words.
-    fn told(&self) -> String {
-        match &self.last {
+    fn told(&self, since: Time) -> String {
+        match self.said(since) {
             Some(own) => {
                 let state = own.state.name().unwrap_or("UNKNOWN");
                 format!("{} {state}: {}", self.name, own.reason)
@@ -170,12 +175,12 @@ impl Offer {
             }
             self.waiting.push((call, now));
         }
-        let there = devices.iter().all(|device| device.is(self.leads_to));
         let mut waiting = std::mem::take(&mut self.waiting);
         for (call, since) in waiting.drain(..) {
+            let there = devices.iter().all(|device| device.is(self.leads_to, since));
             let late = now.seconds_since(since) > PATIENCE;
             if there || late {
-                let told: Vec<String> = devices.iter().map(|device| device.told()).collect();
+                let told: Vec<String> = devices.iter().map(|device| device.told(since)).collect();
                 self.service.answer(call, there, &told.join("; "));
             } else {
                 self.waiting.push((call, since));

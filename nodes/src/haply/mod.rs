@@ -4,7 +4,8 @@
 //! The service is on the operator's host ([`message`]); it is asked for every second until it is there.
 //! A frame of it is a measurement of the hand, and is answered with the force of `/leader/servo_cf`,
 //! which the master has limited. Silence is not filled in: without frames there is no hand, the master
-//! lets go and the arm pauses, as with any client. The force fades in whenever the service is met.
+//! lets go and the arm pauses, as with any client; the device, which keeps what it was told, is told
+//! no force. The force fades in whenever the service is met.
 //! Where the cursor is first heard is the middle of the hand's workspace. The orientation is that of
 //! the first grip, where there is one.
 
@@ -18,7 +19,7 @@ use ferntast_msgs::{
     topics,
 };
 
-use self::device::Device;
+use self::device::{Device, DeviceError};
 use crate::{
     node::NodeHealth,
     process::{NodeError, ProcessContext},
@@ -41,6 +42,34 @@ struct Met {
     name: serde_json::Value,
     since: Time,
     heard: Time,
+    /// A force was put on the hand.
+    pushes: bool,
+}
+
+impl Met {
+    fn new(device: Device, now: Time) -> Met {
+        Met {
+            device,
+            name: serde_json::Value::Null,
+            since: now,
+            heard: now,
+            pushes: false,
+        }
+    }
+
+    /// Puts `force` \[N\], of the device's frame, on the hand.
+    fn push(&mut self, force: [f64; 3]) -> Result<(), DeviceError> {
+        self.pushes = force != [0.0; 3];
+        self.device.push(&self.name, force)
+    }
+
+    /// Takes the force off the hand: the device keeps what it was told last.
+    fn let_go(&mut self) {
+        if std::mem::take(&mut self.pushes) {
+            // A device that cannot be told any more is gone, which is found out as it is heard.
+            let _ = self.push([0.0; 3]);
+        }
+    }
 }
 
 /// Carries the hand in and the force out until it is told to stop; lets go in the end.
@@ -78,14 +107,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         if met.is_none() && now >= again {
             again = now.plus_nanos(AGAIN_NANOS);
             match Device::connect(&config.url) {
-                Ok(device) => {
-                    met = Some(Met {
-                        device,
-                        name: serde_json::Value::Null,
-                        since: now,
-                        heard: now,
-                    });
-                }
+                Ok(device) => met = Some(Met::new(device, now)),
                 Err(error) => trouble = Text::display(error),
             }
         }
@@ -116,13 +138,16 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
                 let share = (now.seconds_since(own.since) / FORCE_RAMP).clamp(0.0, 1.0);
                 let force = fresh.map_or([0.0; 3], |own| own.force.map(|value| share * value));
                 own.name = heard.device;
-                own.device.push(&own.name, axes.to_device(force))
+                own.push(axes.to_device(force))
             });
-            let silent = now.seconds_since(own.heard) > SILENCE;
+            let silence = now.seconds_since(own.heard);
+            if outcome.is_err() || silence > FORCE_LIFE {
+                own.let_go();
+            }
             if let Err(error) = outcome {
                 trouble = Text::display(error);
                 met = None;
-            } else if silent {
+            } else if silence > SILENCE {
                 trouble = Text::new(
                     "Haply's service says nothing: is the device plugged in and calibrated?",
                 );
@@ -139,11 +164,8 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
             let _ = diagnostics.publish(now, &sample);
         }
     });
-    if let Some(Met {
-        mut device, name, ..
-    }) = met
-    {
-        let _ = device.push(&name, [0.0; 3]);
+    if let Some(mut own) = met {
+        own.let_go();
     }
     Ok(())
 }

@@ -108,7 +108,7 @@ impl Node for FollowerLinkNode {
         let readings = FollowerReadings {
             tip: position(now, &input.measured_cp),
             contact_force: contact_force(now, input),
-            state: operating_state(&input.operating_state),
+            state: operating_state(now, &input.operating_state),
             told_to_stop: input.told.iter().any(|own| stops(own.command)),
         };
         let step = self.link.step(now.nanos(), &readings);

@@ -111,7 +111,7 @@ impl Node for LeaderLinkNode {
             orientation: hand
                 .filter(|_| self.turns)
                 .and_then(|own| Orientation::given(own.orientation)),
-            state: operating_state(&input.operating_state),
+            state: operating_state(now, &input.operating_state),
         };
         let step = self.link.step(now.nanos(), &readings);
         // With the pose of this step the master published the force from there on.

@@ -138,7 +138,9 @@ impl PeerWatch {
             health.raise(Fault::LinkDown, Level::WARN);
             health.message = match peer.established {
                 None => match &peer.at_the_door {
-                    None => Text::display(format_args!("no handshake with {other} yet")),
+                    None => Text::display(format_args!(
+                        "no handshake with {other} yet; is it there, by the same --session name?"
+                    )),
                     Some(reason) => Text::display(format_args!("no way to {other}: {reason}")),
                 },
                 Some(_) => Text::display(format_args!("no frames from {other}")),

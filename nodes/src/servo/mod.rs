@@ -15,8 +15,8 @@ use ferntast_control::{
     orientation::Orientation,
     planted::Planted,
     servo::{
-        Command, CommandRefusal, Measurement, Servo, ServoConfig, ServoInput as LawInput,
-        ServoOutput as LawOutput, Target,
+        CLOCK_TOLERANCE, Command, CommandRefusal, Measurement, Servo, ServoConfig,
+        ServoInput as LawInput, ServoOutput as LawOutput, Target,
     },
 };
 use ferntast_model::{JointCount, Joints, ParameterError};
@@ -125,12 +125,16 @@ impl ServoNode {
     }
 }
 
-/// The newest command of either kind.
+/// The newest command of either kind. One of a time to come is refused, and so stands in nobody's
+/// way once that is told.
 fn command(
+    now: Time,
     input: &ServoInput,
     servo_jp: Option<&JointSample>,
     joints: JointCount,
 ) -> Option<Command> {
+    let latest_ns = now.plus_seconds(CLOCK_TOLERANCE).nanos();
+    let counts = |own: &Command, is_fresh: bool| is_fresh || own.stamp_ns <= latest_ns;
     let tip = input.servo_cp.message.map(|pose| Command {
         stamp_ns: pose.stamp.nanos(),
         target: match Orientation::given(pose.orientation) {
@@ -138,12 +142,14 @@ fn command(
             None => Target::Tip(pose.position),
         },
     });
+    let tip = tip.filter(|own| counts(own, input.servo_cp.fresh().is_some()));
     let position = servo_jp
         .filter(|sample| sample.fields.has(JointFields::POSITION))
         .map(|sample| Command {
             stamp_ns: sample.stamp.nanos(),
             target: Target::Joints(Joints::from_places(joints, sample.position)),
         });
+    let position = position.filter(|own| counts(own, input.servo_jp.fresh().is_some()));
     match (tip, position) {
         (Some(tip), Some(position)) if position.stamp_ns > tip.stamp_ns => Some(position),
         (Some(tip), _) => Some(tip),
@@ -167,7 +173,7 @@ impl Node for ServoNode {
                 velocity: Joints::from_places(joints, sample.velocity),
                 torque: Joints::from_places(joints, sample.effort),
             }),
-            command: command(input, servo_jp.as_deref(), joints),
+            command: command(now, input, servo_jp.as_deref(), joints),
             state_command: self.state_command(input, output),
         };
         self.feed_forward(now, input, output);

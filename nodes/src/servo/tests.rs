@@ -180,3 +180,46 @@ fn joint_states_of_other_joints_are_refused_and_in_another_order_are_not() {
     let needed = "joints joint_1, elbow where joint_1, joint_2 are needed";
     assert_eq!(health.message.as_str(), needed);
 }
+
+/// A client whose clock is ahead is told once, and does not lock out the link.
+#[test]
+fn a_command_of_a_time_to_come_stands_in_nobodys_way() {
+    let now = START;
+    let names = JointNames::new(["joint_1", "joint_2"]).unwrap();
+    let joints = JointCount::new(2).unwrap();
+    let tip = PoseSample::at(
+        now,
+        ferntast_msgs::sample::Frame::FOLLOWER_BASE,
+        [0.2, 0.1, 0.0],
+    );
+    let mut ahead = JointSample::empty(names, now.plus_seconds(10.0));
+    ahead.set_position(&[0.1, 0.2]);
+    let of = |ahead: JointSample, fresh: bool, tip: Option<PoseSample>| {
+        let input = ServoInput {
+            servo_cp: Newest {
+                message: tip,
+                received: now,
+                fresh: true,
+            },
+            servo_jp: Newest {
+                message: Some(ahead),
+                received: now,
+                fresh,
+            },
+            ..ServoInput::default()
+        };
+        command(now, &input, Some(&ahead), joints)
+    };
+    let is_tip = |own: Option<Command>| matches!(own.map(|own| own.target), Some(Target::Tip(_)));
+    let is_joints =
+        |own: Option<Command>| matches!(own.map(|own| own.target), Some(Target::Joints(_)));
+    // As it arrives it is judged, and refused for its time.
+    assert!(is_joints(of(ahead, true, Some(tip))));
+    assert!(is_tip(of(ahead, false, Some(tip))));
+    assert!(of(ahead, false, None).is_none());
+    // Within what clocks of one host may disagree by, the newer counts.
+    ahead.stamp = now.plus_seconds(0.004);
+    assert!(is_joints(of(ahead, false, Some(tip))));
+    ahead.stamp = now.plus_seconds(-0.001);
+    assert!(is_tip(of(ahead, false, Some(tip))));
+}

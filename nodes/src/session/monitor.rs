@@ -336,7 +336,6 @@ impl Monitor {
         self.operating
             .values_mut()
             .for_each(|view| view.times.begin(now));
-        self.stops.clear();
         self.round_trips.clear();
         self.first_link = None;
         self.peak_normal_force = 0.0;

@@ -17,7 +17,7 @@ use super::{
     host_resources::HostResources,
     live::LiveLine,
     preflight, recording,
-    scripted_operator::{ScriptedOperator, Seen},
+    scripted_operator::{ScriptedOperator, Seen, is_silence},
     supervisor::Unclean,
 };
 use crate::{
@@ -35,6 +35,12 @@ const REPETITION_NANOS: i64 = 1_000_000_000;
 /// How long nothing may change until all nodes are alive and the arm is armed
 /// \[s\]: on a computer that is busy they come one after the other.
 const START_PATIENCE: f64 = 20.0;
+
+/// What is not obeyed on the way to an armed arm is said again after this time \[s\].
+const COMMAND_PERIOD: f64 = 0.25;
+
+/// What is said where the arm is not armed at the start.
+const STOPPED_BEFORE: &str = "somebody stopped the arm before it was armed: it is yours to arm it";
 
 /// What the operator of a script says when it does not arm the arm again.
 const LEFT_TO_YOU: &str =
@@ -85,6 +91,7 @@ pub fn run(
             && !context.loaded.scenario.hand.source.is_a_person())
         .then(ScriptedOperator::default),
         own_stop: None,
+        is_stopped: false,
         rearmed: 0,
         context,
     };
@@ -185,8 +192,10 @@ struct Running {
     died: Vec<&'static str>,
     /// Whose hand is the script, where there is one.
     operator: Option<ScriptedOperator>,
-    /// The stamp of the operator's own last word that takes the drives off.
+    /// The stamp of the session's own last word that takes the drives off.
     own_stop: Option<Time>,
+    /// Somebody stopped the arm before it was armed.
+    is_stopped: bool,
     /// How often the operator armed the arm again.
     rearmed: u32,
 }
@@ -197,13 +206,8 @@ struct Arming {
 }
 
 impl Arming {
-    /// Enables both devices. A fault, as from the moments in which the nodes
-    /// were being started, is left by `disable` first.
-    fn enable(&mut self, now: Time, fault: bool) {
-        let command = match fault {
-            true => StateCommand::DISABLE,
-            false => StateCommand::ENABLE,
-        };
+    /// Tells both devices.
+    fn tell_both(&mut self, now: Time, command: StateCommand) {
         // If a command is not sent the arm is not armed, which is noticed.
         self.tell_arm(now, command);
         let _ = self
@@ -300,8 +304,22 @@ impl Running {
         Ok(())
     }
 
-    /// Gives the command to arm once every node is alive; notes when it is.
-    fn arm(&mut self, now: Time, monitor: &Monitor, arming: &mut Arming, options: &SessionOptions) {
+    /// Gives the command to arm once every node is alive, unless somebody has said that it is
+    /// not to be; notes when it is.
+    fn arm(
+        &mut self,
+        now: Time,
+        monitor: &mut Monitor,
+        arming: &mut Arming,
+        options: &SessionOptions,
+    ) {
+        if options.enable && !self.is_stopped && self.others_stop(monitor) {
+            self.is_stopped = true;
+            if let Some(operator) = &mut self.operator {
+                operator.leave();
+            }
+            monitor.events.note(now, Level::WARN, STOPPED_BEFORE);
+        }
         let all_alive = self
             .supervisor
             .nodes()
@@ -309,31 +327,47 @@ impl Running {
         if !all_alive {
             return;
         }
-        if !options.enable {
+        if !options.enable || self.is_stopped {
             self.armed_at = Some(now);
             return;
         }
-        let follower = monitor.operating.get("follower");
-        let is = |state| follower.is_some_and(|view| view.is(state));
-        let armed = is(OperatingState::ENABLED);
-        if armed {
+        let arm = monitor.operating.get("follower").and_then(|view| view.last);
+        let is = |state| arm.is_some_and(|arm| arm.state == state);
+        let said = |since: Time| now.seconds_since(since) <= COMMAND_PERIOD;
+        if is(OperatingState::ENABLED) {
             self.armed_at = Some(now);
-        } else if self
-            .commanded_at
-            .is_none_or(|commanded| now.seconds_since(commanded) > 0.25)
-        {
+        } else if !self.commanded_at.is_some_and(said) {
+            let word = match is(OperatingState::FAULT) {
+                false => StateCommand::ENABLE,
+                // As from the moments in which the nodes were being started.
+                true if arm.is_some_and(|arm| is_silence(&arm)) => StateCommand::DISABLE,
+                true => return,
+            };
             self.commanded_at = Some(now);
-            arming.enable(now, is(OperatingState::FAULT));
+            self.note_own(now, word);
+            arming.tell_both(now, word);
+        }
+    }
+
+    /// Whether somebody else said since the last round that the arm is to stop.
+    fn others_stop(&self, monitor: &mut Monitor) -> bool {
+        let mut stops = std::mem::take(&mut monitor.stops).into_iter();
+        stops.any(|stamp| Some(stamp) != self.own_stop)
+    }
+
+    /// Remembers a word of its own that stops the arm.
+    fn note_own(&mut self, now: Time, word: StateCommand) {
+        if word == StateCommand::DISABLE {
+            self.own_stop = Some(now);
         }
     }
 
     /// What the operator does whose hand is the script.
     fn operate(&mut self, now: Time, monitor: &mut Monitor, arming: &mut Arming) {
-        let stops = std::mem::take(&mut monitor.stops);
+        let foreign = self.others_stop(monitor);
         let Some(operator) = &mut self.operator else {
             return;
         };
-        let foreign = stops.into_iter().any(|stamp| Some(stamp) != self.own_stop);
         let taken = monitor.holder > THIS_HOST;
         if (foreign || taken) && operator.leave() {
             monitor.events.note(now, Level::OK, LEFT_TO_YOU);
@@ -349,9 +383,7 @@ impl Running {
         let Some((word, arm)) = operator.step(now, &seen) else {
             return;
         };
-        self.own_stop = (word == StateCommand::DISABLE)
-            .then_some(now)
-            .or(self.own_stop);
+        self.note_own(now, word);
         self.rearmed += u32::from(word != StateCommand::DISABLE);
         arming.tell_arm(now, word);
         let cause = arm

@@ -23,6 +23,16 @@ pub struct Seen {
     pub well: bool,
 }
 
+/// Whether nothing but silence stopped the arm.
+pub fn is_silence(arm: &OperatingStateSample) -> bool {
+    let because = |event| arm.reason.as_str() == Reason::Event(event).to_string();
+    match arm.state {
+        OperatingState::PAUSED => because(Event::CommandSilent),
+        OperatingState::FAULT => because(Event::MeasurementSilent),
+        _ => false,
+    }
+}
+
 /// The operator of a script.
 #[derive(Debug, Default)]
 pub struct ScriptedOperator {
@@ -66,12 +76,9 @@ impl ScriptedOperator {
 
     /// What a person would say, who knows why the arm stands.
     fn answer(&self, arm: &OperatingStateSample) -> Option<StateCommand> {
-        let because = |event| arm.reason.as_str() == Reason::Event(event).to_string();
         match arm.state {
-            OperatingState::PAUSED if because(Event::CommandSilent) => Some(StateCommand::RESUME),
-            OperatingState::FAULT if because(Event::MeasurementSilent) => {
-                Some(StateCommand::DISABLE)
-            }
+            OperatingState::PAUSED if is_silence(arm) => Some(StateCommand::RESUME),
+            OperatingState::FAULT if is_silence(arm) => Some(StateCommand::DISABLE),
             OperatingState::DISABLED if self.resetting => Some(StateCommand::ENABLE),
             _ => None,
         }

@@ -255,6 +255,43 @@ fn whoever_is_heard_keeps_the_arm() {
     assert_eq!(rig.arm.established().unwrap().peer, key(9).public());
 }
 
+/// An operator that sends all, an arm that leaves out what says nothing new: the operator's key is
+/// worn long before the arm's, of whose frames a tenth was lost on the way, too.
+#[test]
+fn keys_are_renewed_where_one_end_sends_more() {
+    const HALF: u32 = 1 << 30;
+    for (forth, back) in [(HALF, HALF / 4), (HALF / 4, HALF)] {
+        let mut rig = Rig::new();
+        rig.run(300);
+        let arrived = |sent: u32| sent / 10 * 9;
+        let wear = |end: &mut SecureEnd, sealed, opened| {
+            end.keys.as_mut().expect("keys").wear(sealed, opened);
+        };
+        wear(&mut rig.operator, forth, back);
+        wear(&mut rig.arm, back, arrived(forth));
+        // Another one who may have the arm does not get it meanwhile.
+        let role = Role::Operator {
+            peer: key(ARM).public(),
+        };
+        let mut other = SecureEnd::new(key(9), role, SESSION, [13; 32]);
+        let mut told = 0;
+        for _ in 0..200 {
+            if let Some(message) = other.message(rig.now_ns) {
+                let received = rig.arm.received(message.bytes(), rig.now_ns);
+                told += usize::from(received == Received::Refused(Refusal::Taken));
+            }
+            if let Some(message) = rig.arm.message(rig.now_ns) {
+                other.received(message.bytes(), rig.now_ns);
+            }
+            rig.step([true, true]);
+        }
+        assert!(told > 0 && other.established().is_none());
+        rig.run(3000);
+        assert_eq!(rig.incarnations(), [2, 2], "{forth} forth, {back} back");
+        assert_eq!(rig.run(100), [100, 100]);
+    }
+}
+
 #[test]
 fn a_flood_of_hellos_does_not_keep_the_answer_back() {
     let mut rig = Rig::new();

@@ -1,10 +1,10 @@
 """What Haply's Inverse Service does, without a device: frames of an Inverse3 and a grip over a WebSocket.
 
 Writes "ready" to stderr. To whoever connects first it sends a frame every millisecond, whose cursor rests for `--rest` s,
-goes by `--way` (x, y, z of the device [m]) within 2 s, stays for 2 s and comes back, while the grip turns slowly; then it
-is silent, but listens for another second. Prints JSON: `frames` sent, `answers` received, `first_N` (size of the
-strongest force in the first 0.1 s), `peak` (the strongest force, x, y, z [N]), `last` (the last force), `bad` (answers that
-Haply's service would not take).
+goes by `--way` (x, y, z of the device [m]) within 2 s, and stays, while the grip turns slowly; after 1.5 s it falls
+silent there, but listens for another second. Prints JSON: `frames` sent, `answers` received, `first_N` (size of the
+strongest force in the first 0.1 s), `peak` (the strongest force, x, y, z [N]), `before_N` (size of the last force before it
+fell silent), `last_N` (of the last at all), `bad` (answers that Haply's service would not take).
 """
 
 import argparse
@@ -43,11 +43,11 @@ async def main() -> None:
     parser.add_argument("--rest", type=float, default=3.0)
     parser.add_argument("--way", type=float, nargs=3, default=[0.0, 0.033, 0.0])
     options = parser.parse_args()
-    told = {"frames": 0, "answers": 0, "first_N": 0.0, "peak": [0.0] * 3, "last": None, "bad": 0}
+    told = {"frames": 0, "answers": 0, "first_N": 0.0, "peak": [0.0] * 3, "before_N": 0.0, "last_N": None, "bad": 0}
     done = asyncio.Event()
 
     def frame(time: float) -> str:
-        went = reach((time - options.rest) / 2.0) - reach((time - options.rest - 4.0) / 2.0)
+        went = reach((time - options.rest) / 2.0)
         cursor = MIDDLE + went * np.array(options.way)
         axes = dict(zip("xyz", cursor.tolist()))
         half = 0.1 * np.sin(0.5 * time)
@@ -75,14 +75,15 @@ async def main() -> None:
                     told["first_N"] = max(told["first_N"], size)
                 if size > np.linalg.norm(told["peak"]):
                     told["peak"] = force.tolist()
-                told["last"] = force.tolist()
+                told["last_N"] = size
 
         listening = asyncio.create_task(listen())
-        end = options.rest + 6.5
+        end = options.rest + 3.5
         while (time := loop.time() - begin) < end:
             await socket.send(frame(time))
             told["frames"] += 1
             await asyncio.sleep(max(0.0, begin + told["frames"] * 1e-3 - loop.time()))
+        told["before_N"] = told["last_N"]
         await asyncio.sleep(1.0)
         listening.cancel()
         done.set()

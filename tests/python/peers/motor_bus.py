@@ -68,6 +68,7 @@ class Motor:
         self.current = 0.0
         self.most = 0.0
         self.mute = False
+        self.unheard = 0  # so many of the next instructions that switch it do not reach it
         self.heard = time.monotonic()
         self.trips = 0
         self.temperature = own.get("temperature", 30)
@@ -80,6 +81,11 @@ class Motor:
     def take(self, address: int, signed: bool = False) -> int:
         size = self.table[address][0]
         return int.from_bytes(self.registers[address : address + size], "little", signed=signed)
+
+    def misses(self, address: int) -> bool:
+        missed = address == self.torque_enable and self.unheard > 0
+        self.unheard -= missed
+        return missed
 
     @property
     def on(self) -> bool:
@@ -421,6 +427,8 @@ class Bus:
             if instruction == own.write:
                 half = size // 2
                 address = int.from_bytes(parameters[:half], "little")
+                if motor.misses(address):
+                    return ""
                 error, wrong = motor.write(address, parameters[half:])
                 self.answer(own.status(number, motor.error() | error))
                 return wrong
@@ -433,7 +441,7 @@ class Bus:
         if instruction == own.sync_write:
             for at in range(0, len(rest), 1 + length):
                 motor = self.motors.get(rest[at])
-                if motor and not motor.mute:
+                if motor and not motor.mute and not motor.misses(address):
                     wrongs.append(motor.write(address, rest[at + 1 : at + 1 + length])[1])
             return "; ".join(filter(None, wrongs))
         asked = [self.motors[own] for own in rest if own in self.motors and not self.motors[own].mute]
@@ -473,6 +481,12 @@ class Desk:
             case "mute":
                 for motor in motors:
                     motor.mute = asked.get("on", True)
+            case "unheard":
+                for motor in motors:
+                    motor.unheard = asked["times"]
+            case "switch_off":
+                for motor in motors:
+                    motor.put(motor.torque_enable, 0)
             case "damage":
                 self.bus.damaged = asked["answers"]
             case "push":

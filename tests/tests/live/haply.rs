@@ -39,13 +39,16 @@ fn a_haply_drives_the_arm_feels_the_edge_and_lets_go_where_its_service_is_silent
         number(&told, "answers") > 0.2 * number(&told, "frames"),
         "{told:#}"
     );
-    // Pushed back to the operator, along the device's y; at first, and once nothing presses, not at all.
+    // Pushed back to the operator, along the device's y; at first not at all.
     let peak: Vec<f64> = (0..3)
         .filter_map(|axis| told["peak"][axis].as_f64())
         .collect();
     assert!((-10.0..-0.3).contains(&peak[1]), "{peak:?}");
     assert!(peak[0].abs() < -peak[1] && peak[2].abs() < 0.1, "{peak:?}");
     assert!(number(&told, "first_N") < 0.2, "{told:#}");
+    // It fell silent while the tip pressed: no force stays on the hand.
+    assert!(number(&told, "before_N") > 0.3, "{told:#}");
+    assert_eq!(told["last_N"], 0.0, "{told:#}");
 
     let poses = messages(&recording(&session), topics::LEADER_MEASURED_CP);
     let far = poses.iter().map(|own| own.message.position[0]);

@@ -9,7 +9,7 @@ use ferntast_msgs::{
 };
 use ferntast_tests::{
     PATIENCE, Process, Session, arm_state, await_enabled, hand_of_strokes, human_hand, messages,
-    node, number, operated, recording, run, signal, start, state_of_follower,
+    node, number, operated, recording, run, set_parameter, signal, start, state_of_follower,
 };
 
 #[test]
@@ -126,6 +126,12 @@ fn the_graph_is_what_it_says() {
     let of_link = &graph["parameters"]["/left/link"];
     let law = of_link["law"].as_str().unwrap_or_default();
     assert!(law.contains("delay law"), "{graph:#}");
+    // Peers may look, and are told why they may not choose.
+    let set = set_parameter(&session, ["/left/link", "law", "wave"]);
+    assert_eq!(set["successful"], false, "{set:#}");
+    let why = set["reason"].as_str().unwrap_or_default();
+    assert!(why.contains("--ros-commands"), "{set:#}");
+    assert_eq!(set["before"], set["after"], "{set:#}");
     assert_eq!(
         keys(&graph["parameters"]["/left/ferntast"]),
         ["use_sim_time"],

@@ -97,6 +97,9 @@ fn its_stop_is_obeyed_and_its_other_commands_where_they_are_allowed() {
         command("resume");
         std::thread::sleep(std::time::Duration::from_secs(1));
         assert_eq!(state_of_follower(&session), after);
+        let set = peer(&session, &["set_parameter", "/link", "law", "wave"]);
+        let set = set.wait(PATIENCE).success().json();
+        assert_eq!(set["successful"], allowed, "{set:#}");
         process.interrupt();
         process.wait(PATIENCE).success();
         let told = messages(&recording(&session), topics::DIAGNOSTICS);
