@@ -89,7 +89,8 @@ impl<'a> Contest<'a> {
         let Contender::Arm(best) = most.0 else {
             return Some(most.0);
         };
-        let as_good = self.alike(best).into_iter().chain([best]);
+        // The first of those that are as simple.
+        let as_good = [best].into_iter().chain(self.alike(best));
         let simplest = as_good.min_by_key(|own| own.effect.columns());
         simplest.map(Contender::Arm)
     }

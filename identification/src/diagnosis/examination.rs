@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::acceptance::Acceptance;
 use super::candidates::{Candidate, Trial, try_again, try_all};
+use super::confirmation::Confirmation;
 use super::dependence::Dependence;
 use super::results::Verdict;
 use super::verdict::{judge, maps, passing};
@@ -72,13 +73,19 @@ pub(super) fn examine(
     sensor_zero::decide(&prepared, &mut passing);
     encompassing_test::drop_encompassed(&prepared, &design, &mut passing);
     at_reversals::put_first(&prepared, &design, &mut passing);
-    let maps = maps(&prepared, &design);
+    let mut maps = maps(&prepared, &design);
+    let confirmation = match known.is_some() || filtered.is_contact() {
+        true => Confirmation::NONE,
+        false => Confirmation::of(filtered, spec, &prepared, &trial, &passing, &maps),
+    };
+    passing.retain(|own| confirmation.has(own));
+    maps.retain(|own| confirmation.has_map(own));
     if passing.is_empty() {
         passing.extend(named_by_map(&trial, &maps));
     }
     acceptance.keep_accepted(&mut passing);
     progress(0.75);
-    let verdict = judge(&prepared, &passing, &maps, &mut |done| {
+    let verdict = judge(&prepared, &passing, &maps, &confirmation, &mut |done| {
         progress(0.75 + 0.2 * done)
     });
     let made = acceptance.made.into_iter();

@@ -1,6 +1,7 @@
 //! Which candidates pass, and whether the best of them is the answer.
 
 use super::candidates::{Candidate, MIN_SHARE, Trial, try_all};
+use super::confirmation::Confirmation;
 use super::dependence::{self, Dependence};
 use super::equivalents;
 use super::results::{Verdict, WhyNot};
@@ -81,6 +82,7 @@ pub(super) fn judge(
     prepared: &PreparedModel,
     passing_first: &[Candidate],
     maps_first: &[Dependence],
+    confirmation: &Confirmation,
     progress: &mut dyn FnMut(f64),
 ) -> Verdict {
     let Some(first) = passing_first.first() else {
@@ -105,7 +107,8 @@ pub(super) fn judge(
         }
         named += best.score.gain;
         let (unnamed, of_rest) = maps(&prepared, &design)
-            .first()
+            .iter()
+            .find(|own| confirmation.has_map(own))
             .map_or((0.0, 0.0), |d| (d.gain, d.strength));
         let share = unnamed / (unnamed + named).max(1e-300);
         progress((step as f64 + 1.0) / MAX_NAMED_EFFECTS as f64);
@@ -116,6 +119,7 @@ pub(super) fn judge(
         }
         let trial = try_all(&prepared, &design, &mut |_| ());
         let mut next = passing(&trial);
+        next.retain(|own| confirmation.has(own));
         equivalents::order(&design, &mut next);
         let Some(candidate) = next.into_iter().next() else {
             break;

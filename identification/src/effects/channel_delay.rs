@@ -5,9 +5,12 @@ use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
 use super::{Effect, Facts, Memory, Point, free, row};
 use crate::signals::Channels;
 
+/// Its id.
+pub const CHANNEL_DELAY: &str = "channel_delay";
+
 row!(
     ChannelDelay,
-    id: "channel_delay",
+    id: CHANNEL_DELAY,
     equation: "x_measured(t) = x(t − d) for one channel: 0 motor torque, 1 joint torque, 2 position (3 where τ is modelled)",
     source: "time stamps",
     coefficients: &[free("delay", Unit::new("s", "s"))],
@@ -65,17 +68,22 @@ impl Effect for ChannelDelay {
             return None;
         };
         let period = points.first()?.period;
+        // From half the delay later to half of it earlier, per second of delay: the coefficient is
+        // the delay itself. An odd difference takes nothing off the signal's own noise, as one from
+        // now on does, which is in part a mean of neighbours: noise of the acceleration, which
+        // is in the residual, would look like a delay.
         let late = |values: Vec<f64>, by: f64| -> Vec<f64> {
-            let last = values.len() - 1;
+            let last = values.len().saturating_sub(1);
+            let value = |place: f64| {
+                let place = place.clamp(0.0, last as f64);
+                let before = place as usize;
+                let share = place - before as f64;
+                let after = values[(before + 1).min(last)];
+                values[before] + share * (after - values[before])
+            };
+            let half = 0.5 * by / period;
             (0..values.len())
-                .map(|at| {
-                    let place = (at as f64 - by / period).clamp(0.0, last as f64);
-                    let before = place as usize;
-                    let share = place - before as f64;
-                    let after = values[(before + 1).min(last)];
-                    // Per second of delay: the coefficient is the delay itself.
-                    (values[before] + share * (after - values[before]) - values[at]) / delay
-                })
+                .map(|at| (value(at as f64 - half) - value(at as f64 + half)) / delay)
                 .collect()
         };
         let each = |value: fn(&Point) -> f64| -> Vec<f64> { points.iter().map(value).collect() };

@@ -78,11 +78,8 @@ impl Effect for CurrentSaturation {
 /// Limits tried of each place.
 const LIMITS: u32 = 11;
 
-/// Lowest and highest limit \[Nm\].
+/// Lowest and highest limit \[Nm\]. A demand that is logged may be many times what flows.
 fn limits(facts: &Facts) -> [f64; 2] {
     let high = 1.05 * facts.motor_torque;
-    [
-        facts.common_torque.max(0.4 * facts.motor_torque).min(high),
-        high,
-    ]
+    [facts.common_torque.min(high), high]
 }

@@ -38,6 +38,7 @@ use ferntast_model::friction::{EffectParameter, FrictionState};
 use crate::data::Subject;
 use crate::signals::Channels;
 pub use crate::signals::Point;
+pub use channel_delay::CHANNEL_DELAY;
 pub(crate) use description::row;
 pub use description::{EffectDescription, Quantity};
 pub use exact::ExactSignal;

@@ -80,6 +80,16 @@ impl<'a> Filtered<'a> {
         }
     }
 
+    /// The same recordings with filters at `factor` times the cut-off.
+    pub(crate) fn at_factor(&self, factor: f64) -> Self {
+        Self::at_cut_off(self.dataset, factor)
+    }
+
+    /// Whether they are of a contact.
+    pub(crate) fn is_contact(&self) -> bool {
+        self.dataset.joint.is_contact()
+    }
+
     /// Binds a model whose numbers have been checked.
     pub(crate) fn bind(&self, spec: &ModelSpec) -> Result<PreparedModel, PrepareError> {
         self.bind_for(spec, true, None)

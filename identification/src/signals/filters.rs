@@ -211,6 +211,17 @@ impl Filters {
         }
     }
 
+    /// Smoothing twice as wide as that of states, and the curvature of a position by it. With the
+    /// noise of an acceleration, which goes with the width to the power of −5 in square, it has a
+    /// thirtieth in common.
+    pub(crate) fn broad_kernels(&self, period: f64) -> [Kernel; 2] {
+        let [smooth, _, curvature] = match &self.stated {
+            Some(filter) => filter.at_cut_off(0.5).states(period),
+            None => self.state_kernels(2.0 * self.state, period),
+        };
+        [smooth, curvature]
+    }
+
     /// Smoothing of a column that is not differentiated.
     pub(super) fn column_kernel(&self, period: f64) -> Kernel {
         match &self.stated {

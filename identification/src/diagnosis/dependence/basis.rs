@@ -3,7 +3,8 @@
 use std::cell::OnceCell;
 
 use crate::design::{BlockGrams, Design, PreparedModel};
-use crate::effects::Direction;
+use crate::effects::{Direction, LOAD_OF};
+use crate::numerics::filter::Kernel;
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::quantile_or_zero;
 use crate::signals::Signals;
@@ -95,8 +96,19 @@ impl Channel {
 }
 
 /// Every signal on which the residual may depend.
+///
+/// The noise of the acceleration, and of a torque of the load, is in the residual itself. A map over a
+/// signal with the same noise would find it there, on rows left out, too: so these are smoothed more
+/// broadly than what is fitted. (A contact has no acceleration in its model.)
 fn channels(prepared: &PreparedModel) -> Vec<Channel> {
     let facts = &prepared.facts;
+    let filters = prepared.filters;
+    let is_contact = facts.joint.is_contact();
+    let broad = |name: &str, value: &dyn Fn(&Signals, &[Kernel; 2]) -> Vec<f64>| {
+        let own = |s: &Signals| value(s, &filters.broad_kernels(s.period));
+        let values = prepared.sessions.iter().map(own).collect();
+        Channel::new(facts.joint.signal(name), false, values)
+    };
     let collect = |name: &str, slow: bool, value: &dyn Fn(&Signals, usize) -> f64| {
         let sessions = prepared.sessions.iter();
         let values = sessions.map(|s| s.rows.iter().map(|at| value(s, *at)).collect());
@@ -105,11 +117,19 @@ fn channels(prepared: &PreparedModel) -> Vec<Channel> {
     let mut all = vec![
         collect("position", false, &|s, at| s.points[at].position),
         collect("velocity", false, &|s, at| s.points[at].velocity.abs()),
-        collect("acceleration", false, &|s, at| s.points[at].acceleration),
+        broad("acceleration", &|s, [_, curvature]| {
+            curvature.at_samples(&s.raw.position, &s.rows)
+        }),
         collect("time", false, &|s, at| s.time(at)),
     ];
     if facts.loaded {
-        all.push(collect("load", false, &|s, at| s.points[at].load));
+        all.push(match is_contact {
+            true => collect("load", false, &|s, at| s.points[at].load),
+            false => broad("load", &|s, [smooth, _]| {
+                let load: Vec<f64> = s.points.iter().map(|point| point.load).collect();
+                smooth.at_samples(&load, &s.rows)
+            }),
+        });
         all.push(collect("load_rate", false, &|s, at| s.points[at].load_rate));
     }
     if facts.temperature && facts.temperature_range > 2.0 && facts.sessions >= 4 {
@@ -126,6 +146,15 @@ fn channels(prepared: &PreparedModel) -> Vec<Channel> {
         .map(|s| s.extra.keys().cloned().collect())
         .unwrap_or_default();
     for name in names {
+        if name.starts_with(LOAD_OF) {
+            all.push(broad(&name, &|s, [smooth, _]| {
+                let load = s.extra.get(&name);
+                load.map_or(vec![0.0; s.rows.len()], |own| {
+                    smooth.at_samples(own, &s.rows)
+                })
+            }));
+            continue;
+        }
         all.push(collect(&name, false, &|s, at| {
             s.extra
                 .get(&name)
