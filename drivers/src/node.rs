@@ -2,7 +2,10 @@
 
 use std::any::Any;
 
-use ferntast_control::planted::{Planted, Rule};
+use ferntast_control::{
+    LONGEST_STEP,
+    planted::{Planted, Rule},
+};
 use ferntast_model::{JointCount, Joints, ParameterError};
 use ferntast_msgs::{
     Time,
@@ -18,9 +21,6 @@ use crate::driver::{Driver, DriverCommand, Reading};
 
 /// A torque command older than this \[s\] no longer counts: the drives are off.
 const COMMAND_LIFE: f64 = 0.010;
-/// Longest time that passes in one step \[s\]; a loop that slept longer lets a simulated arm
-/// lose time rather than computing on.
-const LONGEST_STEP: f64 = 0.020;
 /// Steps between two temperatures \[ns\].
 const TEMPERATURE_PERIOD_NANOS: i64 = 100_000_000;
 
