@@ -44,7 +44,8 @@ enum Export {
     /// A dataset of LeRobot (layout v3.0, without pictures), an episode a recording.
     #[command(
         after_help = "Of sessions, observation.state is position, velocity and torque of the joints and the contact force, \
-        action the commanded place of the tip. Of other recordings:\n  \
+        action the commanded place of the tip. An episode begins where all of these have been heard; what is no number after \
+        that (NaN) is as in the frame before, which is told for each signal. Of other recordings:\n  \
         ferntast bag export lerobot run_1 run_2 -o dataset --task 'pick up the cube' \\\n    \
         --state '/joint_states.position[0]' --state '/joint_states.position[1]' --action '/joint_commands.position[0]'\n\n\
         In Python: LeRobotDataset('local/dataset', root='dataset')"
@@ -177,6 +178,15 @@ fn tables(arguments: Tables, format: export::Format, json: bool) -> Result<(), F
 
 fn dataset(request: &lerobot::Request, json: bool) -> Result<(), Failure> {
     let dataset = lerobot::export(request).map_err(Failure::refused)?;
+    for held in &dataset.held {
+        eprintln!(
+            "note: {}: {} is no number in {} frames, first at {:.3} s; they have that of the frame before",
+            held.recording.display(),
+            held.signal,
+            held.frames,
+            held.first_s
+        );
+    }
     if json {
         return print_json(&dataset);
     }

@@ -21,6 +21,10 @@ pub mod playout;
 pub mod servo;
 pub mod switching;
 
+/// Longest time that passes in one step of a loop \[s\]: one that was held up for longer does not
+/// compute on over what it has not seen (a simulated arm loses time).
+pub const LONGEST_STEP: f64 = 0.020;
+
 /// Nanoseconds as seconds.
 pub(crate) fn seconds(nanos: i64) -> f64 {
     nanos as f64 / 1e9

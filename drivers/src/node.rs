@@ -3,6 +3,7 @@
 use std::any::Any;
 
 use ferntast_control::{
+    LONGEST_STEP,
     planted::{Planted, Rule},
     servo::TORQUE_LIFE,
 };
@@ -19,9 +20,6 @@ use ferntast_nodes::{
 
 use crate::driver::{Driver, DriverCommand, Reading};
 
-/// Longest time that passes in one step \[s\]; a loop that slept longer lets a simulated arm
-/// lose time rather than computing on.
-const LONGEST_STEP: f64 = 0.020;
 /// Steps between two temperatures \[ns\].
 const TEMPERATURE_PERIOD_NANOS: i64 = 100_000_000;
 

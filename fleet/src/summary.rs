@@ -22,7 +22,8 @@ pub struct DaySummary {
         skip_serializing_if = "Option::is_none"
     )]
     pub temperature: Option<f64>,
-    /// Words of the twin that it is the mean of: lines of the same day are put together by it.
+    /// Words of the twin that it is the mean of, 1 or more: lines of the same day are put
+    /// together by it.
     #[serde(default = "one")]
     pub samples: u64,
     /// Parameters that the motion told something of, by name.
@@ -60,7 +61,7 @@ pub enum SummaryError {
 }
 
 impl DaySummary {
-    /// Its day, from the year 1 on.
+    /// Its day, from 1970-01-01 on; days before that are negative.
     ///
     /// # Errors
     ///
@@ -75,6 +76,11 @@ impl DaySummary {
         self.number()?;
         if self.robot.is_empty() || self.joint.is_empty() {
             return Err("robot and joint need a name".to_owned());
+        }
+        if self.samples < 1 {
+            return Err(
+                "samples = 0 is the mean of nothing; give 1 or more, or leave it out".to_owned(),
+            );
         }
         let bad = |own: &ParameterOfDay| {
             !(own.value.is_finite() && own.std_error.is_finite() && own.std_error >= 0.0)
@@ -101,7 +107,7 @@ impl DaySummary {
             place.value = mean(place.value, value.value);
             place.std_error = mean(place.std_error, value.std_error);
         }
-        self.samples += other.samples;
+        self.samples = self.samples.saturating_add(other.samples);
     }
 }
 
@@ -190,6 +196,15 @@ mod tests {
     }
 
     #[test]
+    fn lines_of_more_words_than_can_be_counted_are_their_mean_still() {
+        let most = LINE.replace("\"samples\":3", &format!("\"samples\":{}", u64::MAX));
+        let other = most.replace("12.0", "16.0");
+        let days = days(&read(&format!("{most}\n{other}")).expect("lines"));
+        let own = &days[&2][0];
+        assert_eq!((own.samples, own.parameters["b0"].value), (u64::MAX, 14.0));
+    }
+
+    #[test]
     fn what_is_no_line_is_refused_with_its_number() {
         for (wrong, words) in [
             (LINE.replace("1970-01-03", "yesterday"), "2026-11-25"),
@@ -199,6 +214,7 @@ mod tests {
                 LINE.replace("joint_2", "joint_2\",\"colour\":\"red"),
                 "colour",
             ),
+            (LINE.replace("\"samples\":3", "\"samples\":0"), "samples"),
             ("{".to_owned(), "line 2"),
         ] {
             let error = read(&format!("{LINE}\n{wrong}"))

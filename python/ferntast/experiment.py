@@ -60,8 +60,10 @@ class Experiment:
         Signals are columns, `"q"`, or columns with their unit, `"q:deg"`; left out, names and
         numbers are guessed from, as by `ferntast lab new`. `rate_hz` is for data without time.
         The model is Coulomb and viscous friction, and an inertia that is fitted; `add` adds
-        to it. `output` is the experiment file to write; without it the experiment lies in a
-        folder that goes away with it (`save`).
+        to it. `output` is the experiment file to write, and arrays lie beside it, in a file of
+        its name (`first.toml`, `first.npz`); what is there already is refused, or written over
+        where `force` says so. Without it the experiment lies in a folder that goes away with it
+        (`save`).
         """
         signals = {
             "position": position,
@@ -83,20 +85,18 @@ class Experiment:
         keep = None
         if output is None or files is None:
             keep = tempfile.TemporaryDirectory(prefix="ferntast-")
-        if files is None:
-            folder = Path(output).absolute().parent if output is not None else Path(keep.name)
-            folder.mkdir(parents=True, exist_ok=True)
-            files = frames.write(source if isinstance(source, list) else [source], folder)
         target = Path(output) if output is not None else Path(keep.name) / "experiment.toml"
-        made = _native.new(
-            [str(file) for file in files],
-            said,
-            rate_hz,
-            joint,
-            join,
-            target,
-            force,
-        )
+
+        def new(files: list[Path]) -> str:
+            names = [str(file) for file in files]
+            return _native.new(names, said, rate_hz, joint, join, target, force)
+
+        if files is not None:
+            made = new(files)
+        else:
+            arrays = source if isinstance(source, list) else [source]
+            with frames.written(arrays, target, force) as files:
+                made = new(files)
         experiment = cls(target, _keep=keep)
         experiment.made = json.loads(made)
         return experiment

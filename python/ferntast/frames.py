@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -55,13 +57,36 @@ def numbers(column: Any) -> np.ndarray | None:
         return None
 
 
-def write(frames: list[Any], folder: Path) -> list[Path]:
-    """Writes each frame as a file that the lab reads; gives the files."""
-    files = []
-    for number, frame in enumerate(frames, start=1):
-        own = columns(frame)
-        name = "recording.npz" if len(frames) == 1 else f"recording_{number}.npz"
-        with (folder / name).open("wb") as file:
-            np.savez(file, **own)
-        files.append(folder / name)
-    return files
+@contextmanager
+def written(frames: list[Any], target: Path, force: bool) -> Iterator[list[Path]]:
+    """Writes each frame as a file that the lab reads, beside the experiment file `target` and
+    named after it; gives the files. They stay if what is done with them succeeds; else all is
+    as it was before."""
+    tables = [columns(frame) for frame in frames]
+    folder = target.absolute().parent
+    names = [f"{target.stem}.npz"]
+    if len(tables) != 1:
+        names = [f"{target.stem}_{number}.npz" for number in range(1, len(tables) + 1)]
+    files = [folder / name for name in names]
+    if target.absolute() in files:
+        raise RefusedError(f"{target} is the file of the arrays: an experiment file ends in .toml")
+    for file in () if force else (target, *files):
+        if file.exists():
+            raise RefusedError(
+                f"{file} exists already: choose another output, or force=True to write over it"
+            )
+    folder.mkdir(parents=True, exist_ok=True)
+    with (
+        tempfile.TemporaryDirectory(prefix=".ferntast-", dir=folder) as aside,
+        ExitStack() as undone,
+    ):
+        for file, table in zip(files, tables, strict=True):
+            if file.exists():
+                kept = file.rename(Path(aside) / file.name)
+                undone.callback(kept.replace, file)
+            else:
+                undone.callback(file.unlink, missing_ok=True)
+            with file.open("wb") as opened:
+                np.savez(opened, **table)
+        yield files
+        undone.pop_all()

@@ -33,7 +33,10 @@ class Comparison(_Answer):
 
     unit: str
     samples: int
-    used: int
+    """In the recordings that are fitted."""
+    used: Record
+    """What of the recordings is used: `samples`, `share`, `by_reason` (samples by what becomes of
+    them), `rows` (fitted), `speed_range`, `cutoff_hz`, …"""
     rms: Record
     """Errors in `unit`: `train` on rows fitted, `held_out` on rows left out."""
     relative_error: float
@@ -73,7 +76,8 @@ class Diagnosis(_Answer):
 
     unit: str
     samples: int
-    used: int
+    used: Record
+    """As of a comparison."""
     verdict: str
     """`missing`, `complete` or `unexplained`."""
     rms: Record

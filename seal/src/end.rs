@@ -202,7 +202,7 @@ impl SecureEnd {
         self.is_alone(now_ns, patience_ns) || self.keys.as_ref().is_none_or(Keys::is_worn)
     }
 
-    /// Seals a frame of one of the two lengths; `None` before the first handshake.
+    /// Seals a frame of one of the three lengths; `None` before the first handshake.
     pub fn seal(&mut self, plain: &[u8]) -> Option<SealedFrame> {
         self.keys.as_mut()?.seal(plain)
     }

@@ -2,7 +2,7 @@
 //!
 //! | kind | content | bytes |
 //! |---|---|---:|
-//! | frame | see [`frame`](crate::frame) | 60, or 29 |
+//! | frame | see [`frame`](crate::frame) | 60; 68 with an orientation; 29 of a keep-alive |
 //! | hello | kind: the operator's end asks for a challenge | 1 |
 //! | challenge | kind, 8 random bytes of the arm's end | 9 |
 //! | initiation | kind, the challenge, first message of Noise | 113 |

@@ -9,8 +9,8 @@ import sys
 import threading
 import time
 from pathlib import Path
-from types import ModuleType
-from typing import Any, get_type_hints
+from types import ModuleType, UnionType
+from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 import pandas
@@ -300,8 +300,10 @@ def test_what_is_annotated_is_there(package, riddle):
     outcome = package.lockstep(duration=1)
     names = {"Experiment": package.Experiment}
     for result in [package.compare(riddle), diagnosis, added, automatic, outcome]:
-        for name in get_type_hints(type(result), localns=names):
-            getattr(result, name)
+        for name, hint in get_type_hints(type(result), localns=names).items():
+            kinds = [get_origin(own) or own for own in get_args(hint) if isinstance(hint, UnionType)]
+            kinds = tuple(kinds) or get_origin(hint) or hint
+            assert isinstance(getattr(result, name), kinds), f"{type(result).__name__}.{name}"
         assert repr(result).startswith(type(result).__name__)
     assert isinstance(diagnosis.rms, results.Record)
     with pytest.raises(AttributeError, match="has no 'nothing': "):

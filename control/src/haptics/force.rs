@@ -2,6 +2,10 @@
 
 use crate::planted::{Planted, Rule};
 
+/// How long a force on a hand counts \[s\], wherever it passes: what came back over the link and
+/// is reflected, what the master gave and a device or an arm renders. One that is older is none.
+pub const FORCE_LIFE: f64 = 0.025;
+
 /// A force, and whether it was limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LimitedForce {

@@ -16,7 +16,7 @@ mod leader_arm;
 
 pub use authority::{Authority, NotAuthorised};
 pub use config::MasterConfig;
-pub use force::{ForceLimiter, LimitedForce};
+pub use force::{FORCE_LIFE, ForceLimiter, LimitedForce};
 pub use leader_arm::{LeaderArm, LeaderHand, LeaderTorques};
 
 use self::clutch::Clutch;

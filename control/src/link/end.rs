@@ -8,11 +8,9 @@ use crate::meter::{Arrival, LinkMeasurement, LinkMeter, passed};
 use crate::operating::OperatingState;
 use crate::orientation::{Orientation, PackedOrientation};
 use crate::playout::{LONGEST_BUFFER, Offered, PlayOut};
-use crate::seconds;
 use crate::switching::{Laws, MarkedPacket, Outgoing};
+use crate::{LONGEST_STEP, seconds};
 
-/// A step that comes later than this after the one before counts as this long \[s\].
-const LONGEST_STEP: f64 = 0.02;
 /// Codes of laws.
 const LAWS: usize = LAST_LAW_CODE as usize + 1;
 /// What a handshake tells of a clock may be wrong by the longest way \[ns\].

@@ -12,7 +12,7 @@
 
 use super::tip::{Led, TipKinematics, Turn};
 use super::{CommandRefusal, Range};
-use ferntast_model::rigid_body::inverse_kinematics::{Settings, Task, motion_to};
+use ferntast_model::rigid_body::inverse_kinematics::{MOBILITY_CHANGE, Settings, Task, motion_to};
 use ferntast_model::rigid_body::{Chain, Jacobian, Placement};
 use ferntast_model::serial_arm::SerialArm;
 use ferntast_model::{JointCount, Joints, MAX_JOINTS};
@@ -23,9 +23,6 @@ use nalgebra::{Matrix3, Matrix6, Rotation3, SVector, UnitQuaternion, Vector3, Ve
 const STEPS: usize = 16;
 /// Longest step away from singularities \[rad\].
 const LONGEST: f64 = 0.01;
-/// By how much the least singular value of the Jacobian changes at most, for each radian of all
-/// joints together \[1/rad\]; as steps of inverse kinematics reckon.
-const CHANGE: f64 = 4.0;
 /// So near the tip is where it was to be \[m\], \[rad\].
 const NEAR: f64 = 1e-6;
 const ALIKE: f64 = 1e-6;
@@ -114,7 +111,7 @@ impl SerialTip {
         };
         match self.home.len() < rows {
             true => 0.0,
-            false => ((mobility - self.settings.slow_below) / CHANGE).max(0.0),
+            false => ((mobility - self.settings.slow_below) / MOBILITY_CHANGE).max(0.0),
         }
     }
 }

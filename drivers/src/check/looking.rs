@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use ferntast_control::LONGEST_STEP;
 use ferntast_model::{JointCount, Joints};
 use ferntast_msgs::{Text, Time, sample::Level};
 use ferntast_nodes::{
@@ -20,8 +21,6 @@ use crate::{
     weight::Weight,
 };
 
-/// The longest step \[s\]: in one that was held up for longer a simulated arm loses time.
-const LONGEST_STEP: f64 = 0.020;
 /// A driver that is not homed is given so long to come to that \[s\].
 const HOMING: f64 = 5.0;
 /// Damping with which a simulated arm is carried \[Nm·s/rad\].

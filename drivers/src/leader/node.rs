@@ -1,7 +1,10 @@
 //! The leader arm's node: topics of the master on one side, a driver on the other.
 
 use ferntast_config::Axes;
-use ferntast_control::haptics::LeaderArm;
+use ferntast_control::{
+    LONGEST_STEP,
+    haptics::{FORCE_LIFE, LeaderArm},
+};
 use ferntast_model::{Joints, serial_arm::SerialArm};
 use ferntast_msgs::{
     Text, Time,
@@ -17,12 +20,8 @@ use crate::driver::{DriverCommand, Reading};
 
 /// How this hand is told from others.
 pub const SOURCE: u64 = 0x6c65_6164_6572_0000;
-/// The master's force counts for so long [s].
-const FORCE_LIFE: f64 = 0.025;
 /// What the joints said counts for so long [s].
 const READING_LIFE: f64 = 0.025;
-/// Longest time that passes in one step [s].
-const LONGEST_STEP: f64 = 0.020;
 
 ports! {
     /// The leader arm's topics.

@@ -57,7 +57,8 @@ pub struct Ros2 {
     joints: JointNames,
     topic: String,
     effort: Effort,
-    torque_limits: Joints<f64>,
+    /// Beyond these the joints' torque sensors are saturated \[Nm\].
+    sensor_ranges: Joints<f64>,
     clock: Clock,
     watch: StateWatch,
     commands: Commands,
@@ -114,7 +115,7 @@ impl Ros2 {
             joints,
             topic: settings.joint_states.clone(),
             effort,
-            torque_limits: Joints::from_fn(count, |joint| believed[joint].torque_sensor_range),
+            sensor_ranges: Joints::from_fn(count, |joint| believed[joint].torque_sensor_range),
             clock: wiring.clock,
             watch: StateWatch::new(count, believed, &settings, effort),
             commands: Commands::new(&settings, each, Weight::new(&arm.model, count)),
@@ -150,8 +151,8 @@ impl Ros2 {
         let own = |effort| (self.effort == effort).then_some(state.effort);
         let joint_torque = own(Effort::JointTorque);
         let mut torques = joint_torque.iter().flat_map(|own| own.iter());
-        let mut limits = self.torque_limits.iter();
-        if torques.any(|own| limits.next().is_some_and(|limit| own.abs() > *limit)) {
+        let mut ranges = self.sensor_ranges.iter();
+        if torques.any(|own| ranges.next().is_some_and(|range| own.abs() > *range)) {
             health.raise(Fault::TorqueSaturated, Level::WARN);
         }
         Reading {
@@ -252,7 +253,7 @@ impl Drop for Ros2 {
     /// The controller would go on with its last command for ever: it is told to stay.
     fn drop(&mut self) {
         self.enabled = false;
-        let rest = self.torque_limits.map(|_| 0.0);
+        let rest = self.sensor_ranges.map(|_| 0.0);
         self.command(self.clock.now(), &rest, 0.0);
     }
 }

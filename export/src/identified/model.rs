@@ -349,8 +349,7 @@ impl ArmModel {
 
     /// Where gravity points, if it is not straight down \[m/s²\].
     pub fn tilted(&self) -> Option<Vector3<f64>> {
-        let own = self.body.gravity;
-        (own.x.hypot(own.y) > 1e-9 * own.norm()).then_some(own)
+        Some(self.body.gravity).filter(is_tilted)
     }
 
     /// Parameters of the effects of the arm, for people.
@@ -372,6 +371,21 @@ impl ArmModel {
     }
 }
 
+/// Whether gravity points elsewhere than straight down: aside, or up, as in the base of an arm
+/// that hangs from a ceiling.
+fn is_tilted(gravity: &Vector3<f64>) -> bool {
+    gravity.z > 0.0 || gravity.x.hypot(gravity.y) > 1e-9 * gravity.norm()
+}
+
+/// Roll and pitch \[rad\] of the base in a world whose gravity points straight down,
+/// R(roll, pitch, 0) g = (0, 0, −|g|).
+pub fn upright(gravity: &Vector3<f64>) -> [f64; 2] {
+    [
+        (-gravity.y).atan2(-gravity.z),
+        gravity.x.atan2(gravity.y.hypot(gravity.z)),
+    ]
+}
+
 fn refuse_drive_unit(
     experiment: &ferntast_lab::experiment::Experiment,
     to: Program,
@@ -389,4 +403,54 @@ fn refuse_drive_unit(
 /// Four digits.
 pub fn significant(value: f64) -> String {
     ferntast_lab::report::significant(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use ferntast_model::rigid_body::Placement;
+
+    use super::*;
+
+    const G: f64 = 9.81;
+
+    #[test]
+    fn gravity_that_points_up_or_aside_is_tilted_and_down_is_not() {
+        for up_or_aside in [
+            [0.0, 0.0, G],
+            [0.0, -0.0, 1e-3],
+            [G, 0.0, 0.0],
+            [0.0, -G, 0.0],
+            [1e-6, 0.0, -G],
+        ] {
+            assert!(is_tilted(&Vector3::from(up_or_aside)), "{up_or_aside:?}");
+        }
+        for down in [[0.0, 0.0, -G], [1e-12, -1e-12, -G], [0.0; 3]] {
+            assert!(!is_tilted(&Vector3::from(down)), "{down:?}");
+        }
+    }
+
+    #[test]
+    fn a_base_stands_so_that_its_gravity_points_straight_down_in_the_world() {
+        for gravity in [
+            [0.0, 0.0, G],
+            [-0.0, -0.0, G],
+            [0.0, 0.0, -G],
+            [G, 0.0, 0.0],
+            [-G, 0.0, 0.0],
+            [0.0, G, 0.0],
+            [0.0, -G, 0.0],
+            [1.0, -2.0, 3.0],
+            [-1e-9, 1e-9, G],
+        ] {
+            let gravity = Vector3::from(gravity);
+            let [roll, pitch] = upright(&gravity);
+            let base = Placement::from_roll_pitch_yaw(Vector3::zeros(), [roll, pitch, 0.0]);
+            let found = base.rotation * gravity;
+            let straight_down = Vector3::new(0.0, 0.0, -gravity.norm());
+            assert!(
+                (found - straight_down).norm() < 1e-12,
+                "{gravity:?}: {found:?}"
+            );
+        }
+    }
 }

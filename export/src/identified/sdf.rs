@@ -6,7 +6,7 @@ use ferntast_identification::JointType;
 use ferntast_model::rigid_body::{LinkInertia, Matrix3, Placement, Vector3};
 use ferntast_urdf::edit::{commented, escaped, number};
 
-use super::model::{Joint, Model};
+use super::model::{Joint, Model, upright};
 use super::mujoco::frames;
 
 /// What SDFormat takes for no end.
@@ -23,7 +23,7 @@ pub fn text(model: &Model, notes: &mut Vec<String>) -> String {
         // The world's gravity is straight down; the base stands as it was found to.
         let tilt = arm
             .tilted()
-            .map_or(Placement::identity(), |own| upright(&own));
+            .map_or(Placement::identity(), |own| standing(&own));
         let _ = writeln!(text, "    {}", pose(&tilt, None));
         for own in arm.effects_text() {
             let _ = writeln!(text, "    <!-- {} -->", commented(&own));
@@ -165,8 +165,7 @@ fn pose(placement: &Placement, relative_to: Option<&str>) -> String {
 }
 
 /// Turned so that this gravity points straight down.
-fn upright(gravity: &Vector3<f64>) -> Placement {
-    let roll = (-gravity.y).atan2(-gravity.z);
-    let pitch = gravity.x.atan2(gravity.y.hypot(gravity.z));
+fn standing(gravity: &Vector3<f64>) -> Placement {
+    let [roll, pitch] = upright(gravity);
     Placement::from_roll_pitch_yaw(Vector3::zeros(), [roll, pitch, 0.0])
 }

@@ -11,7 +11,7 @@ use ferntast_urdf::{
 
 use super::{
     IdentifiedError,
-    model::{ArmModel, Joint, Model},
+    model::{ArmModel, Joint, Model, upright},
 };
 
 /// The experiment's URDF, or the one at `into`, with what was identified; of joints without
@@ -94,6 +94,7 @@ fn edited(model: &Model, path: &Path, notes: &mut Vec<String>) -> Result<String,
 /// URDF has no gravity: says how the base has to stand.
 fn tell_tilt(arm: &ArmModel, notes: &mut Vec<String>) {
     if let Some(gravity) = arm.tilted() {
+        let [roll, pitch] = upright(&gravity);
         notes.push(format!(
             "gravity in the frame of link {} is ({}, {}, {}) m/s², and URDF has none: let {} stand in an upright world with rpy=\"{} {} 0\"",
             arm.table.arm.base,
@@ -101,9 +102,8 @@ fn tell_tilt(arm: &ArmModel, notes: &mut Vec<String>) {
             number(gravity.y),
             number(gravity.z),
             arm.table.arm.base,
-            // World from base: R(rpy) g = (0, 0, −g).
-            number((-gravity.y).atan2(-gravity.z)),
-            number(gravity.x.atan2(gravity.y.hypot(gravity.z))),
+            number(roll),
+            number(pitch),
         ));
     }
 }

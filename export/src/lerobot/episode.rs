@@ -1,8 +1,9 @@
 //! A recording as frames.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ferntast_bag::BagReader;
+use serde::Serialize;
 
 use super::Request;
 use crate::{
@@ -46,6 +47,19 @@ pub struct Parts {
     pub action: Part,
 }
 
+/// A signal that was no number in some frames of a recording, which have the one before.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Held {
+    /// The recording.
+    pub recording: PathBuf,
+    /// The signal.
+    pub signal: String,
+    /// How many frames.
+    pub frames: usize,
+    /// The first of them, from the recording's start \[s\].
+    pub first_s: f64,
+}
+
 /// Frames of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
@@ -53,6 +67,8 @@ pub struct Episode {
     pub state: Vec<Vec<f32>>,
     /// `action` of each frame.
     pub action: Vec<Vec<f32>>,
+    /// What was no number after the first frame.
+    pub held: Vec<Held>,
 }
 
 impl Episode {
@@ -104,12 +120,31 @@ impl Episode {
                 signals: names.join(", "),
             });
         };
-        let rest = |rows: Vec<Vec<f32>>| rows.into_iter().skip(first).collect();
+        let mut held = Vec::new();
+        let mut rest = |rows: Vec<Vec<f32>>, names: &[String]| {
+            let mut rows: Vec<Vec<f32>> = rows.into_iter().skip(first).collect();
+            for (signal, (row, frames)) in names.iter().zip(hold(&mut rows)) {
+                if frames > 0 {
+                    held.push(Held {
+                        recording: path.to_owned(),
+                        signal: signal.clone(),
+                        frames,
+                        first_s: (first + row) as f64 / request.rate_hz,
+                    });
+                }
+            }
+            rows
+        };
+        let (state, action) = (
+            rest(state, &parts.state.names),
+            rest(action, &parts.action.names),
+        );
         Ok((
             parts,
             Episode {
-                state: rest(state),
-                action: rest(action),
+                state,
+                action,
+                held,
             },
         ))
     }
@@ -170,4 +205,53 @@ fn vectors(table: &Table, names: &[String]) -> Vec<Vec<f32>> {
         values.map(|value| *value as f32).collect()
     };
     (0..rows).map(row).collect()
+}
+
+/// Puts what stands in the row before in the place of what is no finite number: whoever learns
+/// of a dataset takes none. Gives for each column the first such row, and how many there are.
+fn hold(rows: &mut [Vec<f32>]) -> Vec<(usize, usize)> {
+    let mut told = vec![(0, 0); rows.first().map_or(0, Vec::len)];
+    for at in 1..rows.len() {
+        let (done, rest) = rows.split_at_mut(at);
+        let (Some(before), Some(row)) = (done.last(), rest.first_mut()) else {
+            continue;
+        };
+        for ((value, before), (first, count)) in row.iter_mut().zip(before).zip(&mut told) {
+            if value.is_finite() {
+                continue;
+            }
+            *value = *before;
+            if *count == 0 {
+                *first = at;
+            }
+            *count += 1;
+        }
+    }
+    told
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_held_and_counted() {
+        let mut rows = vec![
+            vec![1.0, 5.0, 9.0],
+            vec![f32::NAN, 6.0, 9.0],
+            vec![f32::INFINITY, f32::NAN, 9.0],
+            vec![4.0, 8.0, 9.0],
+            vec![f32::NAN, 8.0, 9.0],
+        ];
+        assert_eq!(hold(&mut rows), [(1, 3), (2, 1), (0, 0)]);
+        let expected = [
+            [1.0, 5.0, 9.0],
+            [1.0, 6.0, 9.0],
+            [1.0, 6.0, 9.0],
+            [4.0, 8.0, 9.0],
+            [4.0, 8.0, 9.0],
+        ];
+        assert_eq!(rows, expected.map(Vec::from));
+        assert!(hold(&mut []).is_empty());
+    }
 }

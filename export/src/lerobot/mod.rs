@@ -14,6 +14,7 @@ use std::{fs, path::PathBuf};
 use serde::Serialize;
 
 use crate::ExportError;
+pub use episode::Held;
 use episode::{Episode, Parts};
 
 /// What is to become a dataset.
@@ -48,10 +49,14 @@ pub struct Dataset {
     pub state: Vec<String>,
     /// The same of `action`.
     pub action: Vec<String>,
+    /// Signals that were no numbers for some frames, and held there.
+    pub held: Vec<Held>,
 }
 
 /// Writes the dataset. An episode begins where all its signals have been heard; a frame
-/// has what was heard last, at its time.
+/// has what was heard last, at its time. Where that is no finite number, it is what the frame
+/// before has, and is [told](Dataset::held): a dataset has no words for "not measured", and one
+/// NaN makes its statistics and whatever is trained on it NaN.
 ///
 /// # Errors
 ///
@@ -63,8 +68,10 @@ pub fn export(request: &Request) -> Result<Dataset, ExportError> {
     let fps = whole(request.rate_hz)?;
     let mut parts: Option<Parts> = None;
     let mut episodes = Vec::new();
+    let mut held = Vec::new();
     for recording in &request.recordings {
-        let (own, episode) = Episode::read(recording, request, parts.as_ref())?;
+        let (own, mut episode) = Episode::read(recording, request, parts.as_ref())?;
+        held.append(&mut episode.held);
         parts.get_or_insert(own);
         episodes.push(episode);
     }
@@ -80,6 +87,7 @@ pub fn export(request: &Request) -> Result<Dataset, ExportError> {
         frames: episodes.iter().map(Episode::frames).sum(),
         state: parts.state.names,
         action: parts.action.names,
+        held,
     };
     fs::create_dir_all(&request.output).map_err(ExportError::file(&request.output))?;
     files::write(&dataset, &episodes, &request.task)?;

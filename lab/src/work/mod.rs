@@ -58,7 +58,7 @@ pub use paths::{Offered, offered};
 pub use read::WhatIsRead;
 pub use request::{OfArm, Request, Said};
 pub use start::{Again, Present, Started, mapping_of, start};
-pub use trend::{Point, Trend, TrendError, trends};
+pub use trend::{Point, Trend, TrendError, UnitIn, trends};
 pub use trial::{Trial, trial};
 pub use twin::{FromTwin, from_twin};
 

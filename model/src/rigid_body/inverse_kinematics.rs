@@ -62,6 +62,11 @@ impl Default for Settings {
     }
 }
 
+/// By how much the least singular value of the scaled Jacobian changes at most, for each radian
+/// (or metre) of all joints together \[1/rad\]: a step no longer than that value by this leads
+/// into no singularity.
+pub const MOBILITY_CHANGE: f64 = 4.0;
+
 impl Settings {
     /// # Errors
     ///
@@ -170,7 +175,7 @@ impl Settings {
             }
             // The least singular value changes by at most the norm of the Jacobian's change,
             // which the bound on each step keeps smaller than its distance from zero.
-            let longest = 0.25 * self.stop_below;
+            let longest = self.stop_below / MOBILITY_CHANGE;
             let length = change.norm();
             let scale = if length > longest {
                 longest / length

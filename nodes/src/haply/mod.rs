@@ -13,6 +13,7 @@ mod device;
 mod message;
 
 use ferntast_bus::Depth;
+use ferntast_control::haptics::FORCE_LIFE;
 use ferntast_msgs::{
     Text, Time,
     sample::{Fault, Faults, Frame, Level, PoseSample, WrenchSample},
@@ -29,8 +30,6 @@ use crate::{
 const SOURCE: u64 = 0x6861_706c_7900_0000;
 /// A service that is not there is asked for again after this \[ns\].
 const AGAIN_NANOS: i64 = 1_000_000_000;
-/// The master's force counts for so long [s].
-const FORCE_LIFE: f64 = 0.025;
 /// In this time the force fades in [s].
 const FORCE_RAMP: f64 = 0.5;
 /// A service that says nothing for so long is asked for anew [s].

@@ -1,7 +1,8 @@
 //! The haptic master bridge as a node.
 
 use ferntast_control::{
-    haptics::{HandCommand, HandRefusal, Master, MasterConfig},
+    LONGEST_STEP,
+    haptics::{FORCE_LIFE, HandCommand, HandRefusal, Master, MasterConfig},
     operating::OperatingState,
     orientation::Orientation,
     planted::{Planted, Rule},
@@ -22,8 +23,6 @@ use crate::{
     process::NodeError,
 };
 
-/// A reflected force older than this \[s\] is not rendered.
-const FORCE_LIFE: f64 = 0.025;
 /// How often the authority is published though it did not change \[ns\].
 const AUTHORITY_PERIOD_NANOS: i64 = 500_000_000;
 /// How sources on this host, the master's own hand among them, are told from nobody.
@@ -188,9 +187,8 @@ impl Node for MasterNode {
                 self.message = refusal;
             }
         }
-        let dt = self
-            .last
-            .map_or(0.0, |last| now.seconds_since(last).clamp(0.0, 0.02));
+        let since = |last| now.seconds_since(last).clamp(0.0, LONGEST_STEP);
+        let dt = self.last.map_or(0.0, since);
         self.last = Some(now);
 
         // The own hand moves only once the master is enabled: a script starts then.

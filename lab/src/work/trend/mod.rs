@@ -6,6 +6,7 @@
 
 mod changes;
 mod parts;
+mod same_units;
 
 use std::collections::BTreeMap;
 
@@ -17,6 +18,7 @@ use serde::Serialize;
 use super::{Opened, WorkError, units};
 use changes::{courses, turns};
 use parts::{Part, dates, whole};
+pub use same_units::UnitIn;
 
 /// How a joint, or a contact, changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -122,6 +124,20 @@ pub enum TrendError {
     /// Files have different numbers of joints.
     #[error("the files have {0} and {1} joints: give such as have the same")]
     Joints(usize, usize),
+    /// Numbers of one file are no numbers of another's unit.
+    #[error(
+        "{what}: {} in {}, and {} in {}: only what has the same unit can be held beside each other; \
+         state the same unit in both, or leave one out",
+        first.unit, first.file, other.unit, other.file
+    )]
+    Units {
+        /// Of what: torques, the joint, a signal, a parameter.
+        what: String,
+        /// As it is in the first file.
+        first: UnitIn,
+        /// As it is in another one.
+        other: UnitIn,
+    },
     /// The model cannot be fitted to one of them.
     #[error(transparent)]
     Work(#[from] WorkError),
@@ -158,6 +174,7 @@ fn trend(
     diagnoses: bool,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Trend, TrendError> {
+    same_units::of_experiments(all)?;
     let parts = match all {
         [one] => dates(one)?,
         several => several.iter().map(|own| whole(own)).collect(),
@@ -185,6 +202,7 @@ fn trend(
         points.push(point);
         progress((number as f64 + 1.0) / parts.len() as f64);
     }
+    same_units::of_parameters(&parts, &points)?;
     if points.iter().any(|point| point.sessions < 3) {
         notes.push(
             "of fewer than three sessions the standard errors are by blocks of time: how parameters vary from session to session is not in them".to_owned(),
