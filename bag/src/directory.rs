@@ -10,8 +10,13 @@ use super::{
     metadata::{FileList, METADATA_FILE},
 };
 
-/// The MCAP files of the recording at `path`, in order.
-pub(crate) fn bag_files(path: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
+/// The MCAP files of the recording at `path`, in order: those of a rosbag2 directory, or the
+/// one file that it is.
+///
+/// # Errors
+///
+/// [`OpenBagError`]: nothing is there, or its `metadata.yaml` is broken.
+pub fn bag_files(path: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
     if !fs::metadata(path)
         .map_err(|error| io_error(path, &error))?
         .is_dir()

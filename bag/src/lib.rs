@@ -49,6 +49,7 @@ mod text;
 mod topic;
 mod writer;
 
+pub use directory::bag_files;
 pub use error::{
     CreateBagError, FinishBagError, InfoError, OpenBagError, ReadMessageError, RepairError,
     SelectTopicError, WriteBagError,

@@ -232,6 +232,41 @@ fn sessions_end_at_gaps_and_files_and_keep_their_dates() {
 }
 
 #[test]
+fn each_recording_counts_once_whatever_it_is_called() {
+    let bench = Bench::new();
+    fs::create_dir(bench.path("bag")).unwrap();
+    bench.mcap("bag/bag_0.mcap", None, &swing(DATE, 300));
+    bench.mcap("bag/bag_1.mcap", None, &swing(DATE + 1, 300));
+    bench.mcap("one.mcap", None, &swing(DATE + DAY, 300));
+    std::os::unix::fs::symlink(bench.path("one.mcap"), bench.path("link.mcap")).unwrap();
+    let text = format!("{SIGNALS}{MODEL}");
+    for (recording, more) in [
+        ("[\"one.mcap\", \"one.mcap\", \"one.mcap\"]", ""),
+        ("[\"one.mcap\", \"./one.mcap\"]", ""),
+        ("[\"one.mcap\", \"link.mcap\"]", ""),
+        ("[\"bag\", \"bag/bag_1.mcap\"]", ""),
+        ("[\"bag/bag_0.mcap\", \"bag\"]", ""),
+        ("\"one.mcap\"", "unloaded = \"link.mcap\"\n"),
+        ("\"bag\"", "held_out = [\"one.mcap\", \"link.mcap\"]\n"),
+    ] {
+        let told = bench.refused(recording, &format!("{more}{text}"));
+        assert!(told.contains("is there twice"), "{recording}: {told}");
+    }
+    for (recording, more) in [
+        ("\"bag\"", "held_out = \"bag/bag_0.mcap\"\n"),
+        ("\"bag/bag_0.mcap\"", "held_out = \"bag\"\n"),
+    ] {
+        let told = bench.refused(recording, &format!("{more}{text}"));
+        assert!(told.contains("both under recording"), "{recording}: {told}");
+    }
+    // The files of one run, each by itself, are none of them twice.
+    let parts = "[\"bag/bag_0.mcap\", \"bag/bag_1.mcap\"]";
+    let more = "unloaded = \"one.mcap\"\n";
+    let loaded = load(&bench.experiment(parts, &format!("{more}{text}"))).unwrap();
+    assert_eq!(loaded.dataset.sessions.len(), 3);
+}
+
+#[test]
 fn uneven_samples_become_even() {
     let bench = Bench::new();
     // About 190 Hz; the k-th interval is longer by up to a fifth, and every 50th is missing.

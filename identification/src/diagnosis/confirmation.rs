@@ -66,13 +66,12 @@ impl Confirmation {
         let Some(slower) = &self.slower else {
             return true;
         };
-        let doubtful = |signal: &&String| self.signals.contains(signal);
-        let mut in_doubt = map.signals.iter().filter(doubtful);
-        let is_there = |signal: &String| {
-            let mut maps = slower.maps.iter();
-            maps.any(|other| other.signals.contains(signal))
+        // What is over some of its signals is over all of them, too.
+        let is_part = |other: &Dependence| {
+            let mut signals = other.signals.iter();
+            signals.all(|signal| map.signals.contains(signal)) && self.doubts(other)
         };
-        in_doubt.all(is_there)
+        !self.doubts(map) || slower.maps.iter().any(is_part)
     }
 
     fn doubts(&self, map: &Dependence) -> bool {

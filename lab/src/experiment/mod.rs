@@ -17,7 +17,7 @@
 //! motor_torque = "/motor.effort[0]"           # Nm; { column = "u", unit = "V" } where it is none
 //! joint_torque = "/joint_states.effort[0]"    # Nm, optional
 //! temperature = "/temperature.temperature"    # degC, optional
-//! valid = "/drive.enabled"                    # optional: what counts, where it is above 0.5
+//! valid = "/drive.enabled"                    # optional: what counts, where it is above 0.5; holds until it changes
 //! time = { column = "t", unit = "ms" }        # tables only: the column that is time
 //! extra.supply = "/power.voltage"             # anything else
 //! [filter]                      # optional: as published, else chosen from the noise
@@ -256,7 +256,8 @@ impl Experiment {
         let of_text = |text: String| recording_at(&text, &folder, data_folder);
         let mut joined = BTreeMap::new();
         let mut conditions = BTreeMap::new();
-        let mut resolve = |recordings: file::Recordings| -> Vec<PathBuf> {
+        let mut known = BTreeMap::new();
+        let mut resolve = |key: &str, recordings: file::Recordings| {
             let mut firsts = Vec::new();
             for (files, stated) in recordings.list() {
                 let mut files = files.into_iter().map(of_text);
@@ -264,6 +265,18 @@ impl Experiment {
                     continue;
                 };
                 let others: Vec<PathBuf> = files.collect();
+                // What belongs to a recording is found by its first file.
+                let own = (others.clone(), stated.clone());
+                if known
+                    .insert(first.clone(), own.clone())
+                    .is_some_and(|before| before != own)
+                {
+                    let first = first.display();
+                    let reason = format!(
+                        "{first} begins more than one recording: name another of the files that are joined first, and state the conditions of a recording once"
+                    );
+                    return Err(refuse(key, reason));
+                }
                 if !others.is_empty() {
                     joined.insert(first.clone(), others);
                 }
@@ -272,10 +285,11 @@ impl Experiment {
                 }
                 firsts.push(first);
             }
-            firsts
+            Ok(firsts)
         };
-        let recordings = resolve(file.recording);
-        let (held_out, unloaded) = (resolve(file.held_out), resolve(file.unloaded));
+        let recordings = resolve("recording", file.recording)?;
+        let held_out = resolve("held_out", file.held_out)?;
+        let unloaded = resolve("unloaded", file.unloaded)?;
         if recordings.is_empty() {
             return Err(refuse(
                 "recording",

@@ -85,6 +85,27 @@ fn conditions_belong_to_their_recording() {
 }
 
 #[test]
+fn a_file_begins_one_recording_alone() {
+    let with =
+        |list: &str| parse(&SAMPLE.replace("[\"a.mcap\", \"${FERNTAST_DATA}/b.csv\"]", list));
+    // Both would be read with i2.csv, and both at 0.5 kg.
+    for list in [
+        "[[\"q.csv\", \"i1.csv\"], [\"q.csv\", \"i2.csv\"]]",
+        "[\"q.csv\", [\"q.csv\", \"i2.csv\"]]",
+        "[\"q.csv\", { file = \"q.csv\", conditions = { mass = 0.5 } }]",
+    ] {
+        let told = with(list).unwrap_err().to_string();
+        assert!(
+            told.contains("recording: dir/q.csv begins more than one recording"),
+            "{told}"
+        );
+    }
+    let turned = with("[[\"i1.csv\", \"q.csv\"], [\"i2.csv\", \"q.csv\"]]").unwrap();
+    assert_eq!(turned.recordings.len(), 2);
+    assert_eq!(turned.joined.len(), 2);
+}
+
+#[test]
 fn what_is_wrong_is_named() {
     for (from, to, words) in [
         ("held_out", "heldout", "unknown field `heldout`"),

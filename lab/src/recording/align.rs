@@ -35,6 +35,8 @@ struct Timed<'a> {
     period: i64,
     /// How long its last value may stand for what follows \[ns\].
     hold: i64,
+    /// Whether it is told when it changes: a value then stands until the next one.
+    is_state: bool,
     /// The sample at or before the time that was asked for last.
     at: usize,
 }
@@ -124,6 +126,7 @@ impl<'a> Timed<'a> {
                 _ if period > 3 * position_period => period,
                 _ => 0,
             },
+            is_state: series.signal == VALID,
             at: 0,
         }
     }
@@ -135,8 +138,9 @@ impl<'a> Timed<'a> {
         };
         let (from, to) = ends(self.series);
         let (position_from, position_to) = ends(position);
-        let earliest = from.saturating_sub(self.hold);
-        if earliest <= position_to && to.saturating_add(self.hold) >= position_from {
+        let earliest = from.saturating_sub(self.hold_before());
+        let is_in_time = self.is_state || to.saturating_add(self.hold) >= position_from;
+        if earliest <= position_to && is_in_time {
             return Ok(());
         }
         // Seconds since the earlier of both, to be readable.
@@ -154,6 +158,15 @@ impl<'a> Timed<'a> {
         })
     }
 
+    /// How long the first value may stand for what is before it \[ns\]: of a state that
+    /// changes there is none that tells what it was.
+    fn hold_before(&self) -> i64 {
+        match self.is_state && self.series.times.len() > 1 {
+            true => 0,
+            false => self.hold,
+        }
+    }
+
     /// The value at `time`, which must not be before the last one asked for;
     /// `None` inside a gap and outside.
     fn value(&mut self, time: i64) -> Option<f64> {
@@ -164,8 +177,11 @@ impl<'a> Timed<'a> {
         }
         let before = *times.get(self.at)?;
         if time <= before {
-            let near = before.saturating_sub(time) <= self.hold;
+            let near = before.saturating_sub(time) <= self.hold_before();
             return value(self.at).filter(|_| near);
+        }
+        if self.is_state {
+            return value(self.at);
         }
         match times.get(self.at + 1) {
             Some(&after) if after.saturating_sub(before) <= GAP.saturating_mul(self.period) => {
@@ -225,15 +241,20 @@ impl Cutter<'_> {
 }
 
 /// Steps of a uniform grid at which samples stand, where they stand on one and
-/// some steps have none; with the period \[s\].
+/// some steps have none; with the period \[s\]. `None`, too, where that would be more than
+/// ten steps without a sample for each one with: bursts far closer than what the recording's
+/// gaps are judged by.
 fn grid_with_holes(seconds: &[f64]) -> Option<(f64, Vec<usize>)> {
     let mut intervals: Vec<f64> = seconds.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let usual = quantile(&mut intervals, 0.5, f64::total_cmp)?;
     // Step by step, so that a period that is a little off does not add up.
+    let most = seconds.len().saturating_mul(GAP as usize + 1);
     let mut steps = vec![0_usize];
     for pair in seconds.windows(2) {
         let last = steps.last().copied().unwrap_or(0);
-        steps.push(last + ((pair[1] - pair[0]) / usual).round().max(1.0) as usize);
+        let step = ((pair[1] - pair[0]) / usual).round().max(1.0) as usize;
+        let next = last.checked_add(step).filter(|next| *next <= most)?;
+        steps.push(next);
     }
     let period = seconds.last()? / (*steps.last()?).max(1) as f64;
     let on_grid =
@@ -378,6 +399,38 @@ mod tests {
     }
 
     #[test]
+    fn what_is_valid_is_so_until_the_flag_says_otherwise() {
+        let ms = 1_000_000;
+        let position = series("position", (0..3000).map(|n| n * 10 * ms).collect());
+        // On from 2 s to 10 s, and from 20 s to the end: told when it changes.
+        let mut flag = series(VALID, [2000, 10_000, 20_000].map(|at| at * ms).to_vec());
+        flag.values = vec![1.0, 0.0, 1.0];
+        let mut all = [position, flag];
+        let ranges = |all: &[Series]| -> (Vec<(i64, usize)>, [usize; 2]) {
+            let (pieces, tally) = cut(all).unwrap();
+            let pieces = pieces.iter();
+            let ranges = pieces.map(|own| (own.start / (10 * ms), own.channels[0].len()));
+            (
+                ranges.collect(),
+                [tally.without_other_signal, tally.not_valid],
+            )
+        };
+        let expected = (vec![(200, 800), (2000, 1000)], [200, 1000]);
+        assert_eq!(ranges(&all), expected);
+        // The same said every 500 ms.
+        all[1].times = (4..60).map(|n| n * 500 * ms).collect();
+        let is_on = |at: &i64| f64::from(u8::from(!(10_000..20_000).contains(&(at / ms))));
+        all[1].values = all[1].times.iter().map(is_on).collect();
+        assert_eq!(ranges(&all), expected);
+        // Said once, it is so all the time, wherever it is said.
+        (all[1].times, all[1].values) = (vec![40_000 * ms], vec![1.0]);
+        assert_eq!(ranges(&all), (vec![(0, 3000)], [0, 0]));
+        // Switched on before the recording begins.
+        (all[1].times, all[1].values) = (vec![-9000 * ms, -8000 * ms], vec![0.0, 1.0]);
+        assert_eq!(ranges(&all), (vec![(0, 3000)], [0, 0]));
+    }
+
+    #[test]
     fn a_short_hole_is_bridged_and_the_rest_stays_as_it_is() {
         let ms = 1_000_000;
         let times = (0..400).filter(|n| !(100..105).contains(n)).map(|n| n * ms);
@@ -396,6 +449,21 @@ mod tests {
         assert_eq!(piece.channels[0][105..], known[100..]);
         let middle = known[99] + (known[100] - known[99]) * 0.5;
         assert!((piece.channels[0][102] - middle).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bursts_with_pauses_far_longer_than_their_steps_do_not_fill_the_memory() {
+        let ms = 1_000_000;
+        // Every millisecond, then far behind it six samples a nanosecond apart every 9 ms.
+        let even = (0..500).map(|n| n * ms);
+        let bursts = (0..300).map(|n| 1000 * ms + n / 6 * 9 * ms + n % 6);
+        let position = series("position", even.chain(bursts).collect());
+        let (pieces, tally) = cut(&[position]).unwrap();
+        let lengths: Vec<usize> = pieces.iter().map(|own| own.channels[0].len()).collect();
+        assert_eq!((lengths, tally.bridged), (vec![500, 300], 0));
+        // Bursts and pauses together: 49 × 9 ms and 5 ns in 299 steps.
+        let mean = (49.0 * 9e-3 + 5e-9) / 299.0;
+        assert!((pieces[1].period / mean - 1.0).abs() < 1e-12);
     }
 
     proptest! {

@@ -1,6 +1,6 @@
 //! Why recordings give no data to fit a model to.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ferntast_bag::{OpenBagError, ReadMessageError, SelectTopicError};
 
@@ -239,6 +239,14 @@ pub enum LoadError {
         /// Median interval \[s\].
         period: f64,
     },
+    /// The same recording is there twice.
+    #[error("{} is there twice{}: each recording counts once, under recording, unloaded or held_out; leave it out there, and of files that are joined name one first that no other recording begins with", path.display(), also(path, other))]
+    Twice {
+        /// The recording.
+        path: PathBuf,
+        /// What it is called the other time.
+        other: PathBuf,
+    },
     /// The same recording is fitted and held out.
     #[error("{} is both under recording and under held_out: what is held out must not be fitted", path.display())]
     Both {
@@ -251,6 +259,13 @@ fn list(paths: &[String]) -> String {
     match paths {
         [] => "none".to_owned(),
         paths => paths.join(", "),
+    }
+}
+
+fn also(path: &Path, other: &Path) -> String {
+    match path == other {
+        true => String::new(),
+        false => format!(" (also as {})", other.display()),
     }
 }
 

@@ -3,11 +3,13 @@
 //! * The position's samples are the time base. Every other signal is
 //!   interpolated linearly onto them, never across a gap of its own (more
 //!   than ten of its periods). A signal much slower than the position (a
-//!   temperature) stands for one of its own periods at its ends.
+//!   temperature) stands for one of its own periods at its ends. `valid` is a state,
+//!   which may be told only when it changes: each value stands until the next, the
+//!   last one to the end, and nothing is valid before the first of several.
 //! * Time is the message's header stamp where it has a `std_msgs/Header` at
 //!   `header`, else the log time; a stamp of zero says that the message is not
 //!   valid. In a table it is a column, or comes from the rate.
-//! * A session ends where the position, or another signal, has a gap, where
+//! * A session ends where the position, or another signal but `valid`, has a gap, where
 //!   `valid` is not above 0.5, and with the file. Stretches that are too short for
 //!   a fit are left out. Samples that are no numbers are as if they were not there;
 //!   a hole of up to ten samples is bridged by a straight line, a longer one is a gap.
@@ -24,6 +26,7 @@ mod conditions;
 mod error;
 mod plausible;
 mod preview;
+mod repeated;
 mod series;
 mod tally;
 
@@ -67,12 +70,7 @@ pub struct Loaded {
 ///
 /// [`LoadError`]: one for each way in which recordings can be of no use.
 pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
-    for path in &experiment.held_out {
-        let fitted = experiment.recordings.iter().chain(&experiment.unloaded);
-        if fitted.into_iter().any(|other| same(other, path)) {
-            return Err(LoadError::Both { path: path.clone() });
-        }
-    }
+    repeated::check(experiment)?;
     let wanted = wanted(experiment);
     let mut notes = Vec::new();
     let (conditions, by_name) = conditions::of_recordings(experiment);
@@ -129,13 +127,6 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
         tallies,
         date: clock.first_date.map(|date| date as f64 * 1e-9 + origin),
     })
-}
-
-fn same(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    }
 }
 
 /// The signals in the order of a piece's channels.
@@ -287,8 +278,12 @@ fn tell_holes(series: &[Series], notes: &mut Vec<String>) {
     for own in series {
         let (signal, file) = (&own.signal, own.file.display());
         if let Some(first) = &own.first_missing {
+            let consequence = match signal == VALID {
+                true => "what was said before them holds on",
+                false => "up to ten in a row are bridged, more are cut out",
+            };
             notes.push(format!(
-                "{file}: signals.{signal} has {} samples without a number or time, the first in {first}: up to ten in a row are bridged, more are cut out",
+                "{file}: signals.{signal} has {} samples without a number or time, the first in {first}: {consequence}",
                 own.missing
             ));
         }

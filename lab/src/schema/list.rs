@@ -12,6 +12,10 @@ use crate::message_path::{MessagePath, Step};
 /// more than anybody reads.
 const MOST: usize = 2000;
 
+/// So many fields and elements are looked into at most: types within types may have many
+/// that lead to no number.
+const MOST_VISITS: usize = 10 * MOST;
+
 /// So many elements of an array are named.
 const ELEMENTS: u64 = 8;
 
@@ -31,6 +35,7 @@ pub fn numeric_paths(reader: &mut Reader, topic: &str, message: Option<&[u8]>) -
         },
         fields: Vec::new(),
         known: true,
+        visits: 0,
         found: Vec::new(),
     };
     if let Some(root) = layout.structs.first() {
@@ -47,13 +52,14 @@ struct Lister<'a> {
     fields: Vec<usize>,
     /// Whether the message has what the path leads to.
     known: bool,
+    visits: usize,
     found: Vec<String>,
 }
 
 impl Lister<'_> {
     fn visit(&mut self, inner: &Struct) {
         for (number, member) in inner.fields.iter().enumerate() {
-            if self.found.len() >= MOST {
+            if self.found.len() >= MOST || self.visits >= MOST_VISITS {
                 return;
             }
             self.path.steps.push(Step::Field(member.name.clone()));
@@ -69,6 +75,7 @@ impl Lister<'_> {
     }
 
     fn elements(&mut self, element: Element, count: Count) {
+        self.visits += 1;
         let there = match (count, self.message) {
             (Count::Array(size), _) => Some(size),
             (_, Some(bytes)) if self.known => self.reader.length_at(bytes, &self.fields),
@@ -91,6 +98,7 @@ impl Lister<'_> {
     }
 
     fn element(&mut self, element: Element) {
+        self.visits += 1;
         match element {
             Element::Primitive(_) => self.found.push(self.path.to_string()),
             Element::Struct(number) => {

@@ -325,19 +325,29 @@ fn lengths_that_lie_are_refused_without_setting_memory_aside() {
     assert!(reader.read(&[0, 9, 0, 0, 1], &selection).is_err());
 }
 
+/// `count` levels of types with two fields of the next one each, above one with `bottom`.
+fn doubled(count: u32, bottom: &str) -> String {
+    let levels = (0..count).map(|level| {
+        let next = level + 1;
+        format!("===\nMSG: a_msgs/T{level}\nT{next} a\nT{next} b\n")
+    });
+    let levels: String = levels.collect();
+    format!("{levels}===\nMSG: a_msgs/T{count}\n{bottom} a\n")
+}
+
 #[test]
 fn types_that_multiply_are_listed_up_to_a_limit() {
-    let mut schema = String::from("T0 a\nT0 b\n");
-    for level in 0..50 {
-        let next = level + 1;
-        schema.push_str(&format!(
-            "===\nMSG: a_msgs/T{level}\nT{next} a\nT{next} b\n"
-        ));
-    }
-    schema.push_str("===\nMSG: a_msgs/T50\nuint8 a\n");
-    let layout = Layout::of_schema("a_msgs/msg/A", "ros2msg", &schema).unwrap();
-    let paths = numeric_paths(&mut Reader::new(layout), "/t", None);
-    assert!((2000..2100).contains(&paths.len()), "{}", paths.len());
+    let paths = |bottom: &str, message: Option<&[u8]>| {
+        let schema = format!("uint8 first\nT0 a\n{}", doubled(50, bottom));
+        let layout = Layout::of_schema("a_msgs/msg/A", "ros2msg", &schema).unwrap();
+        numeric_paths(&mut Reader::new(layout), "/t", message)
+    };
+    let many = paths("uint8", None).len();
+    assert!((2000..2100).contains(&many), "{many}");
+    // Nor does it go on without an end where there is no number to be found.
+    assert_eq!(paths("string", None), ["/t.first"]);
+    let empty = [vec![0, 1, 0, 0], vec![0; 100_000]].concat();
+    assert_eq!(paths("uint8[]", Some(&empty)), ["/t.first"]);
 }
 
 const TYPES: [&str; 9] = [

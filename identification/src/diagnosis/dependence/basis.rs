@@ -7,7 +7,7 @@ use crate::effects::{Direction, LOAD_OF};
 use crate::numerics::filter::Kernel;
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::quantile_or_zero;
-use crate::signals::Signals;
+use crate::signals::{Point, Signals};
 
 /// Knots of a map over one signal, …
 const KNOTS_ALONE: usize = 7;
@@ -123,14 +123,18 @@ fn channels(prepared: &PreparedModel) -> Vec<Channel> {
         collect("time", false, &|s, at| s.time(at)),
     ];
     if facts.loaded {
-        all.push(match is_contact {
-            true => collect("load", false, &|s, at| s.points[at].load),
-            false => broad("load", &|s, [smooth, _]| {
-                let load: Vec<f64> = s.points.iter().map(|point| point.load).collect();
-                smooth.at_samples(&load, &s.rows)
-            }),
-        });
-        all.push(collect("load_rate", false, &|s, at| s.points[at].load_rate));
+        let load = |point: &Point| point.load;
+        let rate = |point: &Point| point.load_rate;
+        let named: [(&str, fn(&Point) -> f64); 2] = [("load", load), ("load_rate", rate)];
+        for (name, value) in named {
+            all.push(match is_contact {
+                true => collect(name, false, &|s, at| value(&s.points[at])),
+                false => broad(name, &|s, [smooth, _]| {
+                    let values: Vec<f64> = s.points.iter().map(value).collect();
+                    smooth.at_samples(&values, &s.rows)
+                }),
+            });
+        }
     }
     if facts.temperature && facts.temperature_range > 2.0 && facts.sessions >= 4 {
         all.push(collect("temperature", true, &|s, at| {

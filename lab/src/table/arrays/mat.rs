@@ -1,12 +1,12 @@
 //! MATLAB's files of version 5 (`save -v6`, `-v7`), as in "MAT-File Format" of The
-//! MathWorks. Numeric arrays, also within structures (`data.q`); sparse ones, texts
-//! and cells are left out.
+//! MathWorks. Numeric arrays, also within structures (`data.q`); sparse ones, complex
+//! ones, texts and cells are left out.
 
 use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::{Array, Kind, LARGEST, Order, columns, numbers, take};
+use super::{Array, Columns, Kind, LARGEST, Numbers, Order, Room, take};
 
 /// Types of elements.
 const MATRIX: u32 = 14;
@@ -14,6 +14,8 @@ const COMPRESSED: u32 = 15;
 /// Classes of arrays.
 const STRUCTURE: u8 = 2;
 const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
+/// The flag of an array that has imaginary parts, too.
+const COMPLEX: u32 = 0x0800;
 /// Structures within structures are followed so far.
 const DEPTH: usize = 8;
 
@@ -33,6 +35,7 @@ pub(super) fn arrays(bytes: &[u8]) -> Result<Vec<Array>, String> {
     let mut reader = Reader {
         order,
         left: LARGEST,
+        room: Room::new(),
         found: Vec::new(),
     };
     reader.elements(bytes.get(128..).unwrap_or_default())?;
@@ -50,6 +53,7 @@ struct Reader {
     order: Order,
     /// How much may still be decompressed \[bytes\].
     left: u64,
+    room: Room,
     found: Vec<Array>,
 }
 
@@ -119,7 +123,8 @@ impl Reader {
         let flags = self.element(bytes).ok_or(CUT)?;
         let sizes = self.element(flags.rest).ok_or(CUT)?;
         let name = self.element(sizes.rest).ok_or(CUT)?;
-        let class = (self.long(flags.data, 0).ok_or(CUT)? & 0xff) as u8;
+        let flags = self.long(flags.data, 0).ok_or(CUT)?;
+        let (class, is_complex) = ((flags & 0xff) as u8, flags & COMPLEX != 0);
         let sizes: Vec<usize> = (0..sizes.data.len() / 4)
             .filter_map(|at| self.long(sizes.data, 4 * at))
             .map(|size| size as usize)
@@ -135,19 +140,22 @@ impl Reader {
         let &[rows, width] = sizes.as_slice() else {
             return Ok(());
         };
-        if !NUMERIC.contains(&class) {
+        // The real part of complex numbers is no signal by itself.
+        if !NUMERIC.contains(&class) || is_complex {
             return Ok(());
         }
         let data = self.element(name.rest).ok_or(CUT)?;
-        let Some(values) = kind(data.kind).and_then(|kind| numbers(data.data, kind, self.order))
+        let Some(numbers) =
+            kind(data.kind).and_then(|kind| Numbers::new(data.data, kind, self.order))
         else {
             return Ok(());
         };
-        if rows.checked_mul(width) != Some(values.len()) {
+        if rows.checked_mul(width) != Some(numbers.len()) {
             return Err(format!("array {called:?} {CUT}"));
         }
-        self.found
-            .extend(columns(&called, values, rows, width, false));
+        let columns = Columns::new(rows, width, false);
+        self.room.take(&columns)?;
+        self.found.extend(columns.read(&called, &numbers));
         Ok(())
     }
 
@@ -218,7 +226,7 @@ mod tests {
         element(9, &bytes)
     }
 
-    /// A vector, a compressed matrix of small numbers, a text, a structure.
+    /// A vector, a compressed matrix of small numbers, complex numbers, a text, a structure.
     fn sample() -> Vec<u8> {
         let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
         bytes.resize(124, b' ');
@@ -236,6 +244,8 @@ mod tests {
                 .concat(),
         );
         bytes.extend(packed);
+        let complex = [doubles(&[1.0, 2.0]), doubles(&[3.0, 4.0])].concat();
+        bytes.extend(matrix(0x0806, [2, 1], "spectrum", &complex));
         bytes.extend(matrix(4, [1, 2], "text", &element(4, &[104, 0, 105, 0])));
         let fields = [
             [(4_u32 << 16 | 5).to_le_bytes(), 4_u32.to_le_bytes()].concat(),

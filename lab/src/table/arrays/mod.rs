@@ -12,6 +12,9 @@ use super::{error::TableError, format::Format};
 
 /// The largest file, and the most that may come out of a compressed part \[bytes\].
 const LARGEST: u64 = 1 << 28;
+/// So many numbers of a file are held, at most: as many as there are in the largest file of
+/// single precision. Smaller ones take more room here than there.
+const MOST_NUMBERS: usize = 1 << 26;
 /// Columns of one matrix, at most.
 const MOST_COLUMNS: usize = 64;
 
@@ -49,7 +52,7 @@ pub fn read(path: &Path, format: Format) -> Result<Vec<Array>, TableError> {
     let bytes = std::fs::read(path).map_err(open_error)?;
     let arrays = match format {
         Format::Mat => mat::arrays(&bytes),
-        Format::Npy => npz::array("values", &bytes),
+        Format::Npy => npz::array("values", &bytes, &mut Room::new()),
         Format::Npz | Format::Text => npz::arrays(&bytes),
     };
     let mut arrays = arrays.map_err(refuse)?;
@@ -61,36 +64,80 @@ pub fn read(path: &Path, format: Format) -> Result<Vec<Array>, TableError> {
     }
 }
 
-/// The columns of an array of `rows` by `columns`, whose values come column by
-/// column, or row by row.
-fn columns(name: &str, values: Vec<f64>, rows: usize, columns: usize, by_row: bool) -> Vec<Array> {
-    if rows.min(columns) <= 1 {
-        let name = name.to_owned();
-        return vec![Array { name, values }];
+/// How many numbers may still be held.
+struct Room(usize);
+
+impl Room {
+    const fn new() -> Room {
+        Room(MOST_NUMBERS)
     }
-    // Along the longer side goes time.
-    let (long, short, short_is_columns) = match rows >= columns {
-        true => (rows, columns, true),
-        false => (columns, rows, false),
-    };
-    let at = |long: usize, short: usize| {
-        let (row, column) = if short_is_columns {
-            (long, short)
-        } else {
-            (short, long)
+
+    /// Takes the room for `columns`, or refuses them.
+    fn take(&mut self, columns: &Columns) -> Result<(), String> {
+        let left = self
+            .0
+            .checked_sub(columns.count.saturating_mul(columns.length));
+        self.0 = left.ok_or_else(|| {
+            format!(
+                "it has more than {MOST_NUMBERS} numbers, which are not held; save only what is needed, or as CSV"
+            )
+        })?;
+        Ok(())
+    }
+}
+
+/// The columns of an array of `rows` by `width`.
+struct Columns {
+    rows: usize,
+    width: usize,
+    count: usize,
+    length: usize,
+    /// Whether values come row by row, or column by column.
+    by_row: bool,
+}
+
+impl Columns {
+    fn new(rows: usize, width: usize, by_row: bool) -> Columns {
+        let (longer, shorter) = (rows.max(width), rows.min(width));
+        // A vector may lie or stand; along the longer side of a matrix goes time.
+        let (count, length) = match shorter {
+            0 => (1, 0),
+            _ => (shorter.min(MOST_COLUMNS), longer),
         };
-        match by_row {
-            true => row * columns + column,
-            false => column * rows + row,
+        Columns {
+            rows,
+            width,
+            count,
+            length,
+            by_row,
         }
-    };
-    let one = |column: usize| Array {
-        name: format!("{name}[{column}]"),
-        values: (0..long)
-            .filter_map(|row| values.get(at(row, column)).copied())
-            .collect(),
-    };
-    (0..short.min(MOST_COLUMNS)).map(one).collect()
+    }
+
+    /// Where in the array the value `at` of column `number` is.
+    fn place(&self, number: usize, at: usize) -> usize {
+        let (row, column) = match self.rows >= self.width {
+            true => (at, number),
+            false => (number, at),
+        };
+        match self.by_row {
+            true => row * self.width + column,
+            false => column * self.rows + row,
+        }
+    }
+
+    fn read(&self, name: &str, numbers: &Numbers<'_>) -> Vec<Array> {
+        let is_vector = self.rows.min(self.width) <= 1;
+        let one = |number: usize| Array {
+            name: match is_vector {
+                true => name.to_owned(),
+                false => format!("{name}[{number}]"),
+            },
+            values: (0..self.length)
+                .filter_map(|at| numbers.get(self.place(number, at)))
+                .collect(),
+        };
+        (0..self.count).map(one).collect()
+    }
 }
 
 /// `N` bytes at `from`.
@@ -112,35 +159,53 @@ struct Kind {
     size: usize,
 }
 
-/// Numbers of one kind, as many as there are whole ones; `None` where the kind is
-/// not known.
-fn numbers(bytes: &[u8], kind: Kind, order: Order) -> Option<Vec<f64>> {
-    let one: fn([u8; 8]) -> f64 = match (kind.letter, kind.size) {
-        ('f', 8) => f64::from_le_bytes,
-        ('f', 4) => |b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])),
-        ('i', 8) => |b| i64::from_le_bytes(b) as f64,
-        ('i', 4) => |b| f64::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]])),
-        ('i', 2) => |b| f64::from(i16::from_le_bytes([b[0], b[1]])),
-        ('i', 1) => |b| f64::from(i8::from_le_bytes([b[0]])),
-        ('u', 8) => |b| u64::from_le_bytes(b) as f64,
-        ('u', 4) => |b| f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])),
-        ('u', 2) => |b| f64::from(u16::from_le_bytes([b[0], b[1]])),
-        ('u' | 'b', 1) => |b| f64::from(b[0]),
-        _ => return None,
-    };
-    let values = bytes.chunks_exact(kind.size).map(|chunk| {
+/// Numbers of one kind, as many as there are whole ones.
+struct Numbers<'a> {
+    bytes: &'a [u8],
+    size: usize,
+    order: Order,
+    one: fn([u8; 8]) -> f64,
+}
+
+impl<'a> Numbers<'a> {
+    /// `None` where the kind is not known.
+    fn new(bytes: &'a [u8], kind: Kind, order: Order) -> Option<Numbers<'a>> {
+        let one: fn([u8; 8]) -> f64 = match (kind.letter, kind.size) {
+            ('f', 8) => f64::from_le_bytes,
+            ('f', 4) => |b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+            ('i', 8) => |b| i64::from_le_bytes(b) as f64,
+            ('i', 4) => |b| f64::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+            ('i', 2) => |b| f64::from(i16::from_le_bytes([b[0], b[1]])),
+            ('i', 1) => |b| f64::from(i8::from_le_bytes([b[0]])),
+            ('u', 8) => |b| u64::from_le_bytes(b) as f64,
+            ('u', 4) => |b| f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+            ('u', 2) => |b| f64::from(u16::from_le_bytes([b[0], b[1]])),
+            ('u' | 'b', 1) => |b| f64::from(b[0]),
+            _ => return None,
+        };
+        Some(Numbers {
+            bytes,
+            size: kind.size,
+            order,
+            one,
+        })
+    }
+
+    fn len(&self) -> usize {
+        self.bytes.len() / self.size
+    }
+
+    fn get(&self, at: usize) -> Option<f64> {
+        let from = at.checked_mul(self.size)?;
+        let bytes = self.bytes.get(from..from.checked_add(self.size)?)?;
         let mut own = [0; 8];
-        for (slot, byte) in own.iter_mut().zip(chunk) {
-            *slot = *byte;
-        }
-        if order == Order::Big
-            && let Some(used) = own.get_mut(..kind.size)
-        {
+        let used = own.get_mut(..self.size)?;
+        used.copy_from_slice(bytes);
+        if self.order == Order::Big {
             used.reverse();
         }
-        one(own)
-    });
-    Some(values.collect())
+        Some((self.one)(own))
+    }
 }
 
 #[cfg(test)]
@@ -149,26 +214,61 @@ mod tests {
 
     #[test]
     fn matrices_give_columns_along_their_longer_side() {
-        let values: Vec<f64> = (0..6).map(f64::from).collect();
-        let found = columns("a", values.clone(), 3, 2, true);
+        let kind = Kind {
+            letter: 'u',
+            size: 1,
+        };
+        let numbers = Numbers::new(&[0, 1, 2, 3, 4, 5], kind, Order::Little).unwrap();
+        let columns = |rows, width, by_row| Columns::new(rows, width, by_row).read("a", &numbers);
+        let found = columns(3, 2, true);
         assert_eq!(found[0].values, [0.0, 2.0, 4.0]);
         assert_eq!(
             (found[1].name.as_str(), &found[1].values[..]),
             ("a[1]", &[1.0, 3.0, 5.0][..])
         );
-        let found = columns("a", values.clone(), 2, 3, true);
-        assert_eq!(found[1].values, [3.0, 4.0, 5.0]);
-        let found = columns("a", values, 3, 2, false);
-        assert_eq!(found[1].values, [3.0, 4.0, 5.0]);
+        assert_eq!(columns(2, 3, true)[1].values, [3.0, 4.0, 5.0]);
+        assert_eq!(columns(3, 2, false)[1].values, [3.0, 4.0, 5.0]);
+        for (rows, width) in [(6, 1), (1, 6)] {
+            for by_row in [false, true] {
+                let found = columns(rows, width, by_row);
+                assert_eq!((found.len(), found[0].name.as_str()), (1, "a"));
+                assert_eq!(found[0].values, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+            }
+        }
+        assert_eq!(columns(0, 5, true)[0].values, [0.0; 0]);
     }
 
     #[test]
     fn numbers_of_all_kinds() {
-        let kind = |letter, size| Kind { letter, size };
-        let big = numbers(&[0xff, 0xfe, 0, 1], kind('i', 2), Order::Big);
+        let read = |bytes: &[u8], letter, size, order| -> Option<Vec<f64>> {
+            let numbers = Numbers::new(bytes, Kind { letter, size }, order)?;
+            Some(
+                (0..=numbers.len())
+                    .filter_map(|at| numbers.get(at))
+                    .collect(),
+            )
+        };
+        let big = read(&[0xff, 0xfe, 0, 1, 7], 'i', 2, Order::Big);
         assert_eq!(big, Some(vec![-2.0, 1.0]));
-        let little = numbers(&1.5_f32.to_le_bytes(), kind('f', 4), Order::Little);
+        let little = read(&1.5_f32.to_le_bytes(), 'f', 4, Order::Little);
         assert_eq!(little, Some(vec![1.5]));
-        assert_eq!(numbers(&[0; 16], kind('c', 16), Order::Little), None);
+        assert_eq!(read(&[0; 16], 'c', 16, Order::Little), None);
+    }
+
+    #[test]
+    fn no_more_numbers_are_held_than_there_is_room_for() {
+        let mut room = Room::new();
+        let half = MOST_NUMBERS / 2;
+        room.take(&Columns::new(half, 1, true)).unwrap();
+        // Of a wide matrix no more than its first columns are held.
+        let wide = Columns::new(half / 64, half / 64, true);
+        room.take(&wide).unwrap();
+        let told = room.take(&Columns::new(1, 1, true)).unwrap_err();
+        assert!(told.contains("more than 67108864 numbers"), "{told}");
+        assert!(
+            Room::new()
+                .take(&Columns::new(usize::MAX, 2, true))
+                .is_err()
+        );
     }
 }

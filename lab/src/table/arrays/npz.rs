@@ -5,7 +5,7 @@ use std::io::Read;
 
 use flate2::read::DeflateDecoder;
 
-use super::{Array, Kind, LARGEST, Order, columns, numbers, take};
+use super::{Array, Columns, Kind, LARGEST, Numbers, Order, Room, take};
 
 /// Length of the record at a ZIP archive's end, of one entry of its directory, and
 /// of the header before its data, each without what varies \[bytes\].
@@ -27,7 +27,7 @@ pub(super) fn arrays(bytes: &[u8]) -> Result<Vec<Array>, String> {
     let count = short(end + 10).ok_or_else(cut)?;
     let mut at = long(end + 16).ok_or_else(cut)?;
     let mut found = Vec::new();
-    let mut left = LARGEST;
+    let (mut left, mut room) = (LARGEST, Room::new());
     for _ in 0..count {
         if take(bytes, at) != Some(*b"PK\x01\x02") {
             return Err(cut());
@@ -70,13 +70,13 @@ pub(super) fn arrays(bytes: &[u8]) -> Result<Vec<Array>, String> {
         left = left
             .checked_sub(unpacked.len() as u64)
             .ok_or("its arrays are too large to be held; save only what is needed, or as CSV")?;
-        found.extend(array(array_name, &unpacked)?);
+        found.extend(array(array_name, &unpacked, &mut room)?);
     }
     Ok(found)
 }
 
 /// The columns of one array, an `.npy` file; none of one that holds no numbers.
-pub(super) fn array(name: &str, bytes: &[u8]) -> Result<Vec<Array>, String> {
+pub(super) fn array(name: &str, bytes: &[u8], room: &mut Room) -> Result<Vec<Array>, String> {
     let wrong = || format!("array {name:?} is no .npy");
     if take(bytes, 0) != Some(*b"\x93NUMPY") {
         return Err(wrong());
@@ -113,16 +113,17 @@ pub(super) fn array(name: &str, bytes: &[u8]) -> Result<Vec<Array>, String> {
         [rows, columns] => [*rows, *columns],
         _ => return Ok(Vec::new()),
     };
-    let Some(mut values) = numbers(data, kind, order) else {
+    let Some(numbers) = Numbers::new(data, kind, order) else {
         return Ok(Vec::new());
     };
     let count = rows.checked_mul(width).ok_or_else(wrong)?;
-    if values.len() < count {
+    if numbers.len() < count {
         return Err(format!("array {name:?} is cut off"));
     }
-    values.truncate(count);
     let by_row = !value("fortran_order").is_some_and(|text| text.starts_with("True"));
-    Ok(columns(name, values, rows, width, by_row))
+    let columns = Columns::new(rows, width, by_row);
+    room.take(&columns)?;
+    Ok(columns.read(name, &numbers))
 }
 
 /// `'<f8'`.

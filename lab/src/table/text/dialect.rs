@@ -21,6 +21,9 @@ pub struct Dialect {
     pub first_row: u64,
     /// Mean length of a row \[bytes\].
     pub row_bytes: f64,
+    /// Whether the last column is nothing but what stands behind a separator at a row's end:
+    /// it has neither a name nor a value.
+    pub last_is_empty: bool,
 }
 
 /// Whether a line is a comment.
@@ -49,7 +52,6 @@ struct Look {
 /// where there is no line with content.
 #[must_use]
 pub fn of_head(head: &str) -> Option<Dialect> {
-    let head = head.strip_prefix('\u{feff}').unwrap_or(head);
     let lines = (1..).zip(head.lines());
     let lines = lines.map(|(number, text)| Line { number, text });
     let (comments, content): (Vec<Line<'_>>, Vec<Line<'_>>) = lines
@@ -72,6 +74,12 @@ pub fn of_head(head: &str) -> Option<Dialect> {
     let (names, units) = names(&content, &comments, &best);
     let named = names.is_some();
     let names = names.unwrap_or_default();
+    let last = best.fields.saturating_sub(1);
+    let has_value = |line: &Line<'_>| {
+        let mut fields = best.separator.fields(line.text);
+        fields.nth(last).is_some_and(|field| !field.is_empty())
+    };
+    let last_is_empty = names.get(last).is_none_or(String::is_empty) && !rows.iter().any(has_value);
     Some(Dialect {
         separator: best.separator,
         names: filled(names, best.fields),
@@ -81,6 +89,7 @@ pub fn of_head(head: &str) -> Option<Dialect> {
             .collect(),
         first_row: first.number,
         row_bytes: bytes as f64 / rows.len().max(1) as f64,
+        last_is_empty,
     })
 }
 
@@ -98,6 +107,7 @@ fn without_rows(content: &[Line<'_>]) -> Option<Dialect> {
         named: true,
         first_row: line.number + 1,
         row_bytes: line.text.len() as f64 + 1.0,
+        last_is_empty: false,
     })
 }
 
@@ -246,7 +256,7 @@ mod tests {
                 5,
             ),
             ("t,q,state\n0,1,run\n1,1,run\n", Comma, "t q state", true, 2),
-            ("\u{feff}t,q\n0,\n1,\n", Comma, "t q", true, 2),
+            ("t,q\n0,\n1,\n", Comma, "t q", true, 2),
             ("t,q\n0,1,\n1,2,\n", Comma, "t q column_3", true, 2),
             ("t,q\nx,y\n", Comma, "t q", true, 2),
         ] {

@@ -22,6 +22,8 @@ use number::{Cell, cell};
 const LONGEST_ROW: usize = 1 << 20;
 /// How much of a file is looked at to find how it is written \[bytes\].
 const HEAD: u64 = 1 << 16;
+/// What some programs write in front of UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// How the file at `path` is written.
 ///
@@ -29,12 +31,24 @@ const HEAD: u64 = 1 << 16;
 ///
 /// It cannot be read, is empty, or is not UTF-8.
 pub fn look(path: &Path) -> Result<Dialect, TableError> {
-    let open_error = |source| TableError::Open {
+    look_at(&mut open(path)?, path)
+}
+
+fn open(path: &Path) -> Result<BufReader<File>, TableError> {
+    let buffered = |file| without_mark(BufReader::with_capacity(1 << 18, file));
+    let opened = File::open(path).and_then(buffered);
+    opened.map_err(|source| TableError::Open {
         path: path.to_owned(),
         source,
-    };
-    let mut file = File::open(path).map_err(open_error)?;
-    look_at(&mut file, path)
+    })
+}
+
+/// The text behind its byte order mark, where it has one.
+fn without_mark<R: BufRead>(mut source: R) -> io::Result<R> {
+    if source.fill_buf()?.starts_with(BYTE_ORDER_MARK) {
+        source.consume(BYTE_ORDER_MARK.len());
+    }
+    Ok(source)
 }
 
 fn look_at(source: &mut impl Read, path: &Path) -> Result<Dialect, TableError> {
@@ -75,18 +89,7 @@ pub fn rows<E: From<TableError>>(
     wanted: &[usize],
     visit: impl FnMut(u64, &[Cell<'_>]) -> Result<(), E>,
 ) -> Result<bool, E> {
-    let open_error = |source| TableError::Open {
-        path: path.to_owned(),
-        source,
-    };
-    let file = File::open(path).map_err(open_error)?;
-    rows_of(
-        BufReader::with_capacity(1 << 18, file),
-        path,
-        dialect,
-        wanted,
-        visit,
-    )
+    rows_of(open(path)?, path, dialect, wanted, visit)
 }
 
 fn rows_of<E: From<TableError>>(
@@ -103,6 +106,12 @@ fn rows_of<E: From<TableError>>(
     let (mut bytes, mut line) = (Vec::new(), 0);
     let mut broken: Option<TableError> = None;
     let columns = dialect.names.len();
+    // Whether a row ends with a separator makes no difference. Where any other field were
+    // left out, those behind it would be read as their neighbours.
+    let fewest = match dialect.last_is_empty && columns > 2 {
+        true => columns - 1,
+        false => columns,
+    };
     let comma = dialect.separator.decimal_comma();
     loop {
         bytes.clear();
@@ -137,8 +146,7 @@ fn rows_of<E: From<TableError>>(
                 *slot = cell(field, comma);
             }
         }
-        // A row may end with a separator, and the names may, too.
-        if beyond || found + 1 < columns || (found < columns && columns <= 2) {
+        if beyond || found < fewest {
             broken = Some(format(
                 line,
                 format!("{found} fields, where the columns are {columns}"),
@@ -173,6 +181,7 @@ mod tests {
     /// The rows, and whether the last one was cut off.
     fn parse(bytes: &[u8]) -> Result<(Vec<Row>, bool), TableError> {
         let path = Path::new("a.csv");
+        let bytes = without_mark(bytes).unwrap();
         let dialect = look_at(&mut &bytes[..], path)?;
         let mut read = Vec::new();
         let cut = rows_of(bytes, path, &dialect, &[0, 1], |line, cells| {
@@ -193,6 +202,7 @@ mod tests {
             "\u{feff}# made by hand\n t ; q \n0;1\n\n0,1; -20,0",
             "time\tq\r\n0\t1\r\n0.1\t-20\r\n",
             "% x\n  0.0   1\n  0.1  -20\n",
+            "\u{feff}0,1\n0.1,-20\n",
             "\"t\",\"q\"\n\"0\",\"1\"\n0.1,-20,\n",
         ] {
             let (rows, cut) = parse(text.as_bytes()).unwrap();
@@ -213,6 +223,39 @@ mod tests {
         assert_eq!(latin.0.len(), 2);
         let wide = parse(b"\xff\xfet\0,\0").unwrap_err().to_string();
         assert!(wide.contains("UTF-16"), "{wide}");
+    }
+
+    #[test]
+    fn a_row_that_lacks_a_field_is_refused_but_for_the_empty_one_at_its_end() {
+        for text in [
+            "t,q,i\n0,1,2\n1,2,3\n2,4\n3,4,5\n",
+            "t q i\n0 1 2\n1 2 3\n2 4\n3 4 5\n",
+            // The column without a name has values.
+            "t,q,\n0,1,2\n1,2,3\n2,4\n3,4,5\n",
+            "0;1;2\n1;2;3\n2;4\n3;4;5\n",
+            // It may have the last one alone.
+            "t,q,i\n0,1,2\n1,,3\n2,4\n3,4,5\n",
+        ] {
+            let refused = parse(text.as_bytes()).unwrap_err().to_string();
+            assert!(
+                refused.contains(": 2 fields, where the columns are 3"),
+                "{refused}"
+            );
+        }
+        for text in [
+            "t,q,\n0,1,\n1,2,\n2,4\n3,4,\n",
+            "t,q\n0,1,\n1,2,\n2,4\n3,4,\n",
+            "t,q\n0,1\n1,2\n2,4,\n3,4\n",
+            "0;1;\n1;2;\n2;4\n3;4;\n",
+        ] {
+            let (rows, cut) = parse(text.as_bytes()).unwrap();
+            let numbers: Vec<(f64, f64)> = rows.iter().map(|row| (row.1, row.2)).collect();
+            let all = [(0.0, 1.0), (1.0, 2.0), (2.0, 4.0), (3.0, 4.0)];
+            assert_eq!((&numbers[..], cut), (&all[..], false), "{text}");
+        }
+        // The last line is cut off, not a row of fewer fields.
+        let (rows, cut) = parse(b"t,q,i\n0,1,2\n1,2,3\n2,4").unwrap();
+        assert_eq!((rows.len(), cut), (2, true));
     }
 
     #[test]
