@@ -9,6 +9,7 @@
 use super::candidates::{Candidate, Trial};
 use super::dependence::Dependence;
 use super::examination::{Examination, examine};
+use super::verdict::passing;
 use crate::data::ModelSpec;
 use crate::design::PreparedModel;
 use crate::effects::CHANNEL_DELAY;
@@ -57,8 +58,9 @@ impl Confirmation {
         let Some(slower) = &self.slower else {
             return true;
         };
+        // That it is there is enough: how much it helps is told with the filter that is used.
         let same = |other: &Candidate| other.id() == candidate.id();
-        !is_doubtful(candidate) || slower.passing.iter().any(same)
+        !is_doubtful(candidate) || passing(&slower.trial).iter().any(same)
     }
 
     /// Whether a dependence counts.
@@ -66,10 +68,16 @@ impl Confirmation {
         let Some(slower) = &self.slower else {
             return true;
         };
-        // What is over some of its signals is over all of them, too.
+        // What is over some of its signals is over all of them, too; a modelled load and the
+        // acceleration are nearly one.
+        let all_in_doubt = map
+            .signals
+            .iter()
+            .all(|signal| self.signals.contains(signal));
         let is_part = |other: &Dependence| {
             let mut signals = other.signals.iter();
-            signals.all(|signal| map.signals.contains(signal)) && self.doubts(other)
+            let within = signals.all(|signal| map.signals.contains(signal));
+            within && self.doubts(other) && !(all_in_doubt && other.signals.len() > 1)
         };
         !self.doubts(map) || slower.maps.iter().any(is_part)
     }

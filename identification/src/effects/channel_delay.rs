@@ -68,10 +68,9 @@ impl Effect for ChannelDelay {
             return None;
         };
         let period = points.first()?.period;
-        // From half the delay later to half of it earlier, per second of delay: the coefficient is
-        // the delay itself. An odd difference takes nothing off the signal's own noise, as one from
-        // now on does, which is in part a mean of neighbours: noise of the acceleration, which
-        // is in the residual, would look like a delay.
+        // The odd part of the delay, per second of it: the coefficient is the delay itself. The
+        // even part, from now on, is a mean of neighbours in part, which takes noise off the
+        // signal: that of the acceleration is in the residual, and would look like a delay.
         let late = |values: Vec<f64>, by: f64| -> Vec<f64> {
             let last = values.len().saturating_sub(1);
             let value = |place: f64| {
@@ -81,9 +80,10 @@ impl Effect for ChannelDelay {
                 let after = values[(before + 1).min(last)];
                 values[before] + share * (after - values[before])
             };
-            let half = 0.5 * by / period;
+            let samples = by / period;
             (0..values.len())
-                .map(|at| (value(at as f64 - half) - value(at as f64 + half)) / delay)
+                .map(|at| at as f64)
+                .map(|at| 0.5 * (value(at - samples) - value(at + samples)) / delay)
                 .collect()
         };
         let each = |value: fn(&Point) -> f64| -> Vec<f64> { points.iter().map(value).collect() };

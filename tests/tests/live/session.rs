@@ -5,7 +5,7 @@ use std::{fs, time::Duration};
 use ferntast_msgs::{sample::OperatingState, topics};
 use ferntast_tests::{
     PATIENCE, Process, Session, await_enabled, messages, node, recording, refused, run, signal,
-    start, state, state_of_follower, wait_for,
+    start, state, state_of_follower, wait_for, wait_until,
 };
 
 #[test]
@@ -53,6 +53,20 @@ fn others_open_the_recording_without_help() {
             "{name}"
         );
     }
+}
+
+/// Who says so from the first moment on is heard as the nodes come up, before or after the
+/// session arms the arm: neither the session nor the script's operator undoes it.
+#[test]
+fn a_stop_while_the_nodes_come_up_stays() {
+    let session = Session::new();
+    let mut process = start(&session, &[]);
+    let disabled = || state(&session, "follower", "disable").status.success();
+    assert!(wait_until(PATIENCE, disabled));
+    std::thread::sleep(Duration::from_secs(4));
+    assert_eq!(state_of_follower(&session), "DISABLED");
+    process.interrupt();
+    process.wait(PATIENCE).success();
 }
 
 #[test]
