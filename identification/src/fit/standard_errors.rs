@@ -61,7 +61,7 @@ impl Uncertainty {
             Gram::sum(fold.iter().filter_map(block), columns)
         });
         let most = (design.folds.len() as f64 - 1.0).max(1.0);
-        let (mut covariance, freedom) = match design.folds.len() > design.sessions.len() {
+        let (mut covariance, freedom) = match design.errors_are_by_blocks() {
             true => {
                 let (covariance, freedom) = by_blocks(&gram, &best, outs);
                 (covariance, freedom.map(|own| own.clamp(1.0, most)))
