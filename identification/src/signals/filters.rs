@@ -211,6 +211,14 @@ impl Filters {
         }
     }
 
+    /// Working samples on either side that the filter on columns looks at.
+    pub(crate) fn column_reach(&self) -> usize {
+        match &self.stated {
+            Some(filter) => filter.column_reach(),
+            None => Kernel::reach(self.column),
+        }
+    }
+
     /// Smoothing of a column that is not differentiated.
     pub(super) fn column_kernel(&self, period: f64) -> Kernel {
         match &self.stated {

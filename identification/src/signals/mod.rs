@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::data::RecordedSession;
+use crate::data::stated_filter::StatedFilter;
 use crate::numerics::filter::{Kernel, thin};
 
 pub use filters::Filters;
@@ -161,10 +162,14 @@ impl Signals {
         };
         self.points = Arc::new(self.points.iter().enumerate().map(derived).collect());
         let points = &self.points;
-        let reach = Kernel::reach(filters.column);
+        let reach = filters.column_reach();
         let last = points.len().saturating_sub(reach + lost);
         self.all_rows = match &filters.stated {
-            Some(filter) => filter.rows(points.len()),
+            Some(filter) => {
+                // Derived twice, the acceleration looks furthest.
+                let reach = StatedFilter::reach(&curvature, &self.column);
+                filter.rows(points.len().saturating_sub(lost), reach)
+            }
             None => (reach..last).step_by(filters.stride.max(1)).collect(),
         };
         let mut sliding = Sliding::default();
