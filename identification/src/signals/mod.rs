@@ -80,15 +80,16 @@ impl Signals {
     /// Thins and smooths a session, and finds its rows.
     #[must_use]
     pub fn new(session: &RecordedSession, filters: &Filters) -> Self {
-        let period = session.period * filters.thinning as f64;
-        let thin = |signal: &[f64]| thin(signal, filters.thinning);
+        let thinning = filters.thinning(session.period);
+        let period = session.period * thinning as f64;
+        let thin = |signal: &[f64]| thin(signal, thinning);
         let raw = Channels {
             position: thin(&session.position),
             motor_torque: thin(&session.motor_torque),
-            joint_torque: session.joint_torque.as_ref().map_or_else(
-                || vec![0.0; session.len().div_ceil(filters.thinning)],
-                |s| thin(s),
-            ),
+            joint_torque: session
+                .joint_torque
+                .as_ref()
+                .map_or_else(|| vec![0.0; session.len().div_ceil(thinning)], |s| thin(s)),
         };
         let raw = Arc::new(raw);
         let [smooth, ..] = filters.state_kernels(filters.state, period);
