@@ -36,6 +36,7 @@ impl Motion {
                 };
                 let joint = Dataset {
                     sessions: dataset.sessions.iter().map(own).collect(),
+                    held_out: dataset.held_out.iter().map(own).collect(),
                     joint: kinds(joint),
                     filter: dataset.filter,
                     ..Dataset::default()
@@ -43,20 +44,20 @@ impl Motion {
                 Filters::at_cut_off(&joint, 1.0)
             })
             .collect();
-        let by = filters.first().map_or(1, |filters| filters.thinning);
-        let all = dataset.sessions.iter().chain(&dataset.held_out);
-        let sessions: Vec<ArmSession> = all
-            .map(|session| ArmSession {
+        let thinned = |session: &ArmSession| {
+            let by = (filters.first()).map_or(1, |filters| filters.thinning(session.period));
+            let all = |signals: &[Vec<f64>]| signals.iter().map(|own| thin(own, by)).collect();
+            ArmSession {
                 name: session.name.clone(),
                 start: session.start,
                 conditions: session.conditions.clone(),
                 period: session.period * by as f64,
-                position: session.position.iter().map(|own| thin(own, by)).collect(),
-                motor_torque: (session.motor_torque.iter())
-                    .map(|own| thin(own, by))
-                    .collect(),
-            })
-            .collect();
+                position: all(&session.position),
+                motor_torque: all(&session.motor_torque),
+            }
+        };
+        let all = dataset.sessions.iter().chain(&dataset.held_out);
+        let sessions: Vec<ArmSession> = all.map(thinned).collect();
         Self {
             states: sessions
                 .iter()

@@ -18,7 +18,6 @@ use crate::design::{Design, PreparedModel, SessionDesign};
 use crate::fit::{Parameter, Rms, Soundness, fit};
 use crate::preparation::prepare;
 use crate::signals::Signals;
-use crate::validation::left_out::LeftOut;
 use extrapolation::Extrapolation;
 use noise_floor::NoiseFloor;
 use residual_map::{Residual, ResidualMap, Window};
@@ -160,7 +159,7 @@ pub(crate) fn compare_prepared(
         relative_error_held_out: fitted.held_out / torque_rms(shown),
         held_out_by: HeldOutBy::of(prepared, &design),
         varies_together: varies_together::find(dataset),
-        noise: noise_floor::find(prepared, &design, LeftOut::of_folds(&design).rms()),
+        noise: noise_floor::find(prepared, &design),
         residual_maps: residual_map::maps(&residuals, &prepared.facts),
         worst: residual_map::worst(&residuals),
         extrapolated: extrapolation::find(prepared),

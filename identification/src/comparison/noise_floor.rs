@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use crate::design::{Design, PreparedModel};
+use crate::validation::left_out::LeftOut;
 
 /// Smallest time \[s\] between two passes that are repeats.
 const MIN_TIME_APART: f64 = 1.0;
@@ -26,9 +27,10 @@ pub struct NoiseFloor {
 
 /// Compares the residual (each session with its own parameters) of rows in the
 /// same cell of position, direction, speed, load and acceleration, where rows count
-/// for errors. `held_out` is the error \[Nm\] on rows left out.
+/// for errors. What varies between sessions is what these err by, left out in turn, beyond what
+/// they err by with parameters of their own: recordings that are held out have no part in it.
 #[must_use]
-pub fn find(prepared: &PreparedModel, design: &Design, held_out: f64) -> NoiseFloor {
+pub fn find(prepared: &PreparedModel, design: &Design) -> NoiseFloor {
     let travel = prepared.facts.travel().max(1e-300);
     let speed = prepared.facts.speed[1].max(1e-300);
     let mut loads: Vec<f64> = Vec::new();
@@ -79,7 +81,9 @@ pub fn find(prepared: &PreparedModel, design: &Design, held_out: f64) -> NoiseFl
     NoiseFloor {
         repeats: (pairs >= MIN_PAIRS).then(|| (sum / pairs as f64).sqrt()),
         pairs,
-        sessions: (design.sessions.len() > 1)
-            .then(|| (held_out * held_out - within).max(0.0).sqrt()),
+        sessions: (design.sessions.len() > 1).then(|| {
+            let left_out = LeftOut::of_folds(design).rms();
+            (left_out * left_out - within).max(0.0).sqrt()
+        }),
     }
 }

@@ -222,7 +222,7 @@ fn count(
     used: Reason,
 ) {
     let filters = &prepared.filters;
-    let each = filters.thinning * filters.stride.max(1);
+    let each = filters.thinning(recorded.period) * filters.stride.max(1);
     let mut left = recorded.len();
     let reasons = reasons(signals, prepared, used);
     for reason in reasons {

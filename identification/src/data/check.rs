@@ -5,6 +5,8 @@ use super::{Dataset, Inertia, JointType, ModelSpec, RecordedSession};
 
 /// Smallest number of samples of a session.
 pub const MIN_SAMPLES: usize = 100;
+/// Largest ratio of two sampling periods that the same filter, so many samples wide, fits.
+pub(crate) const ALIKE: f64 = 1.5;
 
 /// Checks recordings and the model's numbers.
 ///
@@ -30,6 +32,9 @@ pub fn check(dataset: &Dataset, spec: &ModelSpec) -> Result<(), PrepareError> {
             }
         }
     }
+    if dataset.filter.is_some() {
+        check_rates(&sessions)?;
+    }
     if dataset.sessions.iter().all(|s| constant(&s.position)) {
         return Err(PrepareError::ConstantPosition(dataset.joint));
     }
@@ -50,6 +55,26 @@ pub fn check(dataset: &Dataset, spec: &ModelSpec) -> Result<(), PrepareError> {
         return Err(PrepareError::GearRatio(ratio));
     }
     Ok(())
+}
+
+/// A stated filter counts in samples, which therefore have to mean the same time, about.
+fn check_rates(sessions: &[&RecordedSession]) -> Result<(), PrepareError> {
+    let by_period = |a: &&&RecordedSession, b: &&&RecordedSession| a.period.total_cmp(&b.period);
+    let (fastest, slowest) = (
+        sessions.iter().min_by(by_period),
+        sessions.iter().max_by(by_period),
+    );
+    match (fastest, slowest) {
+        (Some(fastest), Some(slowest)) if slowest.period > ALIKE * fastest.period => {
+            Err(PrepareError::RatesWithFilter {
+                slowest: slowest.name.clone(),
+                slow: 1.0 / slowest.period,
+                fastest: fastest.name.clone(),
+                fast: 1.0 / fastest.period,
+            })
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check_contact(sessions: &[&RecordedSession], spec: &ModelSpec) -> Result<(), PrepareError> {

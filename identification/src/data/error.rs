@@ -44,6 +44,20 @@ pub enum PrepareError {
         /// The period \[s\].
         period: f64,
     },
+    /// Sampling rates too different for a filter that counts in samples.
+    #[error(
+        "{slowest} has {slow:.1} Hz, {fastest} {fast:.1} Hz: the decimation of a stated [filter] is a number of samples, which is not the same time in both; leave [filter] out, or resample the faster recording"
+    )]
+    RatesWithFilter {
+        /// Name of the session that is sampled slowest.
+        slowest: String,
+        /// Its rate \[Hz\].
+        slow: f64,
+        /// Name of the session that is sampled fastest.
+        fastest: String,
+        /// Its rate \[Hz\].
+        fast: f64,
+    },
     /// NaN or infinity in a channel.
     #[error(
         "{session}: channel {channel} is not a number at sample {sample}; cut it out or repair it"

@@ -14,6 +14,10 @@ pub use prepared_model::PreparedModel;
 
 /// Blocks of time in all, at least; a session is one or more of them.
 const MIN_BLOCKS: usize = 12;
+/// Rows of a block, at least …
+const ROWS_OF_BLOCK: usize = 20;
+/// … but for so many blocks of a session, however short.
+const FEWEST_BLOCKS: usize = 3;
 
 /// Sessions from which standard errors are by sessions left out: two tell nothing
 /// of their variation.
@@ -151,9 +155,14 @@ impl Design {
     /// Whether the error that is reported is that of whole sessions left out.
     #[must_use]
     pub fn leaves_sessions_out(&self) -> bool {
-        self.sessions.len() > 1
-            && (self.left_out.iter().any(|fold| fold.len() > 1)
-                || self.left_out.len() == self.sessions.len())
+        one_predicts_the_other(&self.sessions)
+    }
+
+    /// Whether standard errors are by blocks of time, of too few sessions.
+    #[must_use]
+    pub fn errors_are_by_blocks(&self) -> bool {
+        let with_rows = self.sessions.iter().filter(|own| !own.blocks.is_empty());
+        with_rows.count() < MIN_SESSIONS_FOR_ERRORS
     }
 
     /// Fits the parameters of all sessions together, and the weights that draw a
@@ -381,9 +390,11 @@ fn one_predicts_the_other(sessions: &[SessionDesign]) -> bool {
     }
 }
 
-/// Cuts `rows` rows into `count` blocks of equal length, fewer if they are few.
+/// Cuts `rows` rows into `count` blocks of equal length, fewer if they are few: what is left out
+/// in turn has to leave something to be fitted, and to differ.
 fn blocks(rows: usize, count: usize) -> Vec<(usize, usize)> {
-    let count = count.min(rows / 20).max(usize::from(rows > 0));
+    let most = (rows / ROWS_OF_BLOCK).max(FEWEST_BLOCKS.min(rows));
+    let count = count.min(most);
     (0..count)
         .map(|b| (b * rows / count, (b + 1) * rows / count))
         .collect()

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use crate::effects::{BoundTerm, EffectHandle, Facts, JointCoupling, with_columns};
-use crate::numerics::filter::Kernel;
 use crate::signals::{Filters, Signals};
 
 /// A model bound to recordings: signals filtered, effects with their shapes, the
@@ -72,7 +71,7 @@ impl PreparedModel {
     /// Leaves out the rows whose filters reach a sample at which the torque of an
     /// effect of the model is not determined by what is measured.
     pub(crate) fn leave_out_undetermined_rows(&mut self) {
-        let reach = Kernel::reach(self.filters.column);
+        let reach = self.filters.column_reach();
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             for term in &self.terms {
                 let samples = (term.effect).undetermined_samples(&term.shape, &signals.points);
@@ -85,7 +84,7 @@ impl PreparedModel {
     /// Notes the rows whose filters reach a sample at which the measured torque is
     /// not the motor's, by an effect of the model.
     fn find_unjudged_rows(&mut self) {
-        let reach = Kernel::reach(self.filters.column);
+        let reach = self.filters.column_reach();
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             let each = self.terms.iter();
             let samples: Vec<Vec<usize>> = each

@@ -96,6 +96,6 @@ fn is_below_noise(addition: &Addition, extended: &PreparedModel) -> bool {
     if addition.judged_share >= 1.0 {
         return false;
     }
-    let noise = noise_floor::find(extended, &Design::new(extended), addition.held_out_after);
+    let noise = noise_floor::find(extended, &Design::new(extended));
     (noise.repeats).is_some_and(|repeats| addition.held_out_after < repeats)
 }

@@ -119,7 +119,7 @@ fn describe_all(dataset: &Dataset, found: &Examination) -> Diagnosis {
     // different errors.
     let mut depends_on = maps.clone();
     depends_on.sort_by(|a, b| b.strength.total_cmp(&a.strength));
-    let noise = noise_floor::find(prepared, design, base.held_out);
+    let noise = noise_floor::find(prepared, design);
     Diagnosis {
         samples: dataset.sessions.iter().map(RecordedSession::len).sum(),
         used: usage::find(dataset, prepared, design),

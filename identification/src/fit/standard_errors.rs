@@ -13,7 +13,6 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::design::{Design, PreparedModel, columns};
 use crate::effects::{BoundTerm, with_columns};
-use crate::numerics::filter::Kernel;
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::{jackknife_covariance, quantile_or_zero};
 use crate::signals::Signals;
@@ -61,7 +60,7 @@ impl Uncertainty {
             Gram::sum(fold.iter().filter_map(block), columns)
         });
         let most = (design.folds.len() as f64 - 1.0).max(1.0);
-        let (mut covariance, freedom) = match design.folds.len() > design.sessions.len() {
+        let (mut covariance, freedom) = match design.errors_are_by_blocks() {
             true => {
                 let (covariance, freedom) = by_blocks(&gram, &best, outs);
                 (covariance, freedom.map(|own| own.clamp(1.0, most)))
@@ -115,7 +114,7 @@ fn unseen_travel(prepared: &PreparedModel, term: usize) -> f64 {
     let Some(term) = prepared.terms.get(term) else {
         return 0.0;
     };
-    let reach = Kernel::reach(prepared.filters.column);
+    let reach = prepared.filters.column_reach();
     let mut travels = Vec::new();
     for signals in &prepared.sessions {
         let points = &signals.points;

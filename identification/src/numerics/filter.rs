@@ -129,6 +129,36 @@ impl Kernel {
         ((3.5 * sigma).ceil() as usize).max(1)
     }
 
+    /// Samples on either side beyond which less than `share` of the weights lies, by their size.
+    #[must_use]
+    pub(crate) fn reach_but_for(&self, share: f64) -> usize {
+        let radius = self.taps.len() / 2;
+        let size = |at: usize| self.taps.get(at).map_or(0.0, |tap| tap.abs());
+        let all: f64 = self.taps.iter().map(|tap| tap.abs()).sum();
+        let mut beyond = 0.0;
+        for reach in (0..=radius).rev() {
+            // What this distance weighs on both sides, once it is left out, too.
+            beyond += size(radius - reach) + if reach > 0 { size(radius + reach) } else { 0.0 };
+            if beyond >= share * all {
+                return reach;
+            }
+        }
+        0
+    }
+
+    /// How much each sample may weigh after this kernel and then `next`: the sizes of the weights,
+    /// as what lies between both need not be linear.
+    #[must_use]
+    pub(crate) fn sizes_with(&self, next: &Self) -> Self {
+        let count = (self.taps.len() + next.taps.len()).saturating_sub(1);
+        let mut taps = vec![0.0; count];
+        for (at, own) in self.taps.iter().enumerate() {
+            let sums = taps.iter_mut().skip(at).zip(&next.taps);
+            sums.for_each(|(sum, tap)| *sum += (own * tap).abs());
+        }
+        Self { taps }
+    }
+
     /// Variance of the output for white noise of unit variance.
     #[must_use]
     pub fn noise_gain(&self) -> f64 {
@@ -315,6 +345,26 @@ mod tests {
             assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
         }
         assert_eq!(Kernel::with_taps(vec![1.0]).cut_off(0.001), 500.0);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_reach_weighs_less_than_its_share() {
+        let kernel = Kernel::with_taps(vec![-0.01, 0.1, -0.2, 1.0, -0.2, 0.1, -0.01]);
+        // Sizes 1.62 in all: 0.02 lie beyond two samples, 0.22 beyond one, 0.62 beyond none.
+        for (share, reach) in [(0.01, 3), (0.02, 2), (0.13, 2), (0.14, 1), (0.39, 0)] {
+            assert_eq!(kernel.reach_but_for(share), reach, "{share}");
+        }
+        assert_eq!(Kernel::with_taps(vec![1.0]).reach_but_for(1e-3), 0);
+        // Two normal distributions one after the other are one of the sum of both variances.
+        let [a, b, both] = [3.0, 4.0, 5.0].map(|sigma| Kernel::gaussian(sigma, 0, 1.0));
+        let found = a.sizes_with(&b);
+        assert_eq!(found.taps().len(), a.taps().len() + b.taps().len() - 1);
+        let (found, expected) = (found.reach_but_for(0.01), both.reach_but_for(0.01));
+        // 1 % lie beyond 2.576 standard deviations.
+        assert!(
+            found.abs_diff(13) <= 1 && expected.abs_diff(13) <= 1,
+            "{found} {expected}"
+        );
     }
 
     #[test]

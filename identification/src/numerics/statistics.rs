@@ -60,18 +60,21 @@ pub fn t_quantile(probability: f64, freedom: f64) -> f64 {
 /// G clusters left out each (jackknife, CR3): it allows for any correlation
 /// and any variance within a cluster.
 ///
-/// Returns the p-value with m and G − m degrees of freedom.
+/// Of the mean of G clusters the Wald statistic W is Hotelling's T² (1931): (G − m) W / (m (G − 1))
+/// is F-distributed with m and G − m degrees of freedom, whose p-value is returned.
 #[must_use]
 pub fn jackknife_wald(estimate: &DVector<f64>, without: &[DVector<f64>]) -> f64 {
     let m = estimate.len();
-    let freedom = without.len() as f64 - m as f64;
+    let clusters = without.len() as f64;
+    let freedom = clusters - m as f64;
     if m == 0 || freedom < 1.0 {
         return 1.0;
     }
     let covariance = jackknife_covariance(estimate, without);
     let (inverse, _) = pseudo_inverse(&covariance);
     let wald = (estimate.transpose() * inverse * estimate)[(0, 0)];
-    f_tail(wald / m as f64, m as f64, freedom)
+    let ratio = wald * freedom / (m as f64 * (clusters - 1.0));
+    f_tail(ratio, m as f64, freedom)
 }
 
 /// (G−1)/G Σ (c₍₋ᵢ₎ − c)(c₍₋ᵢ₎ − c)ᵀ.
@@ -102,6 +105,7 @@ pub fn mean_error(numbers: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::recordings::noise;
 
     #[test]
     fn a_quantile_is_the_number_of_the_nearest_rank() {
@@ -146,5 +150,30 @@ mod tests {
         let (_, error) = mean_error(&numbers);
         let covariance = jackknife_covariance(&mean, &without);
         assert!((covariance[(0, 0)].sqrt() - error).abs() < 1e-12);
+    }
+
+    /// The mean of twelve clusters in three dimensions, whose components go together. A rate of
+    /// 5 % in 6000 trials has a standard error of 0.3 %; of W / m without Hotelling's factor, the
+    /// rate would be that of F(3, 9) above 9/11 of its 5 % limit, 7.7 %.
+    #[test]
+    fn the_test_rejects_as_often_as_it_says() {
+        const CLUSTERS: usize = 12;
+        let mut noise = noise(1);
+        let mut draw = || {
+            let (a, b, c) = (noise(), noise(), noise());
+            DVector::from_vec(vec![a, 3.0 * (0.6 * a + 0.8 * b), 0.1 * (b + c)])
+        };
+        let trials = 6000;
+        let rejected = (0..trials).filter(|_| {
+            let clusters: Vec<DVector<f64>> = (0..CLUSTERS).map(|_| draw()).collect();
+            let sum: DVector<f64> = clusters.iter().sum();
+            let each = clusters.iter();
+            let without: Vec<DVector<f64>> = each
+                .map(|own| (&sum - own) / (CLUSTERS as f64 - 1.0))
+                .collect();
+            jackknife_wald(&(sum / CLUSTERS as f64), &without) < 0.05
+        });
+        let rate = rejected.count() as f64 / f64::from(trials);
+        assert!((0.04..0.06).contains(&rate), "{rate}");
     }
 }

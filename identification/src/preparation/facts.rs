@@ -125,7 +125,8 @@ pub(super) fn gather(
             || spec.inertia != Inertia::Given(0.0)
             || has_row(spec, |row| row.is_load)
             || has_formula_of_load(dataset, spec),
-        period: dataset.sessions.first().map_or(1.0, |s| s.period) * filters.thinning as f64,
+        period: (dataset.sessions.first())
+            .map_or(1.0, |s| s.period * filters.thinning(s.period) as f64),
         load_coulomb: has_row(spec, Row::is_load_coulomb),
     }
 }

@@ -124,11 +124,7 @@ impl<'a> Filtered<'a> {
         if terms.any(|t| t.effect.row().shows_at_reversals) {
             prepared.keep_reversals();
         }
-        let parameters = prepared.terms.iter().map(|t| t.effect.columns()).sum();
-        let rows = prepared.sessions.iter().map(|s| s.rows.len()).sum();
-        if rows < 20 + 5 * parameters {
-            return Err(PrepareError::NothingExcited { rows, parameters });
-        }
+        check_excited(&prepared)?;
         // Shapes are not searched by a load on which no term depends.
         let of_motion = prepared.is_of_motion();
         if !of_motion {
@@ -148,6 +144,7 @@ impl<'a> Filtered<'a> {
         let is_read = predict || others.any(|term| !term.effect.is_of_motion());
         prepared.compensate(is_read);
         prepared.refine_shapes_on_determined_rows();
+        check_excited(&prepared)?;
         Ok(prepared)
     }
 
@@ -162,6 +159,16 @@ impl<'a> Filtered<'a> {
             reversals: false,
             predicted: DVector::zeros(0),
         }
+    }
+}
+
+/// Whether there are rows enough to fit the model to.
+fn check_excited(prepared: &PreparedModel) -> Result<(), PrepareError> {
+    let parameters = prepared.terms.iter().map(|t| t.effect.columns()).sum();
+    let rows = prepared.sessions.iter().map(|s| s.rows.len()).sum();
+    match rows < 20 + 5 * parameters {
+        true => Err(PrepareError::NothingExcited { rows, parameters }),
+        false => Ok(()),
     }
 }
 

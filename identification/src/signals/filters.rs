@@ -1,5 +1,6 @@
 //! Widths of the filters, chosen from the noise in the recordings.
 
+use crate::data::check::ALIKE;
 use crate::data::stated_filter::StatedFilter;
 use crate::data::{Dataset, RecordedSession};
 use crate::numerics::filter::{Kernel, least_width, noise_level, quiet_width, thin};
@@ -29,8 +30,11 @@ pub struct ChosenFor {
 /// Widths of the filters, the same for all sessions of a dataset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Filters {
-    /// Samples of the recording in one working sample.
-    pub thinning: usize,
+    /// Period \[s\] of working samples, about; each session has a whole number of its own samples
+    /// in one.
+    pub working_period: f64,
+    /// Whether what is sampled faster is thinned for the sake of what is sampled slowest.
+    pub thinned_to_slowest: bool,
     /// Width \[working samples\] of the light smoothing in which states (the
     /// sign of velocity, for example) are determined.
     pub state: f64,
@@ -60,30 +64,40 @@ impl Filters {
     #[must_use]
     pub fn at_cut_off(dataset: &Dataset, factor: f64) -> Self {
         let sessions = &dataset.sessions;
+        let common = Working::of(sessions.iter().chain(&dataset.held_out));
         let chosen = match dataset.joint.is_contact() {
-            true => Self::choose_for_contact(sessions),
-            false => Self::choose(sessions),
+            true => Self::choose_for_contact(sessions, common),
+            false => Self::least_smoothing(sessions, 2, common),
         };
         match dataset.filter {
             Some(filter) => {
                 let filter = filter.at_cut_off(factor);
                 Self {
-                    thinning: 1,
+                    thinned_to_slowest: false,
                     stride: filter.decimation.max(1),
                     stated: Some(filter),
                     ..chosen
                 }
             }
-            None => chosen.narrowed(factor, sessions),
+            None => chosen.narrowed(factor),
+        }
+    }
+
+    /// Samples of a recording, `period` \[s\] apart, in one working sample.
+    #[must_use]
+    pub fn thinning(&self, period: f64) -> usize {
+        match &self.stated {
+            Some(_) => 1,
+            None => samples_in(self.working_period, period),
         }
     }
 
     /// As wide as makes the cut-off `factor` times as high.
-    fn narrowed(self, factor: f64, sessions: &[RecordedSession]) -> Self {
+    fn narrowed(self, factor: f64) -> Self {
         if factor == 1.0 {
             return self;
         }
-        let period = sessions.first().map_or(0.01, |s| s.period) * self.thinning as f64;
+        let period = self.working_period;
         let (state, column) = (self.state / factor, self.column / factor);
         // A narrower filter leaves the velocity noisier.
         let noise = Kernel::sharp(state, 1, period).noise_gain().sqrt() * self.position_noise;
@@ -122,13 +136,20 @@ impl Filters {
             1 => "velocity",
             _ => "acceleration",
         };
-        match self.chosen_for.is_quiet {
+        let why = match self.chosen_for.is_quiet {
             true => format!(
                 "chosen from the noise in the position: the least smoothing that leaves the {what} 5 % noise or less"
             ),
             false => format!(
                 "the most smoothing there is, and the {what} has more than 5 % noise all the same: state a lower one in [filter]"
             ),
+        };
+        match self.thinned_to_slowest {
+            true => format!(
+                "{why}; all recordings are taken at about {:.0} Hz, the rate of the slowest of them: without it, the others tell more",
+                1.0 / self.working_period
+            ),
+            false => why,
         }
     }
 
@@ -136,17 +157,17 @@ impl Filters {
     /// smoothing as leaves the acceleration a twentieth noise, at most.
     #[must_use]
     pub fn choose(sessions: &[RecordedSession]) -> Self {
-        Self::least_smoothing(sessions, 2)
+        Self::least_smoothing(sessions, 2, Working::of(sessions.iter()))
     }
 
     /// The same for a contact, where no acceleration is needed: the velocity
     /// decides. Compliance before a tip slides shows over travel, so that no more
     /// travel is dropped than the position cannot resolve, and the filter on
     /// columns is as short as possible.
-    fn choose_for_contact(sessions: &[RecordedSession]) -> Self {
+    fn choose_for_contact(sessions: &[RecordedSession], common: Working) -> Self {
         let normal = sessions.iter().filter_map(|s| s.normal_force.as_ref());
         let mut all: Vec<f64> = normal.flatten().map(|force| force.abs()).collect();
-        let chosen = Self::least_smoothing(sessions, 1);
+        let chosen = Self::least_smoothing(sessions, 1, common);
         Self {
             column: chosen.state,
             stride: (2.0 * chosen.state).round() as usize,
@@ -158,19 +179,16 @@ impl Filters {
 
     /// As little smoothing as leaves the derivative of this `order` a twentieth
     /// noise, at most.
-    fn least_smoothing(sessions: &[RecordedSession], order: u8) -> Self {
-        let period = sessions.first().map_or(0.01, |s| s.period);
-        let thinning = ((WORKING_PERIOD / period + 1e-6).floor() as usize).max(1);
-        let working = period * thinning as f64;
-        let positions: Vec<Vec<f64>> = sessions
-            .iter()
-            .map(|s| thin(&s.position, thinning))
-            .collect();
+    fn least_smoothing(sessions: &[RecordedSession], order: u8, common: Working) -> Self {
+        let working = common.period;
+        let thinned =
+            |s: &RecordedSession, signal: &[f64]| thin(signal, samples_in(working, s.period));
+        let positions: Vec<Vec<f64>> = sessions.iter().map(|s| thinned(s, &s.position)).collect();
         let noise = positions.iter().map(|q| noise_level(q)).fold(0.0, f64::max);
         let quiet = quiet_width(&positions, order, working);
         let state = quiet.unwrap_or_else(|| least_width(&positions, order, working));
         let loads: Vec<Vec<f64>> = (sessions.iter())
-            .filter_map(|s| Some(thin(s.joint_torque.as_ref()?, thinning)))
+            .filter_map(|s| Some(thinned(s, s.joint_torque.as_ref()?)))
             .collect();
         let load = match loads.is_empty() {
             true => state,
@@ -186,7 +204,8 @@ impl Filters {
         let range = quantile_or_zero(&mut all, 0.98) - quantile_or_zero(&mut all, 0.02);
         let column = f64::max(2.0, state);
         Self {
-            thinning,
+            working_period: working,
+            thinned_to_slowest: common.is_of_slowest,
             state,
             load,
             column,
@@ -222,6 +241,14 @@ impl Filters {
         [smooth, curvature]
     }
 
+    /// Working samples on either side that the filter on columns looks at.
+    pub(crate) fn column_reach(&self) -> usize {
+        match &self.stated {
+            Some(filter) => filter.column_reach(),
+            None => Kernel::reach(self.column),
+        }
+    }
+
     /// Smoothing of a column that is not differentiated.
     pub(super) fn column_kernel(&self, period: f64) -> Kernel {
         match &self.stated {
@@ -229,4 +256,38 @@ impl Filters {
             None => Kernel::gaussian(self.column, 0, period),
         }
     }
+}
+
+/// Period at which recordings are worked with.
+#[derive(Clone, Copy)]
+struct Working {
+    /// \[s\]
+    period: f64,
+    /// Whether it is that of the slowest recording, though others are faster.
+    is_of_slowest: bool,
+}
+
+impl Working {
+    /// Of all `sessions`: that of the first, thinned, unless another is much slower.
+    fn of<'a>(sessions: impl Iterator<Item = &'a RecordedSession> + Clone) -> Self {
+        let first = sessions.clone().next().map_or(0.01, |own| own.period);
+        let alone = first * (WORKING_PERIOD / first + 1e-6).floor().max(1.0);
+        let periods = sessions.map(|own| own.period);
+        let slowest = periods.clone().fold(first, f64::max);
+        let period = if slowest > ALIKE * alone {
+            slowest
+        } else {
+            alone
+        };
+        let fastest = periods.fold(first, f64::min).max(WORKING_PERIOD);
+        Self {
+            period,
+            is_of_slowest: period > ALIKE * fastest,
+        }
+    }
+}
+
+/// Samples `period` apart in one of `working` \[s\], at least one.
+fn samples_in(working: f64, period: f64) -> usize {
+    ((working / period).round() as usize).max(1)
 }

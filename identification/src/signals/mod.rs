@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::data::RecordedSession;
+use crate::data::stated_filter::StatedFilter;
 use crate::numerics::filter::{Kernel, thin};
 
 pub use filters::Filters;
@@ -79,15 +80,16 @@ impl Signals {
     /// Thins and smooths a session, and finds its rows.
     #[must_use]
     pub fn new(session: &RecordedSession, filters: &Filters) -> Self {
-        let period = session.period * filters.thinning as f64;
-        let thin = |signal: &[f64]| thin(signal, filters.thinning);
+        let thinning = filters.thinning(session.period);
+        let period = session.period * thinning as f64;
+        let thin = |signal: &[f64]| thin(signal, thinning);
         let raw = Channels {
             position: thin(&session.position),
             motor_torque: thin(&session.motor_torque),
-            joint_torque: session.joint_torque.as_ref().map_or_else(
-                || vec![0.0; session.len().div_ceil(filters.thinning)],
-                |s| thin(s),
-            ),
+            joint_torque: session
+                .joint_torque
+                .as_ref()
+                .map_or_else(|| vec![0.0; session.len().div_ceil(thinning)], |s| thin(s)),
         };
         let raw = Arc::new(raw);
         let [smooth, ..] = filters.state_kernels(filters.state, period);
@@ -161,10 +163,14 @@ impl Signals {
         };
         self.points = Arc::new(self.points.iter().enumerate().map(derived).collect());
         let points = &self.points;
-        let reach = Kernel::reach(filters.column);
+        let reach = filters.column_reach();
         let last = points.len().saturating_sub(reach + lost);
         self.all_rows = match &filters.stated {
-            Some(filter) => filter.rows(points.len()),
+            Some(filter) => {
+                // Derived twice, the acceleration looks furthest.
+                let reach = StatedFilter::reach(&curvature, &self.column);
+                filter.rows(points.len().saturating_sub(lost), reach)
+            }
             None => (reach..last).step_by(filters.stride.max(1)).collect(),
         };
         let mut sliding = Sliding::default();

@@ -56,7 +56,7 @@ pub(super) fn rows_clear_of_bad_samples(rows: &[usize], good: &[bool], reach: us
         bad[at + 1] = bad[at] + usize::from(!good);
     }
     let rows = rows.iter().copied();
-    rows.filter(|at| bad[at + reach] == bad[at - reach])
+    rows.filter(|at| bad[at + reach + 1] == bad[at - reach])
         .collect()
 }
 
@@ -85,6 +85,16 @@ pub(super) fn touches_and_moves(points: &[Point], rest_speed: f64, least_force: 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_bad_sample_counts_as_far_to_either_side_and_no_further() {
+        let mut good = vec![true; 40];
+        good[20] = false;
+        let rows: Vec<usize> = (3..37).collect();
+        let clear = rows_clear_of_bad_samples(&rows, &good, 3);
+        let expected: Vec<usize> = (3..17).chain(24..37).collect();
+        assert_eq!(clear, expected);
+    }
 
     #[test]
     fn a_tip_counts_where_it_touches_and_where_it_turns_but_not_where_it_stays() {

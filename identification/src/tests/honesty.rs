@@ -1,11 +1,12 @@
 //! What is said of the samples used, of parameters and of the filter.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
-use super::recordings::{INERTIA, JointState, model, plain, recording};
+use super::recordings::{self, INERTIA, JointState, model, plain, recording};
 use crate::comparison::{Comparison, Reason};
-use crate::data::{CustomEffect, Dataset, Inertia, ModelSpec, Term};
-use crate::{StatedFilter, Verdict, compare, diagnose, diagnose_at_cutoffs};
+use crate::data::{CustomEffect, Dataset, Inertia, ModelSpec, RecordedSession, Term};
+use crate::{PrepareError, StatedFilter, Verdict, compare, diagnose, diagnose_at_cutoffs};
 
 fn bump(s: &JointState) -> f64 {
     plain(s) + 1.5 * (-(s.qd / 0.05).powi(2)).exp() * s.qd.signum()
@@ -184,4 +185,156 @@ fn a_complete_model_is_complete_in_the_samples_used() {
         found.claim()
     );
     assert!(!found.runners_up.is_empty() && found.helps_in_part.is_empty());
+}
+
+/// Coulomb friction of 1 Nm and viscous friction of 0.5 Nm s under a slow motion, 0.3 kg m²;
+/// `noise` is that of the position \[rad\] and of the torque \[Nm\].
+fn slow_motion(seed: u64, rate: f64, seconds: f64, noise: [f64; 2]) -> RecordedSession {
+    let mut draw = recordings::noise(2 * seed + 1);
+    let mut session = RecordedSession {
+        name: format!("{rate} Hz, {seed}"),
+        period: 1.0 / rate,
+        ..RecordedSession::default()
+    };
+    for at in 0..(seconds * rate) as usize {
+        let t = at as f64 / rate;
+        let (mut q, mut qd, mut qdd) = (0.0, 0.0, 0.0);
+        for (amplitude, hertz) in [(1.0, 0.21), (0.5, 0.37)] {
+            let turn = TAU * hertz;
+            let (sine, cosine) = (turn * t + 0.7).sin_cos();
+            q += amplitude * sine;
+            qd += amplitude * turn * cosine;
+            qdd -= amplitude * turn * turn * sine;
+        }
+        session.position.push(q + noise[0] * draw());
+        let torque = 0.3 * qdd + qd.signum() + 0.5 * qd;
+        session.motor_torque.push(torque + noise[1] * draw());
+    }
+    session
+}
+
+fn of_sessions(sessions: Vec<RecordedSession>) -> Dataset {
+    Dataset {
+        sessions,
+        ..Dataset::default()
+    }
+}
+
+fn with_inertia(inertia: Inertia, effects: &[&str]) -> ModelSpec {
+    ModelSpec {
+        inertia,
+        ..model(effects)
+    }
+}
+
+/// With the same filters for both, so many samples wide, the acceleration of the faster one is
+/// mostly noise, and the inertia an eighth too small.
+#[test]
+fn recordings_of_two_rates_are_taken_at_the_slower() {
+    let of = |rate: f64, seed: u64| slow_motion(seed, rate, 40.0, [1e-5, 0.02]);
+    let believed = with_inertia(Inertia::Fit, &["coulomb", "viscous"]);
+    for rates in [[100.0, 1000.0], [1000.0, 100.0]] {
+        let data = of_sessions(vec![of(rates[0], 1), of(rates[1], 2)]);
+        let found = compared(&data, &believed);
+        for (name, truth) in [("inertia", 0.3), ("b0", 1.0), ("b1", 0.5)] {
+            let value = found.parameters[name].value;
+            assert!(
+                (value / truth - 1.0).abs() < 0.02,
+                "{name} {value} {rates:?}"
+            );
+        }
+        let used = &found.used;
+        assert_eq!(used.by_reason.values().sum::<usize>(), 44_000);
+        assert!(used.cutoff_reason.contains("at about 100 Hz"), "{used:?}");
+        // The same for a recording that is only predicted.
+        let mut data = of_sessions(vec![of(rates[0], 1)]);
+        data.held_out = vec![of(rates[1], 2)];
+        let inertia = compared(&data, &believed).parameters["inertia"].value;
+        assert!((inertia / 0.3 - 1.0).abs() < 0.02, "{inertia} {rates:?}");
+        // A stated filter counts samples.
+        data.filter = Some(StatedFilter {
+            butterworth_hz: 10.0,
+            decimation: 5,
+            least_speed: 0.1,
+        });
+        let refused = compare(&data, &believed).unwrap_err().to_string();
+        for part in ["100 Hz, ", "1000 Hz, ", "leave [filter] out"] {
+            assert!(refused.contains(part), "{refused}");
+        }
+    }
+    // Rates that are as good as the same are left as they are.
+    let alike = of_sessions(vec![of(250.0, 1), of(190.0, 2)]);
+    let reason = compared(&alike, &believed).used.cutoff_reason;
+    assert!(!reason.contains("slowest"), "{reason}");
+}
+
+/// A filter of 5 Hz looks half a second to either side.
+#[test]
+fn stated_filters_leave_out_what_looks_beyond_the_ends() {
+    let believed = with_inertia(Inertia::Fit, &["coulomb", "viscous"]);
+    let mut data = of_sessions(vec![slow_motion(1, 1000.0, 4.0, [0.0; 2])]);
+    data.filter = Some(StatedFilter {
+        butterworth_hz: 5.0,
+        decimation: 10,
+        least_speed: 0.0,
+    });
+    let found = compared(&data, &believed);
+    for (name, truth) in [("inertia", 0.3), ("b0", 1.0), ("b1", 0.5)] {
+        let value = found.parameters[name].value;
+        assert!((value / truth - 1.0).abs() < 2e-3, "{name} {value}");
+    }
+    assert!(found.rms.train < 2e-3, "{:?}", found.rms);
+    let edges = found.used.by_reason[&Reason::FilterEdges];
+    assert!((1000..1500).contains(&edges), "{edges}");
+    // Where nothing else is left, that is said.
+    data.sessions = vec![slow_motion(1, 1000.0, 1.2, [0.0; 2])];
+    let refused = compare(&data, &believed).unwrap_err();
+    assert!(
+        matches!(refused, PrepareError::NothingExcited { .. }),
+        "{refused}"
+    );
+}
+
+/// Three blocks of time leave an error two degrees of freedom, and its interval is as wide as
+/// that needs.
+#[test]
+fn a_very_short_session_has_an_error_that_holds_the_truth() {
+    let believed = with_inertia(Inertia::Given(0.3), &["coulomb"]);
+    let trials: u64 = 200;
+    let holds = (0..trials).filter(|seed| {
+        let mut session = slow_motion(*seed, 100.0, 1.8, [1e-5, 0.02]);
+        // Half a second times the speed is viscous friction, which the model does not have.
+        let slope = session.position.windows(2).map(|w| (w[1] - w[0]) * 100.0);
+        let slope: Vec<f64> = slope.collect();
+        let both = session.motor_torque.iter_mut().zip(slope);
+        both.for_each(|(torque, speed)| *torque -= 0.5 * speed);
+        let found = compared(&of_sessions(vec![session]), &believed);
+        assert!((25..40).contains(&found.used.rows), "{}", found.used.rows);
+        let own = &found.parameters["b0"];
+        let (error, freedom) = (own.std_error.unwrap(), own.freedom.unwrap());
+        assert!(error > 0.0 && error < 0.05 && freedom <= 2.0, "{own:?}");
+        assert!(found.rms.held_out > found.rms.train, "{:?}", found.rms);
+        let [low, high] = own.interval_95.unwrap();
+        (low..high).contains(&1.0)
+    });
+    let share = holds.count() as f64 / trials as f64;
+    assert!((0.9..0.99).contains(&share), "{share}");
+}
+
+/// What recordings that are held out err by is no variation between those that are fitted.
+#[test]
+fn variation_between_sessions_is_the_same_in_comparison_and_diagnosis() {
+    let believed = model(&["coulomb", "viscous"]);
+    let mut data = recording(3, plain);
+    let alone = compared(&data, &believed).noise;
+    data.held_out = recording(4, |s| 2.0 * plain(s)).sessions;
+    let found = compared(&data, &believed).noise;
+    assert_eq!(found, alone);
+    assert_eq!(
+        diagnose(&data, &believed, &mut |_| ()).unwrap().noise,
+        alone
+    );
+    // Friction of about 8 Nm that is scattered by 1 % between sessions.
+    let sessions = alone.sessions.unwrap();
+    assert!((0.03..0.2).contains(&sessions), "{sessions}");
 }

@@ -167,8 +167,8 @@ impl Twin {
             })
             .collect();
         let period = dataset.sessions.first().map_or(0.01, |s| s.period);
-        let row_period =
-            period * (prepared.filters.thinning * prepared.filters.stride.max(1)) as f64;
+        let filters = &prepared.filters;
+        let row_period = period * (filters.thinning(period) * filters.stride.max(1)) as f64;
         let forgetting = Forgetting::Variable {
             memory: (memory / row_period).max(20.0),
             least: 0.95,

@@ -64,7 +64,7 @@ struct StreamState {
 impl Stream {
     pub(super) fn new(prepared: &PreparedModel, period: f64, coefficients: &[f64]) -> Self {
         let filters = prepared.filters;
-        let working = period * filters.thinning as f64;
+        let working = period * filters.thinning(period) as f64;
         let state = |order| Kernel::sharp(filters.state, order, working);
         let column = |order| Kernel::gaussian(filters.column, order, working);
         let mut stream = Self {
@@ -80,7 +80,7 @@ impl Stream {
             terms: prepared.terms.clone(),
             coefficients: coefficients.to_vec(),
             kernels: Kernels {
-                thin: Kernel::gaussian(0.5 * filters.thinning as f64, 0, 1.0),
+                thin: Kernel::gaussian(0.5 * filters.thinning(period) as f64, 0, 1.0),
                 state: [state(0), state(1), state(2)],
                 column: [column(0), column(1), column(2)],
             },
@@ -103,14 +103,15 @@ impl Stream {
 
     /// Time between a sample and its row \[s\].
     pub(super) fn delay(&self) -> f64 {
-        let thin = Kernel::reach(0.5 * self.filters.thinning as f64) as f64;
+        let thinning = self.filters.thinning(self.period);
+        let thin = Kernel::reach(0.5 * thinning as f64) as f64;
         let working = Kernel::reach(self.filters.state).max(2) + Kernel::reach(self.filters.column);
-        self.period * (thin + (working * self.filters.thinning) as f64)
+        self.period * (thin + (working * thinning) as f64)
     }
 
     /// Working period \[s\].
     fn working_period(&self) -> f64 {
-        self.period * self.filters.thinning as f64
+        self.period * self.filters.thinning(self.period) as f64
     }
 
     /// Takes a sample that is later than the last; appends the rows that it completes.
@@ -137,7 +138,7 @@ impl Stream {
         for (history, value) in self.state.grid.iter_mut().zip(channels) {
             history.push(value);
         }
-        let thinning = self.filters.thinning;
+        let thinning = self.filters.thinning(self.period);
         let reach = if thinning > 1 {
             Kernel::reach(0.5 * thinning as f64)
         } else {
@@ -258,7 +259,7 @@ impl Stream {
         }
         let reach = Kernel::reach(self.filters.column);
         let slides =
-            (at.saturating_sub(reach)..at + reach).all(|near| self.state.stuck.at(near) == 0.0);
+            (at.saturating_sub(reach)..=at + reach).all(|near| self.state.stuck.at(near) == 0.0);
         TwinRow {
             time: self.state.start + at as f64 * self.working_period(),
             position: position.filtered(smooth, at),
