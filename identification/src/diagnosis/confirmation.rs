@@ -6,10 +6,11 @@
 //! cut-off to the power of 5 in square, what is there in the motion hardly falls: so these count
 //! only where they are found at half the cut-off, too.
 
-use super::candidates::{Candidate, Trial};
+use std::ops::Range;
+
+use super::candidates::{Candidate, MIN_SHARE, Trial};
 use super::dependence::Dependence;
 use super::examination::{Examination, examine};
-use super::verdict::passing;
 use crate::data::ModelSpec;
 use crate::design::PreparedModel;
 use crate::effects::CHANNEL_DELAY;
@@ -17,6 +18,10 @@ use crate::preparation::Filtered;
 
 /// How much slower the other filter is.
 const FACTOR: f64 = 0.5;
+/// Probability of finding there by chance what was found before.
+const SIGNIFICANCE: f64 = 0.05;
+/// Ratio of two coefficients that are the same.
+const SAME_SIZE: Range<f64> = 0.5..2.0;
 
 /// What is found with the slower filter; `None` where nothing had to be looked for.
 pub(super) struct Confirmation {
@@ -58,9 +63,10 @@ impl Confirmation {
         let Some(slower) = &self.slower else {
             return true;
         };
-        // That it is there is enough: how much it helps is told with the filter that is used.
-        let same = |other: &Candidate| other.id() == candidate.id();
-        !is_doubtful(candidate) || passing(&slower.trial).iter().any(same)
+        let same = |other: &&Candidate| other.id() == candidate.id();
+        let again = slower.trial.candidates.iter().find(same);
+        !is_doubtful(candidate)
+            || again.is_some_and(|again| confirms(&slower.trial, again, candidate))
     }
 
     /// Whether a dependence counts.
@@ -103,4 +109,18 @@ fn signals(prepared: &PreparedModel) -> Vec<String> {
 
 fn is_doubtful(candidate: &Candidate) -> bool {
     candidate.id() == CHANNEL_DELAY
+}
+
+/// Whether what is found `again` is the same, of about the same size. How much it helps is told
+/// with the filter that is used.
+fn confirms(trial: &Trial, again: &Candidate, found: &Candidate) -> bool {
+    let mut sizes = again
+        .score
+        .coefficients
+        .iter()
+        .zip(&found.score.coefficients);
+    again.plausible
+        && again.score.share() > MIN_SHARE
+        && trial.corrected(again) < SIGNIFICANCE
+        && sizes.all(|(again, found)| SAME_SIZE.contains(&(again / found)))
 }
