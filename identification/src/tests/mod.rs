@@ -1,5 +1,6 @@
 //! The engine as a whole, on recordings whose answer is known.
 
+mod acceleration_noise;
 mod acceptance;
 mod compensation;
 mod contact;

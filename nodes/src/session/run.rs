@@ -372,9 +372,10 @@ impl Running {
         if (foreign || taken) && operator.leave() {
             monitor.events.note(now, Level::OK, LEFT_TO_YOU);
         }
-        let mut nodes = self.supervisor.nodes();
-        let alive =
-            nodes.all(|(node, process, _)| process.is_some() && monitor.is_alive(node, now));
+        let is_alive = |(node, process, _): (&str, Option<u32>, u32)| {
+            process.is_some() && monitor.is_alive(node, now)
+        };
+        let alive = self.supervisor.nodes().all(is_alive);
         let connected = monitor.link_status.is_some_and(|link| link.connected == 1);
         let seen = Seen {
             arm: monitor.operating.get("follower").and_then(|view| view.last),
