@@ -60,7 +60,7 @@ fn others_open_the_recording_without_help() {
 #[test]
 fn a_stop_while_the_nodes_come_up_stays() {
     let session = Session::new();
-    let mut process = start(&session, &[]);
+    let process = start(&session, &[]);
     let disabled = || state(&session, "follower", "disable").status.success();
     assert!(wait_until(PATIENCE, disabled));
     std::thread::sleep(Duration::from_secs(4));
