@@ -4,16 +4,23 @@ use std::fmt;
 
 use super::{info::BagInfo, repair::RepairReport};
 
+fn counted(count: usize, one: &str) -> String {
+    match count {
+        1 => format!("1 {one}"),
+        count => format!("{count} {one}s"),
+    }
+}
+
 impl fmt::Display for BagInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.path.display())?;
         writeln!(
             f,
-            "  {:.3} s, {} messages, {:.1} MB in {} file(s), {}",
+            "  {:.3} s, {} messages, {:.1} MB in {}, {}",
             self.duration_s,
             self.messages,
             self.bytes as f64 / 1e6,
-            self.files.len(),
+            counted(self.files.len(), "file"),
             if self.closed {
                 "closed"
             } else {
@@ -39,10 +46,19 @@ impl fmt::Display for BagInfo {
                 None => writeln!(f)?,
                 Some(longest) => writeln!(
                     f,
-                    "  {} gap(s), the longest {:.3} s",
-                    topic.gap_count, longest.duration_s
+                    "  {}, the longest {:.3} s, at {:.3} s",
+                    counted(topic.gap_count, "gap"),
+                    longest.duration_s,
+                    self.start
+                        .map_or(0.0, |start| longest.start.seconds_since(start))
                 )?,
             }
+        }
+        if self.topics.iter().all(|topic| topic.gap_count == 0) {
+            writeln!(
+                f,
+                "  no gaps (a topic silent for 0.1 s and five of its intervals)"
+            )?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::net::IpAddr;
 
-use crate::error::OpenError;
+use crate::{error::OpenError, zenoh_words::words};
 
 /// How the link's ends meet: QUIC, which is TLS 1.3 over UDP, and what is for the loopback.
 /// Zenoh's `tls/` is none of them: it reads and writes one TLS stream from two threads at
@@ -122,7 +122,7 @@ pub(crate) fn open_error(
     transport: &'static str,
     error: &zenoh::Error,
 ) -> OpenError {
-    let reason = error.to_string();
+    let reason = words(error);
     // Zenoh's errors are texts; the system's own words stand in them.
     if reason.contains("Address already in use") || reason.contains("os error 98") {
         OpenError::PortTaken {

@@ -23,6 +23,7 @@ pub mod shared_memory;
 pub mod trigger;
 mod types;
 pub mod zenoh_ros;
+mod zenoh_words;
 
 pub use self::mcap::McapBus;
 pub use bus::{Bus, Publisher, Subscriber};

@@ -6,7 +6,10 @@ use ferntast_bag::BagInfo;
 use ferntast_export::{self as export, lerobot};
 use ferntast_msgs::Time;
 
-use super::{Failure, output::print_json};
+use super::{
+    Failure,
+    output::{counted, print_json},
+};
 
 /// Look into recordings, mend them, write them for other programs.
 #[derive(Debug, clap::Args)]
@@ -167,10 +170,10 @@ fn tables(arguments: Tables, format: export::Format, json: bool) -> Result<(), F
     }
     for table in written {
         println!(
-            "{}: {} rows of {} columns",
+            "{}: {} of {}",
             table.file.display(),
-            table.rows,
-            table.columns.len()
+            counted(table.rows, "row"),
+            counted(table.columns.len(), "column")
         );
     }
     Ok(())
@@ -191,10 +194,10 @@ fn dataset(request: &lerobot::Request, json: bool) -> Result<(), Failure> {
         return print_json(&dataset);
     }
     println!(
-        "{}: {} episodes, {} frames, {} a second",
+        "{}: {}, {}, {} a second",
         dataset.folder.display(),
-        dataset.episodes,
-        dataset.frames,
+        counted(dataset.episodes, "episode"),
+        counted(dataset.frames, "frame"),
         dataset.fps
     );
     println!("observation.state: {}", dataset.state.join(", "));

@@ -2,14 +2,21 @@
 
 use std::{io::IsTerminal, path::PathBuf, process::ExitCode, thread, time::Duration};
 
-use ferntast_config::Middleware;
-use ferntast_doctor::{self as doctor, DoctorOptions, Peer, RosMiddleware, TcpEndpoint};
+use ferntast_config::{ArmFile, HandSource, Loaded, Middleware};
+use ferntast_doctor::{
+    self as doctor, Device, DoctorOptions, Peer, Place, RosMiddleware, TcpEndpoint,
+};
+use ferntast_drivers::{Choice, dynamixel, feetech, motors::section::Section};
 use ferntast_nodes::bridge::gateway;
 
 use super::{Failure, output::print_json, scenario_options::ScenarioOptions};
 
 /// Say what this machine offers and lacks.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_help = "With --driver dynamixel or feetech, and --hand haply, it looks for section, port and service, and sends \
+    nothing to motors: whether they answer, `ferntast arm check` says. What --driver process and ros2 need is not looked at."
+)]
 pub struct Arguments {
     /// Where recordings are to go.
     #[arg(long, default_value = "recordings", value_name = "DIR")]
@@ -43,7 +50,9 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             address: router.to_owned(),
         });
     }
+    let devices = devices(&loaded, &arguments.scenario);
     let options = DoctorOptions {
+        devices,
         recording_folder: arguments.recordings,
         tcp_endpoints: endpoints,
         middleware: match section.middleware {
@@ -76,4 +85,53 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         println!("{}", report.text(std::io::stdout().is_terminal()));
     }
     Ok(ExitCode::from(report.exit_code()))
+}
+
+/// The hardware behind arm and hand, where it is such as can be looked for.
+fn devices(loaded: &Loaded, options: &ScenarioOptions) -> Vec<Device> {
+    let hand = &loaded.scenario.hand;
+    let driver = options.driver();
+    let mut devices = Vec::new();
+    let arm = driver.as_deref().and_then(|own| motors(own, &loaded.arm));
+    devices.extend(arm.map(|place| Device {
+        purpose: format!("the arm ({})", driver.unwrap_or_default()),
+        place,
+    }));
+    match hand.source {
+        HandSource::Haply => {
+            let url = hand.haply.clone().unwrap_or_default().url;
+            let place = url.strip_prefix("ws://").unwrap_or(&url);
+            let place = place.split('/').next().unwrap_or(place);
+            devices.push(Device {
+                purpose: "the hand (haply)".to_owned(),
+                place: Place::Service(place.to_owned()),
+            });
+        }
+        HandSource::Leader => {
+            if let (Some(section), Some(arm)) = (&hand.leader, &loaded.leader) {
+                devices.extend(motors(&section.driver, arm).map(|place| Device {
+                    purpose: format!("the leader arm ({})", section.driver),
+                    place,
+                }));
+            }
+        }
+        _ => {}
+    }
+    devices
+}
+
+/// Where the motors of an arm are, if its driver has any.
+fn motors(driver: &str, arm: &ArmFile) -> Option<Place> {
+    let name = match driver.parse() {
+        Ok(Choice::Dynamixel) => dynamixel::NAME,
+        Ok(Choice::Feetech) => feetech::NAME,
+        _ => return None,
+    };
+    let section = Section::of(name, arm, &arm.model.joint_names());
+    Some(match section {
+        Ok(section) => Place::SerialPort(section.port),
+        Err(error) => Place::NotDescribed {
+            why: error.to_string(),
+        },
+    })
 }

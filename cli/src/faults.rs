@@ -135,9 +135,15 @@ fn run_seeds(graph: &Graph, arguments: &Arguments, json: bool) -> Result<ExitCod
     if !arguments.parts.is_asked() {
         return tell_results(&kits, &results, folder, json);
     }
+    let schedules = results.schedules;
     let answers = study.answers(results);
+    let told = format!(
+        "{schedules} schedules, of which {} violate something",
+        answers.len()
+    );
     let stopped = stop.load(Ordering::Relaxed);
-    arguments.parts.keep(study, answers, stopped)?;
+    let parts = &arguments.parts;
+    parts.keep_telling(study, answers, stopped, &told)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,27 +1,32 @@
 //! `ferntast interfaces`.
 
-use std::process::ExitCode;
+use std::{any::TypeId, process::ExitCode};
 
+use ferntast_config::ARM;
 use ferntast_drivers::simulated;
 use ferntast_msgs::{
     Message, RosMessage, interface,
+    sample::StateCommandSample,
     topics::{self, Authority, Topic, Visitor},
 };
 use serde::Serialize;
 
 use super::{Failure, output::print_json};
 
-/// List the topics with their types and whether peers on ROS 2 may publish them, and the types with hash and schema.
+/// List the topics with their types and whether peers on ROS 2 may publish them, the services that they may call, and
+/// the types with hash and schema.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Arm whose joints there are topics of: a shipped one (rokviss) or a file.
-    #[arg(long, default_value = "rokviss", value_name = "NAME|FILE")]
+    /// Arm whose joints there are topics of.
+    #[arg(long, default_value = "rokviss", value_name = "NAME|FILE",
+        help = format!("Arm whose joints there are topics of: a shipped one ({}) or a file", ARM.listed()))]
     arm: String,
 }
 
 #[derive(Debug, Serialize)]
 struct Listing {
     topics: Vec<TopicLine>,
+    services: Vec<ServiceLine>,
     interfaces: Vec<InterfaceLine>,
 }
 
@@ -34,13 +39,46 @@ struct TopicLine {
     from_ros_2: &'static str,
 }
 
+#[derive(Debug, Serialize)]
+struct ServiceLine {
+    name: String,
+    r#type: &'static str,
+    from_ros_2: &'static str,
+}
+
+/// With what peers may say all that there is to say.
+const COMMANDS: &str = "with [gateway] commands = true (--ros-commands)";
+
 /// Whether peers on ROS 2 may publish a topic into a session.
-fn from_ros_2(authority: Authority) -> &'static str {
+fn from_ros_2<M: Message>(authority: Authority) -> &'static str {
     match authority {
         Authority::Never => "never",
-        Authority::Commands => "stops; all with [gateway] commands = true",
+        // Words that stop a device are heard of everybody.
+        Authority::Commands if TypeId::of::<M>() == TypeId::of::<StateCommandSample>() => {
+            "pause and disable; all with [gateway] commands = true (--ros-commands)"
+        }
+        Authority::Commands => COMMANDS,
         Authority::ByScenario(switch) => switch.setting(),
     }
+}
+
+/// The services by which peers on ROS 2 set operating states.
+fn services() -> Vec<ServiceLine> {
+    let line = |name: String, from_ros_2| ServiceLine {
+        name,
+        r#type: "std_srvs/srv/Trigger",
+        from_ros_2,
+    };
+    let mut lines = vec![line("/stop".to_owned(), "always")];
+    for device in ["follower", "leader"] {
+        for word in ["disable", "pause"] {
+            lines.push(line(format!("/{device}/{word}"), "always"));
+        }
+        for word in ["enable", "resume"] {
+            lines.push(line(format!("/{device}/{word}"), COMMANDS));
+        }
+    }
+    lines
 }
 
 #[derive(Debug, Serialize)]
@@ -59,7 +97,7 @@ impl Visitor for List {
             r#type: M::Ros::INTERFACE,
             delivery: format!("{:?}", topic.delivery).to_lowercase(),
             publishers: topic.publishers,
-            from_ros_2: from_ros_2(topic.authority),
+            from_ros_2: from_ros_2::<M>(topic.authority),
         });
     }
 }
@@ -79,6 +117,7 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
     }
     let listing = Listing {
         topics: list.0,
+        services: services(),
         interfaces,
     };
     if json {
@@ -94,6 +133,15 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             ..
         } = topic;
         println!("{name:34} {type:36} {delivery:8} from ROS 2: {from_ros_2}");
+    }
+    println!();
+    for ServiceLine {
+        name,
+        r#type,
+        from_ros_2,
+    } in &listing.services
+    {
+        println!("{name:34} {type:36} service  from ROS 2: {from_ros_2}");
     }
     println!();
     for interface in &listing.interfaces {

@@ -113,9 +113,8 @@ fn tell(outcome: &LockstepOutcome) {
         outcome.duration_s, outcome.scenario, outcome.wall_s, outcome.real_time_factor
     );
     println!(
-        "contact {:.1} s, peak normal force {:.1} N; hand at most {:.1} N; round trip {:.3} ms",
-        outcome.contact.time_s,
-        outcome.contact.peak_normal_force,
+        "contact {}; hand at most {:.1} N; round trip {:.3} ms",
+        outcome.contact,
         outcome.leader.peak_force,
         outcome.link.rtt_ms.unwrap_or(f64::NAN)
     );

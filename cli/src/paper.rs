@@ -2,6 +2,7 @@
 
 use std::{path::PathBuf, process::ExitCode, sync::atomic::AtomicU64, sync::atomic::Ordering};
 
+use ferntast_lab::report::significant;
 use ferntast_studies::paper::{self, Item, PaperError};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -77,21 +78,31 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
 }
 
 fn table(items: &[&Item]) {
-    let number =
-        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
+    let width = |of: fn(&Item) -> &str, head: &str| {
+        let widths = items.iter().map(|item| of(item).chars().count());
+        widths.chain([head.len()]).max().unwrap_or(0)
+    };
+    let name = width(|item| &item.item, "item");
+    let unit = width(|item| item.unit, "unit");
     println!(
-        "{:<64} {:>12} {:>12} {:>10}  holds",
-        "item", "paper", "here", "± error"
+        "{:<name$} {:>10} {:>10} {:>10}  {:<unit$}  holds",
+        "item", "paper", "here", "± error", "unit"
     );
     for item in items {
         println!(
-            "{:<64} {:>12} {:>12} {:>10}  {}  {}",
+            "{:<name$} {:>10} {:>10} {:>10}  {:<unit$}  {}  {}",
             item.item,
-            number(item.paper),
+            // As the paper has it.
+            item.paper
+                .map_or_else(|| "–".to_owned(), |value| value.to_string()),
             number(item.here),
             number(item.std_error),
+            item.unit,
             if item.holds { "yes" } else { "NO " },
             item.criterion
         );
     }
+    let holding = items.iter().filter(|item| item.holds).count();
+    println!("{holding} of {} hold", items.len());
 }

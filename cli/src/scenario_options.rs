@@ -2,8 +2,8 @@
 
 use std::{path::PathBuf, str::FromStr};
 
-use clap::Args;
-use ferntast_config::{Changes, HandSource, Loaded, Middleware};
+use clap::{Args, builder::RangedI64ValueParser};
+use ferntast_config::{ARM, Changes, HandSource, LINK, Loaded, Middleware, SCENARIO};
 use ferntast_control::codec::Codec;
 use ferntast_drivers::{Choice, UnknownDriver, simulated};
 use ferntast_msgs::sample::JointNames;
@@ -14,18 +14,20 @@ use super::Failure;
 /// Which scenario, and what is to be different from it.
 #[derive(Debug, Args)]
 pub struct ScenarioOptions {
-    /// Scenario: a shipped one (rokviss, kontur_2, relay, ku_band, operator) or a file.
-    #[arg(long, default_value = "rokviss", value_name = "NAME|FILE")]
+    /// Scenario.
+    #[arg(long, default_value = "rokviss", value_name = "NAME|FILE",
+        help = format!("Scenario: a shipped one ({}) or a file", SCENARIO.listed()))]
     pub scenario: String,
 
-    /// Another arm than the scenario's: a shipped one (rokviss, panda), a file, or a URDF alone (arm.urdf). The
-    /// scripted hand then touches what is beside it.
-    #[arg(long, value_name = "NAME|FILE|URDF")]
+    /// Another arm than the scenario's.
+    #[arg(long, value_name = "NAME|FILE|URDF",
+        help = format!("Another arm than the scenario's: a shipped one ({}), a file, or a URDF alone (arm.urdf). The \
+            scripted hand then touches what is beside it", ARM.listed()))]
     pub arm: Option<String>,
 
-    /// Channel between operator and arm: a shipped one (direct, rokviss_20ms, rokviss_30ms, kontur_2,
-    /// relay_600ms, ku_band_800ms) or a file.
-    #[arg(long, value_name = "NAME|FILE")]
+    /// Channel between operator and arm.
+    #[arg(long, value_name = "NAME|FILE",
+        help = format!("Channel between operator and arm: a shipped one ({}) or a file", LINK.listed()))]
     pub link: Option<String>,
 
     /// Delay law to start with: position_force, position_position, four_channel, wave, tdpa, model_mediated, two_layer, auto.
@@ -78,7 +80,7 @@ pub struct ScenarioOptions {
     pub middleware: Option<Middleware>,
 
     /// ROS domain (else ROS_DOMAIN_ID, else that of the scenario).
-    #[arg(long, value_name = "ID")]
+    #[arg(long, value_name = "ID", value_parser = domains())]
     pub domain: Option<u32>,
 
     /// Namespace of all topics, services and nodes on ROS 2, so that two sessions stand in one domain: /left.
@@ -203,14 +205,28 @@ pub fn check_twins(experiments: &[PathBuf], joints: JointNames) -> Result<(), Fa
         .map_err(Failure::refused)
 }
 
+/// The last ROS domain.
+const LAST_DOMAIN: u32 = 232;
+
+/// Takes what is a ROS domain.
+pub fn domains() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(..=i64::from(LAST_DOMAIN))
+}
+
+/// The ROS domain that the environment asks for.
+///
+/// # Errors
+///
+/// `ROS_DOMAIN_ID` is none.
 pub fn domain_of_environment() -> Result<Option<u32>, Failure> {
     match std::env::var("ROS_DOMAIN_ID") {
         Err(_) => Ok(None),
         Ok(text) if text.trim().is_empty() => Ok(None),
-        Ok(text) => text.trim().parse().map(Some).map_err(|_| {
-            Failure::refused(format!(
-                "ROS_DOMAIN_ID is {text:?}, which is no number; set it to 0 … 232 or unset it"
-            ))
-        }),
+        Ok(text) => match text.trim().parse() {
+            Ok(domain) if domain <= LAST_DOMAIN => Ok(Some(domain)),
+            _ => Err(Failure::refused(format!(
+                "ROS_DOMAIN_ID is {text:?}, which is no ROS domain; set it to 0 … {LAST_DOMAIN} or unset it"
+            ))),
+        },
     }
 }

@@ -27,7 +27,8 @@ use super::{
     ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n  \
     ferntast session --foxglove                # watch in Foxglove or Lichtblick, ws://127.0.0.1:8765\n\n\
     While it runs: the page that it names, `ros2 topic list`, `ferntast state follower resume`
-(re-arm after a hold), `ferntast link law wave` (another delay law). Ctrl-C ends it cleanly.")]
+(re-arm after a hold), `ferntast link law wave` (another delay law). Ctrl-C ends it cleanly; a second one, while it \
+    ends, kills it at once, with exit code 130.")]
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioOptions,

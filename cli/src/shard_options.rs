@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use ferntast_studies::shard::{Answers, Part, Shard, Study};
 
-use super::Failure;
+use super::{Failure, output::counted};
 
 /// Which part of the work this is.
 #[derive(Debug, clap::Args)]
@@ -38,6 +38,18 @@ impl ShardOptions {
         answers: Answers<S>,
         stopped: bool,
     ) -> Result<Option<(S, Answers<S>)>, Failure> {
+        let told = counted(answers.len(), "answer");
+        self.keep_telling(study, answers, stopped, &told)
+    }
+
+    /// The same; `told` is what the part comes to, for people.
+    pub fn keep_telling<S: Study>(
+        &self,
+        study: S,
+        answers: Answers<S>,
+        stopped: bool,
+        told: &str,
+    ) -> Result<Option<(S, Answers<S>)>, Failure> {
         let Some(shard) = self.shard else {
             return Ok(Some((study, answers)));
         };
@@ -48,10 +60,9 @@ impl ShardOptions {
         }
         let own = format!("{}_{}_of_{}.toml", S::KIND, shard.number(), shard.of());
         let path = self.part.clone().unwrap_or_else(|| own.into());
-        let count = answers.len();
         let part = Part::new(study, shard, answers);
         part.write(&path).map_err(Failure::failed)?;
-        eprintln!("part {shard}, {count} answers: {}", path.display());
+        eprintln!("part {shard}, {told}: {}", path.display());
         Ok(None)
     }
 }

@@ -60,7 +60,7 @@ impl Changes {
             loaded.set_link(link)?;
         }
         if let Some(rtt) = self.rtt_ms {
-            loaded.set_round_trip(rtt * 1e-3)?;
+            loaded.set_round_trip(rtt)?;
         }
         Ok(loaded.complete()?)
     }

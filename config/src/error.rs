@@ -46,6 +46,14 @@ pub enum ConfigError {
         /// Key, value, bounds, unit.
         source: ParameterError,
     },
+    /// A round trip that no channel has.
+    #[error("a round trip of {round_trip_ms} ms (--rtt) is outside 0 … {longest_ms} ms")]
+    RoundTrip {
+        /// As asked for \[ms\].
+        round_trip_ms: f64,
+        /// The longest one \[ms\].
+        longest_ms: f64,
+    },
     /// An arm's configuration is not one that the arm's driver reads.
     #[error("the arm's configuration is not one of its driver: {0}")]
     Arm(serde_json::Error),
@@ -59,10 +67,12 @@ pub enum ConfigError {
     },
     /// An arm that comes along without its URDF.
     #[error(
-        "cannot read {path}: this arm comes without its URDF, for its licence; put the file there (its arm's file \
-         says whence, `ferntast config show`), or give a TOML file beside it by its path"
+        "cannot read {path}: this arm comes without its URDF, for its licence; get it from where its file says \
+         (`ferntast config show arms/{arm}.toml`) and put it there, or give a TOML file beside it by its path"
     )]
     NoUrdf {
+        /// The arm.
+        arm: String,
         /// Where it is looked for.
         path: PathBuf,
     },

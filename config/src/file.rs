@@ -19,6 +19,35 @@ pub struct FileKind {
     pub folder: &'static str,
 }
 
+impl FileKind {
+    /// Names of those that come along.
+    #[must_use]
+    pub fn shipped(&self) -> Vec<&'static str> {
+        shipped::names(self.name, self.folder)
+    }
+
+    /// The same for people, with what is lacking.
+    #[must_use]
+    pub fn listed(&self) -> String {
+        let each = self.shipped().into_iter().map(|name| {
+            let below = format!("{}/{name}.toml", self.folder);
+            match shipped::text(&below).is_some_and(|text| lacks_urdf(self.folder, text)) {
+                true => format!("{name} (without its URDF)"),
+                false => name.to_owned(),
+            }
+        });
+        each.collect::<Vec<String>>().join(", ")
+    }
+}
+
+/// Whether the URDF that an arm's file names does not come along.
+fn lacks_urdf(folder: &str, text: &str) -> bool {
+    let file = text.parse::<toml::Table>().unwrap_or_default();
+    let arm = file.get("arm").and_then(toml::Value::as_table);
+    let urdf = arm.and_then(|arm| arm.get("urdf")?.as_str());
+    urdf.is_some_and(|urdf| shipped::text(&format!("{folder}/{urdf}")).is_none())
+}
+
 /// A file of `config/arms/`; the arm's driver says what is in it.
 pub const ARM: FileKind = FileKind {
     name: "arm",
@@ -100,7 +129,30 @@ pub(super) fn find(kind: FileKind, name: &str) -> Result<Source, ConfigError> {
         None => Err(ConfigError::Unknown {
             kind: kind.name,
             name: name.to_owned(),
-            shipped: shipped::names(folder).join(", "),
+            shipped: kind.listed(),
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_listed_is_of_its_kind_and_says_what_it_lacks() {
+        let scenarios = crate::SCENARIO.shipped();
+        assert!(scenarios.contains(&"xarm7") && !scenarios.contains(&"delay_sweep"));
+        let sweep = FileKind {
+            name: "sweep",
+            folder: "scenarios",
+        };
+        assert_eq!(sweep.shipped(), ["delay_sweep"]);
+        let campaign = FileKind {
+            name: "campaign",
+            folder: "experiments",
+        };
+        assert_eq!(campaign.shipped(), ["mission"]);
+        let arms = ARM.listed();
+        assert!(arms.contains("kinova, z1 (without its URDF)"), "{arms}");
     }
 }

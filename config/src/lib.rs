@@ -29,7 +29,7 @@ pub use file::{ARM, FileKind, load};
 pub use haply::HaplyConfig;
 pub use laws::{UnknownLaw, stiff_enough};
 pub use leader::LeaderConfig;
-pub use load::{Loaded, known_links, load_scenario, read_hand_recording};
+pub use load::{LINK, Loaded, SCENARIO, known_links, load_scenario, read_hand_recording};
 pub use scenario::*;
 
 // What a law has room for fits a message, and the other way round.

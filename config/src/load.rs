@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use ferntast_control::{frame::WIRE_LENGTH, servo::ServoConfig};
 use ferntast_emulation::{
-    channel::{ChannelConfig, LinkConfig},
+    channel::{ChannelConfig, LONGEST_DELAY, LinkConfig},
     hand::{Hand, RecordedHand, RecordedMotion, ScriptedHand},
 };
 use ferntast_model::{JointCount, ParameterError};
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     ArmFile, Believed, ConfigError, HandSource, LeaderConfig, LoadArm, Scenario,
     file::{FileKind, load, load_with_path},
-    serial, shipped,
+    serial,
 };
 
 /// A scenario with all that it names.
@@ -34,11 +34,13 @@ pub struct Loaded {
     pub leader: Option<ArmFile>,
 }
 
-const LINK: FileKind = FileKind {
+/// A file of `config/links/`.
+pub const LINK: FileKind = FileKind {
     name: "link",
     folder: "links",
 };
-const SCENARIO: FileKind = FileKind {
+/// A file of `config/scenarios/`.
+pub const SCENARIO: FileKind = FileKind {
     name: "scenario",
     folder: "scenarios",
 };
@@ -46,7 +48,7 @@ const SCENARIO: FileKind = FileKind {
 /// The links that come along, by name, the quickest first: those of these names on disk
 /// where there are any. One that cannot be read is left out; who asks for it is told why.
 pub fn known_links() -> Vec<(&'static str, LinkConfig)> {
-    let links = shipped::names(LINK.folder).into_iter();
+    let links = LINK.shipped().into_iter();
     let links = links.filter_map(|name| Some((name, load(LINK, name, LinkConfig::validate).ok()?)));
     let mut links: Vec<(&str, LinkConfig)> = links.collect();
     links.sort_by(|(_, a), (_, b)| {
@@ -168,22 +170,25 @@ impl Loaded {
         Ok(())
     }
 
-    /// Replaces the channel by one of constant delay, half of `round_trip` \[s\] each way.
+    /// Replaces the channel by one of constant delay, half of `round_trip_ms` \[ms\] each way.
     ///
     /// # Errors
     ///
     /// A round trip out of its bounds.
-    pub fn set_round_trip(&mut self, round_trip: f64) -> Result<(), ConfigError> {
-        let link = LinkConfig {
-            description: format!("Constant, {} ms round trip.", round_trip * 1e3),
-            up: ChannelConfig::with_delay(round_trip / 2.0),
-            down: ChannelConfig::with_delay(round_trip / 2.0),
+    pub fn set_round_trip(&mut self, round_trip_ms: f64) -> Result<(), ConfigError> {
+        let longest_ms = 2.0 * LONGEST_DELAY * 1e3;
+        if !(0.0..=longest_ms).contains(&round_trip_ms) {
+            return Err(ConfigError::RoundTrip {
+                round_trip_ms,
+                longest_ms,
+            });
+        }
+        let each_way = ChannelConfig::with_delay(round_trip_ms * 1e-3 / 2.0);
+        self.link = LinkConfig {
+            description: format!("Constant, {round_trip_ms} ms round trip."),
+            up: each_way.clone(),
+            down: each_way,
         };
-        link.validate().map_err(|source| ConfigError::Value {
-            path: "--rtt".to_owned(),
-            source,
-        })?;
-        self.link = link;
         Ok(())
     }
 
@@ -273,5 +278,17 @@ mod tests {
         let words = loaded.complete().unwrap_err().to_string();
         let expected = "servo.damping has 3 entries where 2 are needed: one for each joint";
         assert!(words.contains(expected), "{words}");
+    }
+
+    #[test]
+    fn a_round_trip_is_told_as_it_was_asked_for() {
+        let mut loaded = load_scenario("rokviss", load_model_only).unwrap();
+        for wrong in [-5.0, 10_001.0, f64::NAN] {
+            let words = loaded.set_round_trip(wrong).unwrap_err().to_string();
+            let expected = format!("{wrong} ms (--rtt) is outside 0 … 10000 ms");
+            assert!(words.contains(&expected), "{words}");
+        }
+        loaded.set_round_trip(600.0).unwrap();
+        assert!((loaded.link.up.delay + loaded.link.down.delay - 0.6).abs() < 1e-12);
     }
 }

@@ -23,6 +23,10 @@ pub const FILES: &[(&str, &str)] = &[
         "experiments/mission.toml",
         include_str!("../experiments/mission.toml"),
     ),
+    (
+        "experiments/contact.toml",
+        include_str!("../experiments/contact.toml"),
+    ),
     ("links/direct.toml", include_str!("../links/direct.toml")),
     (
         "links/rokviss_20ms.toml",
@@ -87,14 +91,24 @@ pub fn text(path: &str) -> Option<&'static str> {
         .map(|(_, text)| *text)
 }
 
-/// Names of the shipped files in `folder`, without `.toml`.
-pub fn names(folder: &str) -> Vec<&'static str> {
-    FILES
-        .iter()
-        .filter_map(|(name, _)| {
-            name.strip_prefix(folder)?
-                .strip_prefix('/')?
-                .strip_suffix(".toml")
-        })
-        .collect()
+/// Files that are of another kind than the others in their folder, by that kind.
+const OF_OTHER_KINDS: [(&str, &str); 2] = [
+    ("scenarios/delay_sweep.toml", "sweep"),
+    ("experiments/contact.toml", "experiment of the lab"),
+];
+
+/// Names of the shipped files of that kind in `folder`, without `.toml`.
+pub fn names(kind: &str, folder: &str) -> Vec<&'static str> {
+    let only = OF_OTHER_KINDS.iter().any(|(_, other)| *other == kind);
+    let is_of_kind = |path: &str| match OF_OTHER_KINDS.iter().find(|(own, _)| *own == path) {
+        Some((_, other)) => *other == kind,
+        None => !only,
+    };
+    let paths = FILES.iter().map(|(path, _)| *path);
+    let names = paths.filter(|path| is_of_kind(path)).filter_map(|path| {
+        path.strip_prefix(folder)?
+            .strip_prefix('/')?
+            .strip_suffix(".toml")
+    });
+    names.collect()
 }

@@ -1,7 +1,7 @@
 //! Listens, and answers.
 
 use std::{
-    net::{SocketAddr, TcpListener},
+    net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, UdpSocket},
     path::PathBuf,
     sync::Arc,
     thread::JoinHandle,
@@ -132,11 +132,34 @@ impl Server {
         let token = listen.token.as_ref();
         let query = token.map_or_else(String::new, |token| format!("/?token={token}"));
         Ok(Server {
-            url: format!("http://{address}{query}"),
+            url: format!("http://{}{query}", reachable(address)),
             stop: Some(stop),
             thread: Some(thread),
         })
     }
+}
+
+/// Where others find what listens at `address`: of all addresses, the one by which this host
+/// reaches beyond itself.
+fn reachable(address: SocketAddr) -> SocketAddr {
+    if !address.ip().is_unspecified() {
+        return address;
+    }
+    // Addresses for documentation, on no network: nothing is sent, the system only says by
+    // which of its own it would be.
+    let (any, beyond) = match address.is_ipv4() {
+        true => ("0.0.0.0:0", "192.0.2.1:9"),
+        false => ("[::]:0", "[2001:db8::1]:9"),
+    };
+    let own = UdpSocket::bind(any).and_then(|socket| {
+        socket.connect(beyond)?;
+        socket.local_addr()
+    });
+    let loopback = match address.is_ipv4() {
+        true => IpAddr::from(Ipv4Addr::LOCALHOST),
+        false => IpAddr::from(Ipv6Addr::LOCALHOST),
+    };
+    SocketAddr::new(own.map_or(loopback, |own| own.ip()), address.port())
 }
 
 /// How long a client may take to ask for something; as long it may ask for nothing.
@@ -186,6 +209,23 @@ impl Drop for Server {
         if let Some(thread) = self.thread.take() {
             // A panic in there was told already.
             let _ = thread.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_printed_can_be_opened() {
+        let own: SocketAddr = "192.168.7.5:8090".parse().unwrap();
+        assert_eq!(reachable(own), own);
+        for any in ["0.0.0.0:8090", "[::]:8090"] {
+            let any: SocketAddr = any.parse().unwrap();
+            let told = reachable(any);
+            assert!(!told.ip().is_unspecified(), "{told}");
+            assert_eq!((told.port(), told.is_ipv4()), (8090, any.is_ipv4()));
         }
     }
 }

@@ -22,6 +22,8 @@ pub(super) struct Fake {
     /// Lateness of normal and of real-time threads \[ns\], repeated.
     pub(super) lateness: [Vec<i64>; 2],
     pub(super) hosts: BTreeMap<String, Vec<SocketAddr>>,
+    /// Where something answers.
+    pub(super) services: BTreeSet<SocketAddr>,
     pub(super) tcp: BTreeMap<SocketAddr, io::ErrorKind>,
     pub(super) taken_udp: BTreeSet<u16>,
     pub(super) interfaces: Vec<Interface>,
@@ -42,6 +44,7 @@ impl Fake {
             real_time: denied,
             lateness: [Vec::new(), Vec::new()],
             hosts: BTreeMap::new(),
+            services: BTreeSet::new(),
             tcp: BTreeMap::new(),
             taken_udp: BTreeSet::new(),
             interfaces: Vec::new(),
@@ -183,6 +186,21 @@ impl Host for Fake {
 
     fn try_writing(&self, _folder: &Path) -> io::Result<()> {
         self.writing.map_err(error)
+    }
+
+    fn try_reading_and_writing(&self, path: &str) -> io::Result<()> {
+        match (self.forbidden.contains(path), self.files.contains_key(path)) {
+            (true, _) => Err(io::ErrorKind::PermissionDenied.into()),
+            (false, true) => Ok(()),
+            (false, false) => Err(not_there(path)),
+        }
+    }
+
+    fn try_connecting(&self, address: SocketAddr) -> io::Result<()> {
+        match self.services.contains(&address) {
+            true => Ok(()),
+            false => Err(io::ErrorKind::ConnectionRefused.into()),
+        }
     }
 
     fn try_real_time_priority(&self, _priority: i32) -> io::Result<()> {

@@ -58,6 +58,10 @@ pub trait Host {
     fn file_system(&self, folder: &Path) -> io::Result<FileSystem>;
     /// Writes a page into a new file in `folder` and removes it.
     fn try_writing(&self, folder: &Path) -> io::Result<()>;
+    /// Whether this user may read and write a file; it is not opened.
+    fn try_reading_and_writing(&self, path: &str) -> io::Result<()>;
+    /// Connects over TCP and hangs up.
+    fn try_connecting(&self, address: SocketAddr) -> io::Result<()>;
     /// Asks for SCHED_FIFO on a thread that then ends.
     fn try_real_time_priority(&self, priority: i32) -> io::Result<()>;
     /// How late each wake-up of such a loop was \[ns\].

@@ -1,7 +1,7 @@
 //! What dead sessions left in shared memory: names with the sessions' prefix
 //! that no process has mapped or opened.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::host::Host;
 use super::network_table::processes;
@@ -9,8 +9,23 @@ use super::options::DoctorOptions;
 use super::report::Check;
 use super::text::quoted;
 
-/// Segments, and the folders in which the middleware keeps what belongs to them.
-const FOLDERS: [&str; 2] = ["/dev/shm", "/tmp"];
+/// Where a session has its segments, and the folder of what manages them.
+const FOLDER: &str = "/dev/shm";
+
+/// A session of which something is there.
+#[derive(Default)]
+struct Session {
+    /// Its folder, which has the session's name.
+    folder: Option<String>,
+    /// Its segments.
+    segments: Vec<String>,
+}
+
+impl Session {
+    fn paths(&self) -> impl Iterator<Item = &String> {
+        self.folder.iter().chain(&self.segments)
+    }
+}
 
 pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     let check = Check::ok("leftovers", "Leftovers of sessions", "");
@@ -21,31 +36,20 @@ pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
             ..check
         };
     }
-    let mut sessions: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for folder in FOLDERS {
-        for name in host.list(folder).unwrap_or_default() {
-            if let Some(rest) = name.strip_prefix(prefix.as_str()) {
-                let session = rest.split('.').next().unwrap_or_default();
-                let paths = sessions.entry(session.to_owned()).or_default();
-                paths.push(format!("{folder}/{name}"));
-            }
-        }
-    }
-    let (mut alive, mut dead) = (Vec::new(), Vec::new());
+    let sessions = sessions(host, prefix);
     let open = if sessions.is_empty() {
         OpenFiles::default()
     } else {
         open_files(host, prefix)
     };
-    for (session, paths) in sessions {
-        if paths.iter().any(|path| open.holds(path)) {
-            alive.push(session);
-        } else {
-            dead.push((session, paths));
-        }
-    }
-    let dead_names: Vec<&str> = dead.iter().map(|(session, _)| session.as_str()).collect();
-    let files: Vec<&String> = dead.iter().flat_map(|(_, paths)| paths).collect();
+    let (alive, dead): (Vec<_>, Vec<_>) = sessions
+        .into_iter()
+        .partition(|(_, own)| own.paths().any(|path| open.holds(path)));
+    let names = |of: &[(String, Session)]| -> Vec<String> {
+        of.iter().map(|(session, _)| session.clone()).collect()
+    };
+    let (alive, dead_names) = (names(&alive), names(&dead));
+    let files: Vec<&String> = dead.iter().flat_map(|(_, own)| own.paths()).collect();
     let mut check = check
         .with("alive", alive.clone())
         .with("dead", dead_names.clone())
@@ -70,34 +74,72 @@ pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
     };
     let removals: Vec<String> = dead
         .iter()
-        .map(|(session, paths)| removal(prefix, session, paths))
+        .map(|(session, own)| removal(prefix, session, own))
         .collect();
+    let count = match files.len() {
+        1 => "1 file".to_owned(),
+        count => format!("{count} files"),
+    };
     check.warn(
         &format!(
-            "{} files of dead sessions: {}{unseen}",
-            files.len(),
+            "{count} of dead sessions: {}{unseen}",
             dead_names.join(", ")
         ),
         removals.join("\n"),
     )
 }
 
-/// Names only what is there: some shells refuse a pattern that matches nothing.
-fn removal(prefix: &str, session: &str, paths: &[String]) -> String {
-    let name = quoted(&format!("{prefix}{session}"));
-    let mut words = Vec::new();
-    for folder in FOLDERS {
-        let whole = format!("{folder}/{prefix}{session}");
-        if paths.contains(&whole) {
-            words.push(format!("{folder}/{name}"));
+/// The sessions of which there is what a session makes: others may have files under a name that
+/// begins as ours do.
+fn sessions(host: &dyn Host, prefix: &str) -> BTreeMap<String, Session> {
+    let mut sessions: BTreeMap<String, Session> = BTreeMap::new();
+    for name in host.list(FOLDER).unwrap_or_default() {
+        let Some(rest) = name.strip_prefix(prefix) else {
+            continue;
+        };
+        let path = format!("{FOLDER}/{name}");
+        let (session, segment) = match rest.split_once('.') {
+            Some((session, segment)) => (session, Some(segment)),
+            None => (rest, None),
+        };
+        let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if session.is_empty() || !session.chars().all(allowed) {
+            continue;
         }
-        if paths.iter().any(|path| {
-            path.strip_prefix(&whole)
-                .is_some_and(|rest| rest.starts_with('.'))
-        }) {
-            words.push(format!("{folder}/{name}.*"));
+        match segment {
+            Some(segment) if is_segment(segment) => {
+                let own = sessions.entry(session.to_owned()).or_default();
+                own.segments.push(path);
+            }
+            None if host.list(&path).is_ok() => {
+                let own = sessions.entry(session.to_owned()).or_default();
+                own.folder = Some(path);
+            }
+            _ => {}
         }
     }
+    sessions
+}
+
+/// Whether a segment's name can follow: 40 hexadecimal digits and a bar, as iceoryx2 has it.
+fn is_segment(name: &str) -> bool {
+    let digits = name.split('_').next().unwrap_or_default();
+    name.len() > digits.len() && digits.len() == 40 && digits.chars().all(|c| c.is_ascii_hexdigit())
+}
+
+/// Names only what is there: some shells refuse a pattern that matches nothing, and one that
+/// matches more may be somebody else's.
+fn removal(prefix: &str, session: &str, own: &Session) -> String {
+    let name = format!("{FOLDER}/{}", quoted(&format!("{prefix}{session}")));
+    let mut words = Vec::new();
+    if own.folder.is_some() {
+        words.push(name.clone());
+    }
+    let start = format!("{FOLDER}/{prefix}{session}.");
+    let of_segments = own.segments.iter();
+    let of_segments = of_segments.filter_map(|path| path.strip_prefix(&start)?.split('_').next());
+    let digits: BTreeSet<&str> = of_segments.collect();
+    words.extend(digits.iter().map(|digits| format!("{name}.{digits}_*")));
     format!("`rm -rf -- {}`", words.join(" "))
 }
 
@@ -120,11 +162,8 @@ impl OpenFiles {
 }
 
 fn open_files(host: &dyn Host, prefix: &str) -> OpenFiles {
-    let starts: Vec<String> = FOLDERS
-        .iter()
-        .map(|folder| format!("{folder}/{prefix}"))
-        .collect();
-    let ours = |path: &str| starts.iter().any(|start| path.starts_with(start.as_str()));
+    let start = format!("{FOLDER}/{prefix}");
+    let ours = |path: &str| path.starts_with(start.as_str());
     let mut open = OpenFiles::default();
     for id in processes(host) {
         let maps = host.read(&format!("/proc/{id}/maps"));
@@ -156,16 +195,22 @@ mod tests {
     use super::super::report::Status;
     use super::*;
 
+    const HASH: &str = "0354a209029e7d094a819e2d4030ea331e6caaf0";
+
     fn examine(fake: &Fake) -> Check {
         check(fake, &DoctorOptions::default())
     }
 
+    fn segment(session: &str, kind: &str) -> String {
+        format!("/dev/shm/ferntast.{session}.{HASH}_1.{kind}")
+    }
+
     fn two_sessions() -> Fake {
         Fake::good()
-            .file("/dev/shm/ferntast.a.data", "")
-            .file("/tmp/ferntast.a/node", "")
-            .file("/dev/shm/ferntast.b.data", "")
-            .file("/dev/shm/ferntast.b.more", "")
+            .file(&segment("a", "data"), "")
+            .file("/dev/shm/ferntast.a/nodes", "")
+            .file(&segment("b", "data"), "")
+            .file(&segment("b", "dynamic"), "")
     }
 
     #[test]
@@ -176,11 +221,13 @@ mod tests {
 
     #[test]
     fn sessions_that_processes_hold_are_alive() {
-        let maps =
-            "7f00-7f01 rw-s 00000000 00:17 4  /dev/shm/ferntast.b.more\n7f02-7f03 rw-p 0 0 0\n";
+        let maps = format!(
+            "7f00-7f01 rw-s 00000000 00:17 4  {}\n7f02-7f03 rw-p 0 0 0\n",
+            segment("b", "dynamic")
+        );
         let fake = two_sessions()
-            .process(5, "node", &["/dev/null", "/tmp/ferntast.a/node"])
-            .file("/proc/6/maps", maps);
+            .process(5, "node", &["/dev/null", "/dev/shm/ferntast.a/nodes"])
+            .file("/proc/6/maps", &maps);
         let check = examine(&fake);
         assert_eq!(
             (check.status, check.found.as_str()),
@@ -191,19 +238,30 @@ mod tests {
     #[test]
     fn the_others_are_dead_and_can_be_removed() {
         // Holding `ferntast.ab…` does not hold `ferntast.a…`.
+        let (ab, b) = (segment("ab", "data"), segment("b", "data"));
         let fake = two_sessions()
-            .file("/dev/shm/ferntast.ab.data", "")
-            .process(
-                5,
-                "node",
-                &["/dev/shm/ferntast.ab.data", "/dev/shm/ferntast.b.data"],
-            );
+            .file(&ab, "")
+            .process(5, "node", &[ab.as_str(), b.as_str()]);
         let check = examine(&fake);
         assert_eq!(check.status, Status::Warn);
         assert_eq!(check.found, "alive: ab, b\n2 files of dead sessions: a");
         assert_eq!(check.values["dead"], serde_json::json!(["a"]));
-        let mend = "`rm -rf -- /dev/shm/ferntast.a.* /tmp/ferntast.a`";
-        assert_eq!(check.mend.as_deref(), Some(mend));
+        let mend = format!("`rm -rf -- /dev/shm/ferntast.a /dev/shm/ferntast.a.{HASH}_*`");
+        assert_eq!(check.mend, Some(mend));
+        let one = Fake::empty().file(&segment("a", "data"), "");
+        assert_eq!(examine(&one).found, "1 file of dead sessions: a");
+    }
+
+    #[test]
+    fn what_no_session_makes_is_nobodys_to_remove() {
+        let fake = Fake::good()
+            .file("/tmp/ferntast.old", "")
+            .file("/tmp/ferntast.a/notes", "")
+            .file("/dev/shm/ferntast.old", "")
+            .file("/dev/shm/ferntast.a.tar.gz", "")
+            .file(&format!("/dev/shm/ferntast.a.{HASH}"), "")
+            .file("/dev/shm/ferntast.x';reboot;'/y", "");
+        assert_eq!(examine(&fake).found, "none");
     }
 
     #[test]
@@ -211,16 +269,6 @@ mod tests {
         let mut fake = two_sessions().file("/proc/9/maps", "");
         fake.forbidden.insert("/proc/9/maps".to_owned());
         assert!(examine(&fake).found.contains("1 in number"));
-    }
-
-    #[test]
-    fn a_name_cannot_smuggle_a_command() {
-        let fake = Fake::empty().file("/dev/shm/ferntast.x';reboot;'.y", "");
-        let mend = examine(&fake).mend.unwrap_or_default();
-        assert!(
-            mend.contains(r"/dev/shm/'ferntast.x'\'';reboot;'\'''.*"),
-            "{mend}"
-        );
     }
 
     #[test]

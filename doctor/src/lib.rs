@@ -6,6 +6,7 @@
 //! its [`Check`].
 
 mod clock_source;
+mod devices;
 mod discovery_ports;
 mod discovery_range;
 mod disk;
@@ -36,7 +37,7 @@ mod fake;
 
 pub use host::{FileSystem, Host, Interface, WakeUps};
 pub use machine::Machine;
-pub use options::{DoctorOptions, RosMiddleware, TcpEndpoint};
+pub use options::{Device, DoctorOptions, Place, RosMiddleware, TcpEndpoint};
 pub use peers::{Peer, PeerKind};
 pub use report::{Check, Report, Status};
 pub use text::ReportText;
@@ -76,6 +77,7 @@ pub fn examine_in(
         checks.push(discovery_ports::check(host, options));
         checks.push(multicast::check(host));
     }
+    checks.extend(devices::check(host, options));
     checks.push(peers::check(options, peers));
     Report { checks }
 }

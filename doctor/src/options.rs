@@ -21,6 +21,29 @@ pub struct TcpEndpoint {
     pub address: String,
 }
 
+/// Hardware behind the arm or the hand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Device {
+    /// What it is, as a person reads it: `the arm (feetech)`.
+    pub purpose: String,
+    /// Where it is.
+    pub place: Place,
+}
+
+/// Where hardware is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// At a serial port, of this path.
+    SerialPort(String),
+    /// Behind a service that listens at `HOST:PORT`.
+    Service(String),
+    /// The files do not say it.
+    NotDescribed {
+        /// What they lack.
+        why: String,
+    },
+}
+
 /// What a session needs of the machine.
 #[derive(Clone, Debug)]
 pub struct DoctorOptions {
@@ -33,7 +56,7 @@ pub struct DoctorOptions {
     pub wake_up_duration: Duration,
     /// Shared memory that a session takes \[bytes\].
     pub shared_memory_bytes: u64,
-    /// How the names of all sessions' files in `/dev/shm` and `/tmp` begin;
+    /// How the names of all sessions' files in `/dev/shm` begin;
     /// a session's own name follows, up to the next dot. Empty: none is
     /// looked for.
     pub shared_memory_prefix: String,
@@ -45,6 +68,8 @@ pub struct DoctorOptions {
     pub recording_duration: Duration,
     /// Where a session listens.
     pub tcp_endpoints: Vec<TcpEndpoint>,
+    /// What the session reaches of hardware.
+    pub devices: Vec<Device>,
     /// The middleware that carries the ROS 2 topics.
     pub middleware: RosMiddleware,
     /// The session's ROS domain; `None` takes `ROS_DOMAIN_ID`, or 0.
@@ -71,6 +96,7 @@ impl Default for DoctorOptions {
             recording_bytes_per_second: 1e6,
             recording_duration: Duration::from_secs(30 * 60),
             tcp_endpoints: Vec::new(),
+            devices: Vec::new(),
             middleware: RosMiddleware::Dds,
             ros_domain: None,
             peers_duration: Duration::from_secs(3),

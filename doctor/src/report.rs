@@ -58,6 +58,11 @@ impl Check {
         append(self.mend.get_or_insert_default(), mend.as_ref());
     }
 
+    /// Adds what is as it should be.
+    pub(super) fn add_found(&mut self, found: &str) {
+        append(&mut self.found, found);
+    }
+
     pub(super) fn warn(mut self, found: &str, mend: impl AsRef<str>) -> Check {
         self.add(Status::Warn, found, mend);
         self

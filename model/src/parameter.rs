@@ -5,7 +5,7 @@
 pub enum ParameterError {
     /// The value is outside its bounds, or not a finite number.
     #[error(
-        "{key} = {value} {unit} is outside {lower} … {upper} {unit}; set it within these bounds"
+        "{key} = {value}{unit} is outside {lower} … {upper}{unit}; set it within these bounds", unit = behind(unit)
     )]
     OutOfBounds {
         /// Path of the key in the configuration.
@@ -55,6 +55,14 @@ pub enum ParameterError {
         /// What there has to be one for each of.
         each: &'static str,
     },
+}
+
+/// A unit as it stands behind a number: nothing where there is none.
+fn behind(unit: &str) -> String {
+    match unit {
+        "-" => String::new(),
+        unit => format!(" {unit}"),
+    }
 }
 
 impl ParameterError {
@@ -128,6 +136,12 @@ mod tests {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(check("x", value, f64::NEG_INFINITY, f64::INFINITY, "-").is_err());
         }
+        let bare = check("domain_id", 300.0, 0.0, 232.0, "-").unwrap_err();
+        assert!(
+            bare.to_string()
+                .starts_with("domain_id = 300 is outside 0 … 232;"),
+            "{bare}"
+        );
         assert!(check("x", 1.0, 1.0, 1.0, "-").is_ok());
     }
 }

@@ -293,8 +293,8 @@ mod tests {
         assert_eq!(error(""), None);
         let wrong = [
             ("place = [0.0, 1.5]", "place[1] = 1.5 m is outside -1 … 1 m"),
-            ("least = 101", "least = 101 - is outside 0 … 100 -"),
-            ("least = 3", "most = 2 - is outside 3 … 100 -"),
+            ("least = 101", "least = 101 is outside 0 … 100;"),
+            ("least = 3", "most = 2 is outside 3 … 100;"),
             (
                 "part = [{ M = 1.0 }, { M = nan }]",
                 "part[1].M = NaN kg is outside 0.1 … 10 kg",

@@ -28,6 +28,7 @@ use super::{
 use crate::{
     endpoint,
     error::{OpenError, SendError},
+    zenoh_words::words,
 };
 
 /// Gives the time of arrival; called where Zenoh receives.
@@ -174,7 +175,7 @@ impl ZenohFrameSender {
             .wait()
             .map_err(|error| SendError::Middleware {
                 link: self.key.clone(),
-                reason: error.to_string(),
+                reason: words(error),
             })
     }
 }
@@ -280,6 +281,6 @@ fn check_session(session: &str) -> Result<(), OpenError> {
 fn middleware(error: zenoh::Error) -> OpenError {
     OpenError::Middleware {
         transport: "the link",
-        reason: error.to_string(),
+        reason: words(error),
     }
 }

@@ -11,6 +11,7 @@ use super::{
 use crate::{
     error::{CreateError, PublishError},
     namespace::within,
+    zenoh_words::words,
 };
 
 /// Sends on one topic over Zenoh.
@@ -35,7 +36,7 @@ impl<M: Message> ZenohPublisher<M> {
             .create_pub_impl::<Raw>(&within(bus.namespace(), &topic.name), Some(type_info))
             .with_qos(qos(topic.delivery, places(topic.delivery)))
             .build()
-            .map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| failed(words(error)))?;
         Ok(ZenohPublisher {
             topic,
             port,
@@ -61,7 +62,7 @@ impl<M: Message> ZenohPublisher<M> {
             .map_err(|error| PublishError::Middleware {
                 transport: "Zenoh",
                 topic: self.topic.name,
-                reason: error.to_string(),
+                reason: words(error),
             })
     }
 }

@@ -15,6 +15,7 @@ use crate::{
     error::{CreateError, RawPublishError},
     namespace::within,
     raw_topic::RawTopic,
+    zenoh_words::words,
 };
 
 /// Sends bytes on one topic over Zenoh.
@@ -45,7 +46,7 @@ impl ZenohBus {
             .create_pub_impl::<Raw>(&within(self.namespace(), &topic.name), Some(type_info))
             .with_qos(profile(topic))
             .build()
-            .map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| failed(words(error)))?;
         Ok(RawZenohPublisher {
             port,
             _bus: self.clone(),
@@ -59,7 +60,7 @@ impl RawZenohPublisher {
         let sent = self.port.publish_serialized(bytes);
         sent.map_err(|error| RawPublishError::Middleware {
             transport: "Zenoh",
-            reason: error.to_string(),
+            reason: words(error),
         })
     }
 }

@@ -5,16 +5,15 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{endpoint, error::OpenError};
+use crate::{endpoint, error::OpenError, zenoh_words::words};
 
 /// Reads them.
 pub(super) fn settings(path: &Path) -> Result<zenoh::Config, OpenError> {
     let refused = |reason: &str| OpenError::RouterConfig {
         path: path.to_owned(),
-        // Zenoh adds where in its source it was.
-        reason: reason.split(" at /").next().unwrap_or(reason).to_owned(),
+        reason: reason.to_owned(),
     };
-    let told = |error: zenoh::Error| refused(&error.to_string());
+    let told = |error: zenoh::Error| refused(&words(error));
     let mut config = zenoh::Config::from_file(path).map_err(told)?;
     match value(&config, "mode") {
         Value::String(mode) if mode == "router" => {}

@@ -14,7 +14,7 @@ use hiroz::{
 use zenoh::Wait;
 
 use super::{ZenohConfig, ZenohMode, router};
-use crate::{endpoint, error::OpenError};
+use crate::{endpoint, error::OpenError, zenoh_words::words};
 
 /// Highest ROS domain.
 const MAX_DOMAIN: u32 = 232;
@@ -76,7 +76,7 @@ pub(super) fn settings(mode: &ZenohMode) -> Result<zenoh::Config, OpenError> {
 fn middleware(error: zenoh::Error) -> OpenError {
     OpenError::Middleware {
         transport: "Zenoh",
-        reason: error.to_string(),
+        reason: words(error),
     }
 }
 

@@ -20,6 +20,7 @@ use crate::{
     namespace::within,
     sequence_gaps::{self, SequenceGaps},
     types::{Depth, Received, SubscriberCounts},
+    zenoh_words::words,
 };
 
 /// Receives from one topic over Zenoh.
@@ -56,7 +57,7 @@ impl<M: Message> ZenohSubscriber<M> {
             // For types with unbounded byte arrays; ours have none.
             .with_buffer_group(BufferGroup::Off)
             .build()
-            .map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| failed(words(error)))?;
         Ok(ZenohSubscriber {
             topic,
             port,

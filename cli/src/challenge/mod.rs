@@ -74,8 +74,13 @@ enum Action {
         #[arg(long, default_value_t = 3)]
         repeats: usize,
 
-        /// Strengths of the hidden effects.
-        #[arg(long, value_delimiter = ',', default_values_t = [1.0, 0.5, 0.25])]
+        /// Strengths of the hidden effects, with commas between.
+        #[arg(
+            long,
+            value_name = "NUMBER,…",
+            value_delimiter = ',',
+            default_value = "1,0.5,0.25"
+        )]
         strengths: Vec<f64>,
 
         /// Only the recordings that hide this effect (can be given several times),
@@ -122,8 +127,13 @@ enum Action {
         #[arg(long, default_value_t = 10)]
         laws: usize,
 
-        /// Strengths of the laws.
-        #[arg(long, value_delimiter = ',', default_values_t = [1.0, 0.5, 0.25])]
+        /// Strengths of the laws, with commas between.
+        #[arg(
+            long,
+            value_name = "NUMBER,…",
+            value_delimiter = ',',
+            default_value = "1,0.5,0.25"
+        )]
         strengths: Vec<f64>,
 
         /// Recordings that hide nothing.
@@ -160,7 +170,18 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
             if json {
                 print_json(&json!({"experiment": experiment}))?;
             } else {
-                println!("ferntast lab diagnose {}", experiment.display());
+                println!(
+                    "a recording with something hidden, and the answer sealed, in {}",
+                    folder.display()
+                );
+                println!(
+                    "find it:        ferntast lab diagnose {}",
+                    experiment.display()
+                );
+                println!(
+                    "open the seal:  ferntast challenge reveal {} YOUR_ANSWER",
+                    folder.display()
+                );
             }
             Ok(ExitCode::SUCCESS)
         }

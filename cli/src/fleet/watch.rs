@@ -9,7 +9,7 @@ use std::{
 use ferntast_fleet::{DaySummary, Fleet, ageing::WatchSettings, days, read};
 
 use super::{
-    super::{Failure, output::print_json},
+    super::{Failure, output::print_json, scenario_options::domains},
     live, terminal,
 };
 
@@ -27,7 +27,7 @@ use super::{
 )]
 pub struct Arguments {
     /// Journals of days, or folders of them (.jsonl); without --router and --listen only they are looked at.
-    #[arg(value_name = "FILE|DIR", required_unless_present_any = ["router", "listen"])]
+    #[arg(value_name = "FILE|DIR")]
     journals: Vec<PathBuf>,
 
     /// Zenoh router of a session, or one that knows several (may be given again).
@@ -39,7 +39,7 @@ pub struct Arguments {
     listen: Option<String>,
 
     /// ROS domain of the sessions (else ROS_DOMAIN_ID, else 0).
-    #[arg(long, value_name = "ID")]
+    #[arg(long, value_name = "ID", value_parser = domains())]
     domain: Option<u32>,
 
     /// Write what is heard there, a line a day and joint; what it has already counts.
@@ -62,13 +62,20 @@ pub struct Arguments {
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
     let settings = settings(arguments)?;
+    let hears = !arguments.router.is_empty() || arguments.listen.is_some();
+    if arguments.journals.is_empty() && !hears {
+        return Err(Failure::refused(
+            "nothing to watch: name journals (FILE or DIR), or where sessions are heard: --router tcp/HOST:PORT or \
+             --listen tcp/HOST:PORT",
+        ));
+    }
     let mut known: Vec<DaySummary> = Vec::new();
     for path in &arguments.journals {
         for file in files(path)? {
             known.extend(read_file(&file)?);
         }
     }
-    if arguments.router.is_empty() && arguments.listen.is_none() {
+    if !hears {
         let mut fleet = Fleet::new(settings);
         fleet.days(&days(&known)).map_err(Failure::refused)?;
         let told = fleet.told(terminal::STANDING);

@@ -28,11 +28,17 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         .iter()
         .filter_map(|step| step.held_out)
         .fold(f64::MIN_POSITIVE, f64::max);
-    for step in &steps {
-        let what = step
-            .added
-            .as_ref()
-            .map_or_else(|| step.effects.join(", "), |added| format!("+ {added}"));
+    let words = steps.iter().map(|step| match &step.added {
+        None => step.effects.join(", "),
+        Some(added) => format!("+ {added}"),
+    });
+    let words: Vec<String> = words.collect();
+    let width = words
+        .iter()
+        .map(|own| own.chars().count())
+        .max()
+        .unwrap_or(0);
+    for (step, what) in steps.iter().zip(&words) {
         let (error, bar) = step.held_out.map_or_else(
             || ("-".to_owned(), String::new()),
             |error| {
@@ -49,7 +55,7 @@ pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
         } else {
             ""
         };
-        println!("{what:<40} {error:>14} {bar}{other}");
+        println!("{what:<width$} {error:>14} {bar}{other}");
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -123,15 +123,17 @@ fn effects(json: bool) -> Result<ExitCode, Failure> {
         super::output::print_json(&catalogue)?;
         return Ok(ExitCode::SUCCESS);
     }
+    let ids = catalogue.iter().map(|effect| effect.id.len());
+    let width = ids.max().unwrap_or(0);
     for subject in [Subject::Joint, Subject::Contact] {
         println!("of {}", subject.name());
         for effect in catalogue.iter().filter(|effect| effect.of == subject) {
-            println!("  {:24} {}", effect.id, effect.equation);
+            println!("  {:width$} {}", effect.id, effect.equation);
         }
     }
     println!("of an arm");
     for effect in ArmEffect::all(1) {
-        println!("  {:24} {}", effect.id(), effect.equation());
+        println!("  {:width$} {}", effect.id(), effect.equation());
     }
     Ok(ExitCode::SUCCESS)
 }

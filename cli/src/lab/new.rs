@@ -15,7 +15,10 @@ use ferntast_lab::{
 };
 
 use super::{
-    super::{Failure, output::print_json},
+    super::{
+        Failure,
+        output::{counted, print_json},
+    },
     table::significant,
 };
 
@@ -284,11 +287,11 @@ fn ask(
 fn tell(made: &Made) {
     for recording in &made.recordings {
         println!(
-            "{}: {} rows, {:.1} % of them used in {} stretches",
+            "{}: {}, {:.1} % of them used in {}",
             recording.file.display(),
-            recording.samples,
+            counted(recording.samples, "row"),
             100.0 * recording.share_used(),
-            recording.stretches
+            counted(recording.stretches, "stretch")
         );
         for (reason, count) in recording.left_out() {
             println!("  {count} {}", reason.text());

@@ -11,6 +11,17 @@ use ferntast_identification::{
 
 pub use ferntast_lab::report::significant;
 
+/// A probability, in words that a person writes: 1, 0.034, 2.0e-5.
+pub fn chance(p: f64) -> String {
+    match p {
+        p if p > 0.995 => "1".to_owned(),
+        p if p >= 0.1 => format!("{p:.2}"),
+        p if p >= 1e-3 => format!("{p:.3}"),
+        p if p <= 0.0 => "0".to_owned(),
+        p => format!("{p:.1e}"),
+    }
+}
+
 /// The parameters with their standard errors.
 pub fn parameters(parameters: &BTreeMap<String, Parameter>, not_excited: &[String]) {
     println!(
@@ -77,9 +88,10 @@ fn usage(used: &Usage) {
     }
     if let Some([low, high]) = used.speed_range {
         println!(
-            "  speeds that remain {} … {}",
+            "  speeds that remain {} … {} {}",
             significant(low),
-            significant(high)
+            significant(high),
+            used.speed_unit
         );
     }
     println!(
@@ -211,11 +223,11 @@ pub fn formula(formula: &Formula, number: usize, unit: &str) {
     println!();
     println!("{number}. {}", formula.expression);
     println!(
-        "   error {} {unit} before, {} {unit} after on data held out ({:+.1} %); p {:.1e}, complexity {}",
+        "   error {} {unit} before, {} {unit} after on data held out ({:+.1} %); p {}, complexity {}",
         significant(formula.held_out_before),
         significant(formula.held_out_after),
         (formula.held_out_after / formula.held_out_before - 1.0) * 100.0,
-        formula.p_value,
+        chance(formula.p_value),
         formula.complexity
     );
     println!("   {}", formula.form);
@@ -252,11 +264,11 @@ pub fn not_tested(effects: &[String]) {
 /// One line of the ranking, `name` so wide, and what these data cannot tell it from.
 pub fn candidate(name: &str, candidate: &NamedCandidate, width: usize) {
     println!(
-        "{name:<width$} {:>12} {:>12} {:>7.1}% {:>9.1e}",
+        "{name:<width$} {:>12} {:>12} {:>7.1}% {:>9}",
         significant(candidate.held_out_before),
         significant(candidate.held_out_after),
         (candidate.held_out_after / candidate.held_out_before - 1.0) * 100.0,
-        candidate.p_value
+        chance(candidate.p_value)
     );
     if !candidate.indistinguishable_from.is_empty() {
         println!(
@@ -324,10 +336,10 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
         println!("tried and not named, the strongest first");
         for own in &diagnosis.runners_up {
             println!(
-                "  {:<28} {:>6.2} % of the mean square, p {:.1e}: {}",
+                "  {:<28} {:>6.2} % of the mean square, p {}: {}",
                 own.effect,
                 own.share * 100.0,
-                own.p_value,
+                chance(own.p_value),
                 own.why_not.text()
             );
         }
@@ -345,5 +357,16 @@ fn candidates(candidates: &[NamedCandidate]) {
     }
     for own in candidates {
         candidate(&own.effect, own, 24);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chances_are_written_as_people_do() {
+        let told = [1.0, 0.534, 0.0456, 2e-5, 0.0].map(chance);
+        assert_eq!(told, ["1", "0.53", "0.046", "2.0e-5", "0"]);
     }
 }

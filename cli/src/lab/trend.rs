@@ -10,13 +10,14 @@ use ferntast_lab::{
 use super::{
     super::{Failure, output::print_json},
     open,
+    table::chance,
 };
 
 /// Tell what changed between recordings, or between the dates of one experiment.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     ferntast lab trend spring.toml autumn.toml\n  \
-    ferntast lab trend recordings/mission/*        # recordings of sessions, in the order given\n  \
+    ferntast lab trend recordings/mission/day_*/spring_joint_2   # of a campaign, in the order given\n  \
     ferntast lab trend E.toml -o trend.html        # over its dates, or sessions; with charts\n\n\
     The same model is fitted to each: all effects that any of them has. A change counts where it exceeds the \
     standard errors of both ends; with many parameters and dates one in twenty does so by chance.")]
@@ -65,6 +66,11 @@ fn print(trend: &Trend) {
     for note in &trend.notes {
         println!("note: {note}");
     }
+    if trend.points.iter().any(|point| point.days.is_some()) {
+        println!("days count from the first recording");
+    }
+    let names = trend.points.iter().map(|point| point.name.chars().count());
+    let width = names.max().unwrap_or(0).max(20);
     for point in &trend.points {
         let days = point
             .days
@@ -78,7 +84,7 @@ fn print(trend: &Trend) {
             (None, None) => String::new(),
         };
         println!(
-            "  {:<36} {days:>10} {degrees:>10}  error {} {}  {missing}",
+            "  {:<width$} {days:>10} {degrees:>10}  error {} {}  {missing}",
             point.name,
             significant(point.held_out),
             trend.unit
@@ -110,9 +116,7 @@ fn print(trend: &Trend) {
             course.name,
             value(trend.points.first()),
             value(trend.points.last()),
-            course
-                .p_value
-                .map_or_else(|| "-".to_owned(), |p| format!("{p:.1e}")),
+            course.p_value.map_or_else(|| "-".to_owned(), chance),
             course.unit
         );
     }

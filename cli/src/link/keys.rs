@@ -35,7 +35,7 @@ enum What {
     New,
     /// Show this host's public key, and the hosts that it knows.
     Show,
-    /// Know another host by its public key.
+    /// Know another host by its public key. To know it no longer, take its line out of known_hosts in the folder.
     Add {
         /// What to call it.
         name: String,

@@ -26,7 +26,7 @@ use super::{Failure, output::print_json};
     ferntast link law wave\n\n\
     Two hosts that are to meet, each with its key:\n  \
     ferntast link keys new       # once on each host; shows its public key\n  \
-    ferntast link keys add arm m+P1…A=    # on each, the key that the other shows"
+    ferntast link keys add arm m+P1…A==   # on each, the key that the other shows"
 )]
 pub struct Arguments {
     #[command(subcommand)]

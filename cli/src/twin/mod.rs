@@ -18,7 +18,8 @@ use super::Failure;
     ferntast twin take-over          # excited parameters with small standard errors, within bounds\n  \
     ferntast twin give-back          # what is configured, again\n  \
     ros2 param set /servo friction twin\n\
-    Bounds, certainty and time are in the scenario's [servo.take_over].\n\n\
+    Bounds, certainty and time are in the scenario's [servo.take_over]. Parameters are called as in the arm's file: \
+    its b_0, b_0T, b_1, b_2, b_3 are b0, b0T, b1, b2, b3 in the lab.\n\n\
     From its recording into the lab:\n  \
     ferntast twin experiment recordings/run --model joint.toml -o found.toml\n  \
     ferntast lab compare found.toml"

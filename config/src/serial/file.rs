@@ -95,8 +95,8 @@ pub fn load_serial(name: &str) -> Result<Option<ArmFile>, ConfigError> {
         message: error.to_string().trim_end().to_owned(),
     })?;
     let text = match &source.folder {
-        Some(folder) => read(&folder.join(&written.arm.urdf))?,
-        None => find_shipped_urdf(&written.arm.urdf)?,
+        Some(folder) => read_beside(&stem(name), &folder.join(&written.arm.urdf))?,
+        None => find_shipped_urdf(&stem(name), &written.arm.urdf)?,
     };
     let path = source.path.as_str();
     let file = resolved(stem(name), text, written).map_err(|error| (path, error))?;
@@ -117,16 +117,31 @@ fn read(path: &Path) -> Result<String, ConfigError> {
     Ok(String::from_utf8_lossy(&read).into_owned())
 }
 
+/// The URDF beside the file of an arm, which may have come along without it.
+fn read_beside(arm: &str, path: &Path) -> Result<String, ConfigError> {
+    let came_along = |name: &str| crate::shipped::text(&format!("{}/{name}", ARM.folder)).is_some();
+    let urdf = path.file_name().unwrap_or_default().to_string_lossy();
+    if !path.exists() && came_along(&format!("{arm}.toml")) && !came_along(&urdf) {
+        return Err(ConfigError::NoUrdf {
+            arm: arm.to_owned(),
+            path: path.to_owned(),
+        });
+    }
+    read(path)
+}
+
 /// The URDF of an arm that comes along; what is below `config/` on disk comes first.
-fn find_shipped_urdf(name: &str) -> Result<String, ConfigError> {
+fn find_shipped_urdf(arm: &str, name: &str) -> Result<String, ConfigError> {
     let path = format!("{}/{name}", ARM.folder);
     let on_disk = Path::new("config").join(&path);
     if on_disk.is_file() {
         return read(&on_disk);
     }
     let text = crate::shipped::text(&path);
-    text.map(str::to_owned)
-        .ok_or(ConfigError::NoUrdf { path: on_disk })
+    text.map(str::to_owned).ok_or(ConfigError::NoUrdf {
+        arm: arm.to_owned(),
+        path: on_disk,
+    })
 }
 
 /// The file with all that was left out.

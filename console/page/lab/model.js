@@ -38,7 +38,7 @@ export function figures({ results, view, joint }) {
   fill(parts.used,
     make("summary", { textContent: "What the verdict rests on" }),
     results.left_out.map(([reason, share]) => make("p", { className: "note", textContent: `${percent(share)} left out: ${reason}` })),
-    make("p", { className: "note", textContent: `speeds that remain: ${significant(slowest)} … ${significant(fastest)}` }),
+    make("p", { className: "note", textContent: `speeds that remain: ${significant(slowest)} … ${significant(fastest)} ${c.used.speed_unit}` }),
     make("p", { className: "note", textContent: `cut-off of the filter: ${significant(c.used.cutoff_hz)} Hz, ${c.used.cutoff_reason}` }),
     make("p", { className: "note", textContent: `condition of the normal equations: ${significant(c.condition)}` }));
   fill(parts.warnings, results.warnings.map((text) => make("p", { className: "note warning", textContent: text })));

@@ -24,8 +24,8 @@ pub use fed::FedForward;
 
 use ferntast_model::ParameterError;
 use ferntast_model::friction::{
-    FASTEST_SEEN, Friction, FrictionState, MAX_PARAMETERS, REFERENCE_TEMPERATURE, Signal,
-    StaticEffect, effect_with,
+    EffectParameter, FASTEST_SEEN, Friction, FrictionState, JointType, MAX_PARAMETERS,
+    REFERENCE_TEMPERATURE, Signal, StaticEffect, effect_with,
 };
 use ferntast_model::joint::JointParameters;
 
@@ -321,7 +321,7 @@ impl FeedForward {
                 };
                 let reach = config.parameter_share * configured.abs();
                 let (lower, upper) = (configured - reach, configured + reach);
-                check_bounds(parameter.key, own.value, lower, upper)?;
+                check_bounds(parameter, own.value, [lower, upper], OF_CONFIGURED)?;
                 *place = own.value;
                 taken += 1;
             }
@@ -364,7 +364,7 @@ impl FeedForward {
         let own = effect.row.coefficients.iter().chain(effect.row.shape);
         let count = effect.row.coefficients.len();
         for (own, value) in own.zip(values[..count].iter().chain(&shape)) {
-            check_bounds(own.key, *value, own.lower, own.upper)?;
+            check_bounds(own, *value, [own.lower, own.upper], OF_EFFECT)?;
         }
         self.place_for(effect, shape)?.target = values;
         Ok(count)
@@ -472,19 +472,26 @@ fn between(lower: f64, upper: f64, step: u32, steps: u32) -> f64 {
     lower + f64::from(step) / f64::from(steps) * (upper - lower)
 }
 
+/// What allows a configured parameter no more.
+const OF_CONFIGURED: &str = "[servo.take_over] parameter_share";
+/// What allows a parameter of another effect no more.
+const OF_EFFECT: &str = "no servo takes more";
+
 fn check_bounds(
-    name: &'static str,
+    parameter: &EffectParameter,
     value: f64,
-    lower: f64,
-    upper: f64,
+    [lower, upper]: [f64; 2],
+    rule: &'static str,
 ) -> Result<(), TakeOverRefusal> {
     match (lower..=upper).contains(&value) {
         true => Ok(()),
         false => Err(TakeOverRefusal::Parameter {
-            name,
+            name: parameter.key,
             value,
             lower,
             upper,
+            unit: parameter.unit.of(JointType::Revolute),
+            rule,
         }),
     }
 }

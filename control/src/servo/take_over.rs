@@ -1,5 +1,7 @@
 //! How far the servo lets itself be told other friction, and why it does not.
 
+use std::fmt;
+
 use ferntast_model::friction::{Signal, StaticEffect};
 use ferntast_model::parameters;
 
@@ -95,7 +97,10 @@ pub enum TakeOverRefusal {
         effect: &'static str,
     },
     /// A parameter is too far from the configured one.
-    #[error("{name} = {value:.4} is outside {lower:.4} … {upper:.4}")]
+    #[error(
+        "{name} = {} {unit} is outside {} … {}: {rule}",
+        Brief(*value), Brief(*lower), Brief(*upper)
+    )]
     Parameter {
         /// Which.
         name: &'static str,
@@ -105,9 +110,15 @@ pub enum TakeOverRefusal {
         lower: f64,
         /// Largest value allowed.
         upper: f64,
+        /// Unit of all three.
+        unit: &'static str,
+        /// What allows no more.
+        rule: &'static str,
     },
     /// The torque is too far from the configured one.
-    #[error("{torque:.2} Nm at {speed:.3} rad/s is outside {lower:.2} … {upper:.2} Nm")]
+    #[error(
+        "{torque:.2} Nm at {speed:.3} rad/s is outside {lower:.2} … {upper:.2} Nm: [servo.take_over] torque_share"
+    )]
     Torque {
         /// At this speed \[rad/s\].
         speed: f64,
@@ -118,6 +129,16 @@ pub enum TakeOverRefusal {
         /// Largest torque allowed \[Nm\].
         upper: f64,
     },
+}
+
+/// A number in few letters, since what is refused is told in 96.
+struct Brief(f64);
+
+impl fmt::Display for Brief {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = if self.0.abs() < 10.0 { 4 } else { 2 };
+        write!(f, "{:.digits$}", self.0)
+    }
 }
 
 /// Why an effect is not among what is taken over.

@@ -3,11 +3,15 @@
 use std::ffi::CString;
 use std::fs;
 use std::io::{self, Write};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener, ToSocketAddrs};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, ToSocketAddrs};
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
+use std::time::Duration;
 
 use super::host::{FileSystem, Host, Interface, WakeUps};
+
+/// A service on this host, or on one beside it, answers sooner.
+const CONNECTS_WITHIN: Duration = Duration::from_secs(1);
 
 mod network;
 mod scheduling;
@@ -63,6 +67,19 @@ impl Host for Machine {
         let written = file.write_all(&[0; 4096]).and_then(|()| file.sync_data());
         let removed = fs::remove_file(path);
         written.and(removed)
+    }
+
+    fn try_reading_and_writing(&self, path: &str) -> io::Result<()> {
+        let path = CString::new(path)?;
+        // SAFETY: `path` ends in a zero byte and lives through the call.
+        match unsafe { libc::access(path.as_ptr(), libc::R_OK | libc::W_OK) } {
+            0 => Ok(()),
+            _ => Err(io::Error::last_os_error()),
+        }
+    }
+
+    fn try_connecting(&self, address: SocketAddr) -> io::Result<()> {
+        TcpStream::connect_timeout(&address, CONNECTS_WITHIN).map(drop)
     }
 
     fn try_real_time_priority(&self, priority: i32) -> io::Result<()> {
@@ -140,7 +157,9 @@ mod tests {
         let address = listener.local_addr().expect("bound");
         let refused = Machine.try_listening(address).map_err(|error| error.kind());
         assert_eq!(refused, Err(io::ErrorKind::AddrInUse));
+        assert!(Machine.try_connecting(address).is_ok());
         drop(listener);
         assert!(Machine.try_listening(address).is_ok());
+        assert!(Machine.try_connecting(address).is_err());
     }
 }

@@ -114,9 +114,18 @@ impl Report {
     }
 }
 
+/// A number with so many decimals, without the sign of one that is zero then.
+fn unsigned_zero(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if !rest.contains(|c| ('1'..='9').contains(&c)) => rest.to_owned(),
+        _ => text,
+    }
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |value: Option<f64>| value.map_or("-".to_owned(), |own| format!("{own:.2}"));
+        let number = |value: Option<f64>| value.map_or("-".to_owned(), |own| unsigned_zero(own, 2));
         let timing = &self.timing;
         writeln!(
             f,
@@ -154,14 +163,14 @@ impl fmt::Display for Report {
             for own in &self.joints {
                 writeln!(
                     f,
-                    "{:width$}  {:9.4} {:9.4} {:9.4} {:>9} {:>9} {:9.2}",
+                    "{:width$}  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
                     own.name,
-                    own.position,
-                    own.travel,
-                    own.speed,
+                    unsigned_zero(own.position, 4),
+                    unsigned_zero(own.travel, 4),
+                    unsigned_zero(own.speed, 4),
                     number(own.change_per_velocity),
                     number(own.torque),
-                    own.weight
+                    unsigned_zero(own.weight, 2)
                 )?;
             }
         }
@@ -173,5 +182,16 @@ impl fmt::Display for Report {
             true => write!(f, "nothing is wrong"),
             false => write!(f, "put right what is WRONG before this arm is moved"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unsigned_zero;
+
+    #[test]
+    fn zero_has_no_sign() {
+        let told = [-0.000_04, -0.0, -0.000_06, 1.5].map(|own| unsigned_zero(own, 4));
+        assert_eq!(told, ["0.0000", "0.0000", "-0.0001", "1.5000"]);
     }
 }

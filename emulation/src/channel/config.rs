@@ -202,7 +202,7 @@ impl Blackout {
 }
 
 /// Largest delay, jitter and hold-back \[s\].
-pub(super) const LONGEST_DELAY: f64 = 5.0;
+pub const LONGEST_DELAY: f64 = 5.0;
 
 impl ChannelConfig {
     /// A channel that only delays, by `delay` \[s\].

@@ -7,10 +7,11 @@
 
 mod config;
 
-pub use config::{Bandwidth, Blackout, ChannelConfig, Jitter, LinkConfig, Loss, Reordering};
+pub use config::{
+    Bandwidth, Blackout, ChannelConfig, Jitter, LONGEST_DELAY, LinkConfig, Loss, Reordering,
+};
 
 use crate::random::Random;
-use config::LONGEST_DELAY;
 use ferntast_model::{ParameterError, check};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use ferntast_model::friction::SPEED;
 use serde::Serialize;
 
 use crate::data::{Dataset, RecordedSession};
@@ -123,9 +124,11 @@ pub struct Usage {
     pub rows: usize,
     /// What errors are measured on.
     pub held_out_by: HeldOutBy,
-    /// Least and greatest |q̇| \[rad/s\] that is fitted; `None` of no rows.
+    /// Least and greatest |q̇| that is fitted; `None` of no rows.
     pub speed_range: Option<[f64; 2]>,
-    /// |q̇| \[rad/s\] below which the direction is not certain.
+    /// Unit of speeds.
+    pub speed_unit: &'static str,
+    /// |q̇| below which the direction is not certain.
     pub least_speed: f64,
     /// Frequency \[Hz\] above which torque and columns are filtered away (−3 dB).
     pub cutoff_hz: f64,
@@ -184,6 +187,7 @@ pub fn find(dataset: &Dataset, prepared: &PreparedModel, design: &Design) -> Usa
         rows: design.total().rows,
         held_out_by: HeldOutBy::of(prepared, design),
         speed_range: speed_range(&prepared.sessions),
+        speed_unit: SPEED.of(dataset.joint),
         least_speed: match &filters.stated {
             Some(filter) => filter.least_speed,
             None => filters.rest_speed,

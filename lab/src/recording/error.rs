@@ -207,9 +207,11 @@ pub enum LoadError {
     },
     /// A signal does not move at all.
     #[error(
-        "signals.{signal} is {value} {unit} in every sample of {recordings}: nothing can be learnt from a constant; is it the right signal?"
+        "{}signals.{signal} is {value} {unit} in every sample of {recordings}: nothing can be learnt from a constant; is it the right signal?", of_joint(joint.as_deref())
     )]
     Constant {
+        /// Of a recording of ours, whose.
+        joint: Option<String>,
         /// The signal.
         signal: String,
         /// Its value.
@@ -253,6 +255,18 @@ pub enum LoadError {
         /// The recording.
         path: PathBuf,
     },
+}
+
+impl LoadError {
+    /// Whether the joint stands still: its position is a constant.
+    #[must_use]
+    pub fn stands_still(&self) -> bool {
+        matches!(self, LoadError::Constant { signal, .. } if signal == "position")
+    }
+}
+
+fn of_joint(joint: Option<&str>) -> String {
+    joint.map_or_else(String::new, |joint| format!("{joint}: "))
 }
 
 fn list(paths: &[String]) -> String {

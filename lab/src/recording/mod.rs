@@ -222,10 +222,13 @@ fn read_file(
     drop(series);
     if tally.short_stretches > 0 {
         notes.push(format!(
-            "{}: {} samples left out, in {} stretches of fewer than {} without a gap",
+            "{}: {} samples left out, in {} of fewer than {} without a gap",
             path.display(),
             tally.in_short_stretches,
-            tally.short_stretches,
+            match tally.short_stretches {
+                1 => "1 stretch".to_owned(),
+                count => format!("{count} stretches"),
+            },
             align::SHORTEST
         ));
     }
@@ -341,7 +344,9 @@ fn check_constant(
         if values.any(|&other| other != value) {
             continue;
         }
+        let of_recording = experiment.path.is_none();
         let error = LoadError::Constant {
+            joint: of_recording.then(|| experiment.title.clone()),
             signal: signal.to_owned(),
             value,
             unit: experiment.unit_of(signal),

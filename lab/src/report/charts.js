@@ -7,13 +7,13 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/** A number to be read: five digits, or more where it is large. */
+/** A number to be read: four digits, or more where it is large. */
 function brief(value) {
   if (value === null || value === undefined || !isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size >= 1e9 || size < 1e-3) return value.toExponential(2);
-  return size >= 1e4 ? String(Number(value.toFixed(2))) : String(Number(value.toPrecision(5)));
+  return size >= 1e4 ? value.toFixed(0) : String(Number(value.toPrecision(4)));
 }
 
 /** A number on an axis: as many decimals as tell neighbours apart. */
@@ -244,7 +244,7 @@ function chart(parent, curves, labels, height, shades) {
     for (const curve of self.curves) {
       if (curve.visible === false || !curve.x.length) continue;
       const i = nearest(curve.x, wanted);
-      if (!lines.length) lines.push(labels.x + " " + brief(curve.x[i]));
+      if (!lines.length) lines.push(labels.x + " " + Number(curve.x[i].toPrecision(6)));
       let line = curve.name + "  " + brief(curve.y[i]);
       if (curve.band) line += " ± " + brief(curve.band[i]);
       if (curve.tell) line += curve.tell(i);

@@ -8,7 +8,7 @@ function showTrend(trends) {
     for (const note of trend.notes) make(page, "p", note, "warning");
     const dated = trend.points.every((point) => point.days !== null);
     const at = (point, n) => (dated ? point.days : n);
-    table(page, [["recording"], [dated ? "day" : "number", 1], ["sessions", 1], ["°C", 1], ["error held out", 1], ["missing"]],
+    table(page, [["recording"], [dated ? "days since the first" : "number", 1], ["sessions", 1], ["°C", 1], ["error held out", 1], ["missing"]],
       trend.points.map((point, n) => [point.name, brief(at(point, n)), String(point.sessions), brief(point.temperature),
         brief(point.held_out) + " " + trend.unit, point.missing || (point.verdict === null ? "not asked" : point.verdict)]));
     if (trend.came_or_went.length) {
@@ -25,7 +25,7 @@ function showTrend(trends) {
         name: course.name, colour: course.changes ? "--curve-1" : "--curve-0", dots: true,
         x: there.map(([x]) => x), y: there.map(([, own]) => own.value),
         band: there.map(([, own]) => own.std_error || 0), tell: (i) => " " + there[i][2],
-      }], { x: dated ? "days" : "recording", y: course.name + " [" + course.unit + "]" }, 200);
+      }], { x: dated ? "days since the first" : "recording", y: course.name + " [" + course.unit + "]" }, 200);
     }
   }
 }

@@ -241,7 +241,7 @@ impl Opened {
 }
 
 /// Opens an experiment file, or a recording of a session: one experiment a joint, also of
-/// an arm.
+/// an arm. Joints that stand still in a recording of ours are left out, with a note.
 ///
 /// # Errors
 ///
@@ -251,7 +251,28 @@ pub fn open(path: &Path) -> Result<Vec<Opened>, WorkError> {
         return arm.joints();
     }
     let experiments = Experiment::open(path, &experiment::data_folder())?;
-    experiments.into_iter().map(Opened::read).collect()
+    let mut opened = Vec::new();
+    let mut still = Vec::new();
+    for experiment in experiments {
+        let title = experiment.title.clone();
+        let of_recording = experiment.path.is_none();
+        match Opened::read(experiment) {
+            Err(WorkError::Load(error)) if of_recording && error.stands_still() => {
+                still.push((title, error));
+            }
+            other => opened.push(other?),
+        }
+    }
+    let Some(first) = opened.first_mut() else {
+        let first = still.into_iter().next();
+        return first.map_or(Ok(opened), |(_, error)| Err(WorkError::Load(error)));
+    };
+    let told = still.iter().map(|(joint, _)| {
+        let path = path.display();
+        format!("{joint} stands still in {path}: nothing can be learnt of it, it is left out")
+    });
+    first.notes.extend(told);
+    Ok(opened)
 }
 
 /// Opens what has to be one experiment file.

@@ -83,13 +83,23 @@ pub enum LinkKeyError {
         /// Names of those that are known.
         known: String,
     },
-    /// A key of that name, or the private one, is there already.
-    #[error("{what} is there already ({path}); remove it first, if it is to be replaced")]
+    /// The private key is there already.
+    #[error("a private key is there already; remove {path} first, if it is to be replaced")]
     Exists {
-        /// What.
-        what: String,
         /// Where.
         path: PathBuf,
+    },
+    /// A host of that name is known already.
+    #[error(
+        "host {name:?} is known already; take line {line} out of {path} first, if its key is to be replaced"
+    )]
+    Known {
+        /// The host.
+        name: String,
+        /// The file.
+        path: PathBuf,
+        /// Where in it, from 1.
+        line: usize,
     },
     /// A name that cannot stand in the file.
     #[error("host name {0:?}: use 1 to 64 letters, digits, '-', '_' or '.'")]
@@ -176,10 +186,7 @@ impl LinkKeys {
         match written {
             Ok(()) => Ok(key),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                Err(LinkKeyError::Exists {
-                    what: "a private key".to_owned(),
-                    path,
-                })
+                Err(LinkKeyError::Exists { path })
             }
             Err(error) => Err(file(&path)(error)),
         }
@@ -191,6 +198,12 @@ impl LinkKeys {
     ///
     /// A line that is none.
     pub fn known(&self) -> Result<Vec<(String, PublicKey)>, LinkKeyError> {
+        let known = self.known_by_line()?.into_iter();
+        Ok(known.map(|(_, name, key)| (name, key)).collect())
+    }
+
+    /// The same, each with its line in the file, from 1.
+    fn known_by_line(&self) -> Result<Vec<(usize, String, PublicKey)>, LinkKeyError> {
         let path = self.folder.join(KNOWN);
         let text = read(&path)?.unwrap_or_default();
         let mut known = Vec::new();
@@ -204,7 +217,7 @@ impl LinkKeys {
                         place: format!("{}, line {line}", path.display()),
                         source,
                     })?;
-                    known.push((name.to_owned(), key));
+                    known.push((line, name.to_owned(), key));
                 }
                 _ => return Err(LinkKeyError::Line { path, line }),
             }
@@ -227,9 +240,13 @@ impl LinkKeys {
             source,
         })?;
         let path = self.folder.join(KNOWN);
-        if self.known()?.iter().any(|(own, _)| own == name) {
-            let what = format!("host {name:?}");
-            return Err(LinkKeyError::Exists { what, path });
+        let known = self.known_by_line()?;
+        if let Some((line, ..)) = known.iter().find(|(_, own, _)| own == name) {
+            return Err(LinkKeyError::Known {
+                name: name.to_owned(),
+                path,
+                line: *line,
+            });
         }
         self.make_folder()?;
         OpenOptions::new()
@@ -305,10 +322,9 @@ pub(super) mod tests {
         assert!(matches!(keys.make(), Err(LinkKeyError::Exists { .. })));
         let other = |number| PrivateKey::from_random([number; 32]).public();
         keys.add("arm", &other(1).to_string()).unwrap();
-        assert!(matches!(
-            keys.add("arm", &other(2).to_string()),
-            Err(LinkKeyError::Exists { .. })
-        ));
+        let known = keys.add("arm", &other(2).to_string()).unwrap_err();
+        assert!(matches!(&known, LinkKeyError::Known { name, line: 1, .. } if name == "arm"));
+        assert!(known.to_string().contains("take line 1 out of"), "{known}");
         assert!(matches!(
             keys.add("a b", &other(2).to_string()),
             Err(LinkKeyError::Name(_))

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use ferntast_model::friction::{self, JointType};
 use ferntast_msgs::sample::FrictionStatusSample;
 use serde::Serialize;
 
@@ -49,6 +50,14 @@ impl FrictionSummary {
     }
 }
 
+/// Unit of the parameter that is called so in an arm's file.
+fn unit_of(key: &str) -> Option<&'static str> {
+    let effects = friction::of_joint();
+    let mut parameters = effects.flat_map(|own| own.row.coefficients.iter().chain(own.row.shape));
+    let found = parameters.find(|own| own.key == key);
+    found.map(|own| own.unit.of(JointType::Revolute))
+}
+
 impl fmt::Display for FrictionSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "friction  {}: {}", self.joint, self.source)?;
@@ -56,6 +65,10 @@ impl fmt::Display for FrictionSummary {
             write!(f, ", {} {:.4}", own.name, own.target)?;
             if own.target != own.configured {
                 write!(f, " (configured {:.4})", own.configured)?;
+            }
+            match unit_of(&own.name) {
+                None | Some("1") => {}
+                Some(unit) => write!(f, " {unit}")?,
             }
         }
         match &self.refused {

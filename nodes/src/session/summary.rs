@@ -187,6 +187,21 @@ pub struct NodeSummary {
     pub faults: Vec<String>,
 }
 
+impl fmt::Display for ContactSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.time_s {
+            none if none <= 0.0 => return write!(f, "none"),
+            short if short < 0.1 => write!(f, "{:.0} ms", short * 1e3)?,
+            time => write!(f, "{time:.1} s")?,
+        }
+        write!(f, ", peak normal force {:.1} N", self.peak_normal_force)?;
+        match self.edges.is_empty() {
+            true => write!(f, ", edges: none"),
+            false => write!(f, ", edges: {}", self.edges.join(", ")),
+        }
+    }
+}
+
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = |value: Option<f64>, digits: usize| match value {
@@ -200,9 +215,14 @@ impl fmt::Display for Summary {
         )?;
         writeln!(
             f,
-            "servo     {} Hz, {} deadlines missed",
+            "servo     {} Hz, {} {} missed",
             number(self.servo.rate_hz, 1),
-            self.servo.missed
+            self.servo.missed,
+            if self.servo.missed == 1 {
+                "deadline"
+            } else {
+                "deadlines"
+            }
         )?;
         writeln!(
             f,
@@ -213,17 +233,7 @@ impl fmt::Display for Summary {
             number(self.link.sent.map(|sent| sent * 100.0), 1),
             self.link.law
         )?;
-        writeln!(
-            f,
-            "contact   {:.1} s, peak normal force {:.1} N, edges: {}",
-            self.contact.time_s,
-            self.contact.peak_normal_force,
-            if self.contact.edges.is_empty() {
-                "none".to_owned()
-            } else {
-                self.contact.edges.join(", ")
-            }
-        )?;
+        writeln!(f, "contact   {}", self.contact)?;
         writeln!(f, "hand      peak force {:.1} N", self.leader.peak_force)?;
         for twin in &self.twins {
             writeln!(f, "{twin}")?;
@@ -241,8 +251,11 @@ impl fmt::Display for Summary {
         if self.rearmed > 0 {
             writeln!(
                 f,
-                "operator  the script's armed the arm again {} times",
-                self.rearmed
+                "operator  the script's armed the arm again {}",
+                match self.rearmed {
+                    1 => "once".to_owned(),
+                    times => format!("{times} times"),
+                }
             )?;
         }
         for (name, node) in self

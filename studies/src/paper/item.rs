@@ -93,7 +93,10 @@ impl Item {
             std_error: std_error.filter(|value| value.is_finite()),
             unit,
             holds: here.is_some_and(|here| (here - paper).abs() <= bound),
-            criterion: format!("within {} {unit} or 3 standard errors", short(tolerance)),
+            criterion: {
+                let within = format!("within {} {unit}", short(tolerance));
+                format!("{} or 3 standard errors", within.trim_end())
+            },
             on_line: None,
         }
     }

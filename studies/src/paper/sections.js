@@ -35,7 +35,7 @@ function showItems(parent, items) {
   };
   table(parent,
     [["item", 0, "14em"], ["paper", 1], ["here", 1], ["± error", 1], ["unit"], ["holds"], ["asked for", 0, "11em"]],
-    items.map((item) => [item.item, item.paper === null ? "a statement" : brief(item.paper), brief(item.here),
+    items.map((item) => [item.item, item.paper === null ? "a statement" : String(item.paper), brief(item.here),
       brief(item.std_error), item.unit, verdict(item.holds), item.criterion]));
 }
 

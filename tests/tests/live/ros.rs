@@ -39,7 +39,7 @@ fn rclpy_lists_every_topic_with_its_type() {
         // With `--hand crtk` the hand comes in too; joint positions do not unless the scenario says so.
         let comes_in = topic["from_ros_2"]
             .as_str()
-            .is_some_and(|own| own.starts_with("stops"))
+            .is_some_and(|own| own.contains("commands = true"))
             || name == "/leader/measured_cp";
         let (one, none) = match comes_in {
             true => ("subscriptions", "publishers"),

@@ -68,6 +68,26 @@ impl Function {
         }
     }
 
+    /// The function in words, of what is called so.
+    pub(super) fn of(self, quantity: &str) -> String {
+        let (name, numbers) = match self {
+            Levelling(a) => ("levelling", vec![a]),
+            Arc(a) => ("arc", vec![a]),
+            Rounded(a) => ("rounded", vec![a]),
+            Logistic(a, b) => ("logistic", vec![a, b]),
+            Resonance(a, b) => ("resonance", vec![a, b]),
+            Hump(a, b) => ("hump", vec![a, b]),
+            Engaging(b) => ("engaging", vec![b]),
+            Soft(a, b) => ("soft", vec![a, b]),
+            Power(p) => ("power", vec![p]),
+            OddPower(p) => ("odd power", vec![p]),
+            Falling(a) => ("falling", vec![a]),
+            Slope(a) => ("slope", vec![a]),
+        };
+        let numbers: Vec<String> = numbers.iter().map(|own| format!("{own:.3}")).collect();
+        format!("{name}({}) of {quantity}", numbers.join(", "))
+    }
+
     pub(super) fn value(self, u: f64) -> f64 {
         match self {
             Levelling(a) => u / (1.0 + u.abs() / a),

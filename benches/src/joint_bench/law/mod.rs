@@ -185,8 +185,7 @@ impl Law {
     fn words(&self) -> String {
         let each = self.products.iter().map(|own| {
             let functions = own.functions.iter();
-            let functions = functions
-                .map(|(quantity, function)| format!("{function:?} of {}", quantity.word()));
+            let functions = functions.map(|(quantity, function)| function.of(quantity.word()));
             let words: Vec<String> = functions.collect();
             let opposes = if own.opposes { ", against motion" } else { "" };
             format!("{}{opposes}", words.join(" times "))

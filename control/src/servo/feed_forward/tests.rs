@@ -104,7 +104,11 @@ fn what_is_too_far_away_is_refused_as_a_whole_and_by_name() {
     far[2].value = 1.6 * CONFIGURED[2].2;
     far[2].std_error = 0.0;
     match own.take_over(&far) {
-        Err(TakeOverRefusal::Parameter { name: "b_1", .. }) => {}
+        Err(refusal @ TakeOverRefusal::Parameter { name: "b_1", .. }) => {
+            let words = refusal.to_string();
+            let expected = "b_1 = 261.28 Nm s/rad is outside 81.65 … 244.95: [servo.take_over] parameter_share";
+            assert_eq!(words, expected);
+        }
         other => panic!("{other:?}"),
     }
     // Each within its bounds, together too much: less of what slows down.

@@ -146,6 +146,7 @@ fn prepare(expression: &str) -> Result<String, String> {
     }
     let mut out = String::with_capacity(expression.len() + 8);
     let (mut before, mut depth, mut at) = (Token::Start, 0_usize, 0_usize);
+    let mut name_before = None;
     while let Some(c) = expression[at..].chars().next() {
         let column = at + 1;
         let rest = &expression[at..];
@@ -184,6 +185,12 @@ fn prepare(expression: &str) -> Result<String, String> {
                 ));
             }
             Token::Open if !(open || before == Token::Function) => {
+                if let Some(name) = name_before {
+                    return Err(format!(
+                        "there is no function {name:?} (before column {column}); there are {}; a product is {name}*(…)",
+                        FUNCTIONS.join(", ")
+                    ));
+                }
                 return Err(format!(
                     "an operator is missing before \"(\" at column {column}"
                 ));
@@ -223,6 +230,8 @@ fn prepare(expression: &str) -> Result<String, String> {
             ));
         }
         out.push_str(text);
+        let is_name = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        name_before = (token == Token::Operand && is_name).then_some(text);
         before = token;
         at += text.len();
     }
@@ -242,6 +251,16 @@ mod tests {
 
     fn value(expression: &str) -> f64 {
         Formula::parse(expression).unwrap().value(&[])
+    }
+
+    #[test]
+    fn a_function_that_there_is_not_is_told_with_those_that_there_are() {
+        let refused = |text: &str| Formula::parse(text).map(drop).unwrap_err();
+        let words = refused("2*foo(q");
+        assert!(words.starts_with("there is no function \"foo\""), "{words}");
+        assert!(words.contains("abs, sign, sqrt"), "{words}");
+        assert!(refused("(q)(q)").starts_with("an operator is missing"));
+        assert!(refused("2(q)").starts_with("an operator is missing"));
     }
 
     #[test]

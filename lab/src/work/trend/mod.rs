@@ -5,6 +5,7 @@
 //! both ends are uncertain by.
 
 mod changes;
+mod joints;
 mod parts;
 mod same_units;
 
@@ -138,12 +139,16 @@ pub enum TrendError {
         /// As it is in another one.
         other: UnitIn,
     },
+    /// Recordings of sessions in which no joint moves in all.
+    #[error("no joint moves in all of the recordings ({0}): give such as are of the same joint")]
+    NoJoint(String),
     /// The model cannot be fitted to one of them.
     #[error(transparent)]
     Work(#[from] WorkError),
 }
 
-/// The trend of each joint over `files`, each of which holds one experiment a joint.
+/// The trend of each joint over `files`, each of which holds one experiment a joint; of
+/// recordings of sessions, of those joints that move in all.
 /// Every part is diagnosed, too, if `diagnoses`; `progress` is called with the share
 /// done, 0 … 1.
 ///
@@ -155,18 +160,18 @@ pub fn trends(
     diagnoses: bool,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<Trend>, TrendError> {
-    let joints = files.first().map_or(0, Vec::len);
-    if let Some(other) = files.iter().find(|file| file.len() != joints) {
-        return Err(TrendError::Joints(joints, other.len()));
-    }
-    let of_joint = |joint: usize| {
-        let own: Vec<&Opened> = files.iter().filter_map(|file| file.get(joint)).collect();
-        let share = 1.0 / joints as f64;
-        trend(&own, diagnoses, &mut |done| {
-            progress(share * (joint as f64 + done))
+    let (joints, notes) = joints::of_each(files)?;
+    let share = 1.0 / joints.len() as f64;
+    let each = joints.iter().enumerate().map(|(number, own)| {
+        trend(own, diagnoses, &mut |done| {
+            progress(share * (number as f64 + done))
         })
-    };
-    (0..joints).map(of_joint).collect()
+    });
+    let mut trends = each.collect::<Result<Vec<Trend>, TrendError>>()?;
+    if let Some(first) = trends.first_mut() {
+        first.notes.extend(notes);
+    }
+    Ok(trends)
 }
 
 fn trend(
@@ -177,7 +182,7 @@ fn trend(
     same_units::of_experiments(all)?;
     let parts = match all {
         [one] => dates(one)?,
-        several => several.iter().map(|own| whole(own)).collect(),
+        several => whole(several),
     };
     let Some(first) = all.first() else {
         return Err(TrendError::One(String::new()));

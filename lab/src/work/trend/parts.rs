@@ -1,5 +1,10 @@
 //! What is held beside each other: experiments, or the dates of one.
 
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
+
 use ferntast_identification::Dataset;
 
 use super::{super::Opened, TrendError};
@@ -15,23 +20,41 @@ pub(super) struct Part<'a> {
     pub(super) data: Dataset,
 }
 
-/// A whole experiment as one part.
-pub(super) fn whole<'a>(opened: &&'a Opened) -> Part<'a> {
-    let path = opened.experiment.path.as_ref();
-    let recording = opened.experiment.recordings.first();
-    let name = path.or(recording).map_or_else(
-        || opened.experiment.title.clone(),
-        |path| {
-            let name = path.file_name().unwrap_or(path.as_os_str());
-            name.to_string_lossy().into_owned()
-        },
-    );
-    Part {
+/// Whole experiments as parts.
+pub(super) fn whole<'a>(all: &[&'a Opened]) -> Vec<Part<'a>> {
+    let paths: Vec<&Path> = all.iter().map(|own| path_of(own)).collect();
+    let parts = all.iter().zip(told_apart(&paths));
+    let part = parts.map(|(opened, name)| Part {
         name,
         start: opened.date,
         opened,
         data: opened.dataset.clone(),
-    }
+    });
+    part.collect()
+}
+
+fn path_of(opened: &Opened) -> &Path {
+    let own = &opened.experiment;
+    let path = own.path.as_ref().or(own.recordings.first());
+    path.map_or(Path::new(&own.title), PathBuf::as_path)
+}
+
+/// As much of the end of each path as tells them apart.
+fn told_apart(paths: &[&Path]) -> Vec<String> {
+    let ends = |count: usize| -> Vec<String> {
+        let end = |path: &&Path| {
+            let all: Vec<_> = path.components().collect();
+            let rest = all.get(all.len().saturating_sub(count)..);
+            let end: PathBuf = rest.unwrap_or_default().iter().collect();
+            end.display().to_string()
+        };
+        paths.iter().map(end).collect()
+    };
+    let longest = paths.iter().map(|path| path.components().count()).max();
+    let is_unique = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len() == names.len();
+    let mut counts = 1..longest.unwrap_or(1);
+    let found = counts.find_map(|count| Some(ends(count)).filter(|names| is_unique(names)));
+    found.unwrap_or_else(|| ends(longest.unwrap_or(1)))
 }
 
 /// The dates of one experiment; of one date its sessions.
@@ -79,4 +102,27 @@ pub(super) fn dates(opened: &Opened) -> Result<Vec<Part<'_>>, TrendError> {
         }
     };
     Ok(groups.iter().map(part).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_as_long_as_tells_them_apart() {
+        let names = |paths: &[&str]| {
+            let paths: Vec<&Path> = paths.iter().map(Path::new).collect();
+            told_apart(&paths)
+        };
+        assert_eq!(
+            names(&["a/spring.toml", "b/autumn.toml"]),
+            ["spring.toml", "autumn.toml"]
+        );
+        assert_eq!(
+            names(&["m/day_1/joint_1", "m/day_2/joint_1"]),
+            ["day_1/joint_1", "day_2/joint_1"]
+        );
+        assert_eq!(names(&["a/d/j", "b/d/j", "k"]), ["a/d/j", "b/d/j", "k"]);
+        assert_eq!(names(&["a/j", "a/j"]), ["a/j", "a/j"]);
+    }
 }
