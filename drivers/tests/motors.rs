@@ -187,7 +187,7 @@ fn an_arm_whose_servo_is_silent_is_held() {
 
 #[test]
 fn a_motor_that_does_not_hear_that_it_is_switched_on_is_told_again() {
-    for times in [1, 2, 5] {
+    for times in [1, 5] {
         let mut bus = bus(&[]);
         let mut arm = start(&section(&bus.port, json!({}))).unwrap();
         bus.ask(&json!({"do": "unheard", "id": 7, "times": times}));
@@ -430,6 +430,7 @@ fn what_goes_wrong_on_the_way_is_told_and_the_others_are_held() {
     let mut bus = bus(&[]);
     let mut arm = start(&section(&bus.port, json!({}))).unwrap();
     arm.enable(true);
+    drive(&mut arm, 0.1, |_| [0.0; 2]);
     bus.ask(&json!({"do": "damage", "answers": 3}));
     let (_, health, _) = drive(&mut arm, 0.3, |_| [0.0; 2]);
     assert_eq!(arm.failure(), None);

@@ -49,14 +49,15 @@ impl Sliding {
     }
 }
 
-/// Rows with no bad sample within `reach` samples on either side.
+/// Rows with no bad sample nearer than `reach` samples on either side: the weights of a filter that
+/// looks so far are next to nothing there.
 pub(super) fn rows_clear_of_bad_samples(rows: &[usize], good: &[bool], reach: usize) -> Vec<usize> {
     let mut bad = vec![0_usize; good.len() + 1];
     for (at, good) in good.iter().enumerate() {
         bad[at + 1] = bad[at] + usize::from(!good);
     }
     let rows = rows.iter().copied();
-    rows.filter(|at| bad[at + reach + 1] == bad[at - reach])
+    rows.filter(|at| bad[at + reach] == bad[at + 1 - reach])
         .collect()
 }
 
@@ -92,7 +93,7 @@ mod tests {
         good[20] = false;
         let rows: Vec<usize> = (3..37).collect();
         let clear = rows_clear_of_bad_samples(&rows, &good, 3);
-        let expected: Vec<usize> = (3..17).chain(24..37).collect();
+        let expected: Vec<usize> = (3..18).chain(23..37).collect();
         assert_eq!(clear, expected);
     }
 

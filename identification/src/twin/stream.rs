@@ -258,8 +258,8 @@ impl Stream {
             }
         }
         let reach = Kernel::reach(self.filters.column);
-        let slides =
-            (at.saturating_sub(reach)..=at + reach).all(|near| self.state.stuck.at(near) == 0.0);
+        let slides = ((at + 1).saturating_sub(reach)..at + reach)
+            .all(|near| self.state.stuck.at(near) == 0.0);
         TwinRow {
             time: self.state.start + at as f64 * self.working_period(),
             position: position.filtered(smooth, at),
