@@ -212,7 +212,10 @@ impl Family for Answering {
     }
 
     fn step(&mut self, drive: &Drive, _states: &mut States) -> Result<(), Missed> {
-        self.told.lock().unwrap().push((Instant::now(), *drive));
+        self.told
+            .lock()
+            .expect("no test panicked")
+            .push((Instant::now(), *drive));
         match self.answers.load(Ordering::Acquire) {
             true => Ok(()),
             false => Err(Missed::Motor(0, Lost::Silent)),

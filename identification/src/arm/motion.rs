@@ -39,7 +39,6 @@ impl Motion {
                     held_out: dataset.held_out.iter().map(own).collect(),
                     joint: kinds(joint),
                     filter: dataset.filter,
-                    ..Dataset::default()
                 };
                 Filters::at_cut_off(&joint, 1.0)
             })

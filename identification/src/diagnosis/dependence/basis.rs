@@ -123,9 +123,11 @@ fn channels(prepared: &PreparedModel) -> Vec<Channel> {
         collect("time", false, &|s, at| s.time(at)),
     ];
     if facts.loaded {
-        let load = |point: &Point| point.load;
-        let rate = |point: &Point| point.load_rate;
-        let named: [(&str, fn(&Point) -> f64); 2] = [("load", load), ("load_rate", rate)];
+        type Value = fn(&Point) -> f64;
+        let named: [(&str, Value); 2] = [
+            ("load", |point| point.load),
+            ("load_rate", |point| point.load_rate),
+        ];
         for (name, value) in named {
             all.push(match is_contact {
                 true => collect(name, false, &|s, at| value(&s.points[at])),
