@@ -2,14 +2,9 @@
 
 use std::fmt;
 
-use super::{info::BagInfo, repair::RepairReport};
+use ferntast_msgs::counted;
 
-fn counted(count: usize, one: &str) -> String {
-    match count {
-        1 => format!("1 {one}"),
-        count => format!("{count} {one}s"),
-    }
-}
+use super::{info::BagInfo, repair::RepairReport};
 
 impl fmt::Display for BagInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

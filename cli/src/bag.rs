@@ -4,12 +4,9 @@ use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_bag::BagInfo;
 use ferntast_export::{self as export, lerobot};
-use ferntast_msgs::Time;
+use ferntast_msgs::{Time, counted};
 
-use super::{
-    Failure,
-    output::{counted, print_json},
-};
+use super::{Failure, output::print_json};
 
 /// Look into recordings, mend them, write them for other programs.
 #[derive(Debug, clap::Args)]

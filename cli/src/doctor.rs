@@ -2,7 +2,7 @@
 
 use std::{io::IsTerminal, path::PathBuf, process::ExitCode, thread, time::Duration};
 
-use ferntast_config::{ArmFile, HandSource, Loaded, Middleware};
+use ferntast_config::{ArmFile, HandSource, HaplyConfig, Loaded, Middleware};
 use ferntast_doctor::{
     self as doctor, Device, DoctorOptions, Peer, Place, RosMiddleware, TcpEndpoint,
 };
@@ -100,8 +100,7 @@ fn devices(loaded: &Loaded, options: &ScenarioOptions) -> Vec<Device> {
     match hand.source {
         HandSource::Haply => {
             let url = hand.haply.clone().unwrap_or_default().url;
-            let place = url.strip_prefix("ws://").unwrap_or(&url);
-            let place = place.split('/').next().unwrap_or(place);
+            let place = HaplyConfig::address_of(&url).unwrap_or(&url);
             devices.push(Device {
                 purpose: "the hand (haply)".to_owned(),
                 place: Place::Service(place.to_owned()),

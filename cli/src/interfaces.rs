@@ -9,6 +9,7 @@ use ferntast_msgs::{
     sample::StateCommandSample,
     topics::{self, Authority, Topic, Visitor},
 };
+use ferntast_nodes::bridge::state_services;
 use serde::Serialize;
 
 use super::{Failure, output::print_json};
@@ -64,21 +65,12 @@ fn from_ros_2<M: Message>(authority: Authority) -> &'static str {
 
 /// The services by which peers on ROS 2 set operating states.
 fn services() -> Vec<ServiceLine> {
-    let line = |name: String, from_ros_2| ServiceLine {
+    let line = |(name, open): (String, bool)| ServiceLine {
         name,
         r#type: "std_srvs/srv/Trigger",
-        from_ros_2,
+        from_ros_2: if open { "always" } else { COMMANDS },
     };
-    let mut lines = vec![line("/stop".to_owned(), "always")];
-    for device in ["follower", "leader"] {
-        for word in ["disable", "pause"] {
-            lines.push(line(format!("/{device}/{word}"), "always"));
-        }
-        for word in ["enable", "resume"] {
-            lines.push(line(format!("/{device}/{word}"), COMMANDS));
-        }
-    }
-    lines
+    state_services::offered().into_iter().map(line).collect()
 }
 
 #[derive(Debug, Serialize)]

@@ -56,15 +56,6 @@ impl Failure {
     }
 }
 
-/// How many of what: "1 row", "2 rows".
-pub fn counted(count: usize, one: &str) -> String {
-    match count {
-        1 => format!("1 {one}"),
-        count if one.ends_with("ch") => format!("{count} {one}es"),
-        count => format!("{count} {one}s"),
-    }
-}
-
 /// Prints `value` as one JSON value on stdout.
 ///
 /// # Errors
@@ -85,16 +76,4 @@ pub fn print_json_line(value: &impl Serialize) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
     serde_json::to_writer(&mut stdout, value).map_err(Failure::failed)?;
     writeln!(stdout).map_err(Failure::failed)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_is_not_many() {
-        assert_eq!(counted(1, "episode"), "1 episode");
-        assert_eq!(counted(0, "episode"), "0 episodes");
-        assert_eq!(counted(2, "stretch"), "2 stretches");
-    }
 }

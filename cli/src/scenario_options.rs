@@ -3,6 +3,7 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::{Args, builder::RangedI64ValueParser};
+use ferntast_bus::dds::MAX_DOMAIN;
 use ferntast_config::{ARM, Changes, HandSource, LINK, Loaded, Middleware, SCENARIO};
 use ferntast_control::codec::Codec;
 use ferntast_drivers::{Choice, UnknownDriver, simulated};
@@ -205,12 +206,9 @@ pub fn check_twins(experiments: &[PathBuf], joints: JointNames) -> Result<(), Fa
         .map_err(Failure::refused)
 }
 
-/// The last ROS domain.
-const LAST_DOMAIN: u32 = 232;
-
 /// Takes what is a ROS domain.
 pub fn domains() -> RangedI64ValueParser<u32> {
-    clap::value_parser!(u32).range(..=i64::from(LAST_DOMAIN))
+    clap::value_parser!(u32).range(..=i64::from(MAX_DOMAIN))
 }
 
 /// The ROS domain that the environment asks for.
@@ -223,9 +221,9 @@ pub fn domain_of_environment() -> Result<Option<u32>, Failure> {
         Err(_) => Ok(None),
         Ok(text) if text.trim().is_empty() => Ok(None),
         Ok(text) => match text.trim().parse() {
-            Ok(domain) if domain <= LAST_DOMAIN => Ok(Some(domain)),
+            Ok(domain) if domain <= MAX_DOMAIN => Ok(Some(domain)),
             _ => Err(Failure::refused(format!(
-                "ROS_DOMAIN_ID is {text:?}, which is no ROS domain; set it to 0 … {LAST_DOMAIN} or unset it"
+                "ROS_DOMAIN_ID is {text:?}, which is no ROS domain; set it to 0 … {MAX_DOMAIN} or unset it"
             ))),
         },
     }

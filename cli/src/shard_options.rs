@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use ferntast_msgs::counted;
 use ferntast_studies::shard::{Answers, Part, Shard, Study};
 
-use super::{Failure, output::counted};
+use super::Failure;
 
 /// Which part of the work this is.
 #[derive(Debug, clap::Args)]

@@ -23,6 +23,13 @@ impl HaplyConfig {
         Axes::named(&self.axes)
     }
 
+    /// Where a WebSocket service of that URL listens: the `HOST:PORT` of `ws://HOST:PORT/…`; `None` of
+    /// another kind of URL.
+    pub fn address_of(url: &str) -> Option<&str> {
+        let place = url.strip_prefix("ws://")?;
+        Some(place.split('/').next().unwrap_or(place))
+    }
+
     fn axes_turn(&self) -> Result<(), ParameterError> {
         Axes::check(&self.axes)
     }

@@ -3,6 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use ferntast_msgs::counted;
+
 use super::host::Host;
 use super::network_table::processes;
 use super::options::DoctorOptions;
@@ -76,10 +78,7 @@ pub(super) fn check(host: &dyn Host, options: &DoctorOptions) -> Check {
         .iter()
         .map(|(session, own)| removal(prefix, session, own))
         .collect();
-    let count = match files.len() {
-        1 => "1 file".to_owned(),
-        count => format!("{count} files"),
-    };
+    let count = counted(files.len(), "file");
     check.warn(
         &format!(
             "{count} of dead sessions: {}{unseen}",

@@ -27,5 +27,5 @@ pub mod topics;
 
 pub use layout::Sample;
 pub use message::{InvalidMessage, Message, RosMessage};
-pub use text::Text;
+pub use text::{Text, counted};
 pub use time::Time;

@@ -1,6 +1,16 @@
-//! Short texts of fixed size.
+//! Short texts of fixed size, and counts in words.
 
 use std::fmt;
+
+/// How many of what: "1 row", "2 rows", "2 stretches".
+pub fn counted<N: fmt::Display + PartialEq + From<u8>>(count: N, one: &str) -> String {
+    let more = match (count == N::from(1), one.ends_with("ch")) {
+        (true, _) => "",
+        (false, true) => "es",
+        (false, false) => "s",
+    };
+    format!("{count} {one}{more}")
+}
 
 /// A UTF-8 text of at most `N` bytes that lives in place, for samples that
 /// cross shared memory. Longer texts are cut at a character boundary; bytes
@@ -133,6 +143,13 @@ impl<const N: usize> fmt::Display for Text<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_is_not_many() {
+        assert_eq!(counted(1_usize, "episode"), "1 episode");
+        assert_eq!(counted(0_usize, "episode"), "0 episodes");
+        assert_eq!(counted(2_u64, "stretch"), "2 stretches");
+    }
 
     #[test]
     fn plain_texts_are_ascii_and_then_zeros() {

@@ -34,7 +34,7 @@ use crate::{
 };
 
 /// Highest domain for which DDS has port numbers.
-const MAX_DOMAIN: u32 = 232;
+pub const MAX_DOMAIN: u32 = 232;
 /// Longest queue of a subscriber.
 const MAX_QUEUE: usize = 1024;
 

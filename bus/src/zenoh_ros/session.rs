@@ -14,10 +14,8 @@ use hiroz::{
 use zenoh::Wait;
 
 use super::{ZenohConfig, ZenohMode, router};
-use crate::{endpoint, error::OpenError, zenoh_words::words};
+use crate::{dds::MAX_DOMAIN, endpoint, error::OpenError, zenoh_words::words};
 
-/// Highest ROS domain.
-const MAX_DOMAIN: u32 = 232;
 /// How long the router may take to answer.
 const ROUTER_WAIT: Duration = Duration::from_secs(3);
 

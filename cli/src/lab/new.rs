@@ -13,12 +13,10 @@ use ferntast_lab::{
     guess::Role,
     work::{Made, NewError, OfArm, Request, Said, make},
 };
+use ferntast_msgs::counted;
 
 use super::{
-    super::{
-        Failure,
-        output::{counted, print_json},
-    },
+    super::{Failure, output::print_json},
     table::significant,
 };
 

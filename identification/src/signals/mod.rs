@@ -163,15 +163,17 @@ impl Signals {
         };
         self.points = Arc::new(self.points.iter().enumerate().map(derived).collect());
         let points = &self.points;
-        let reach = filters.column_reach();
-        let last = points.len().saturating_sub(reach + lost);
+        let samples = points.len().saturating_sub(lost);
+        let reach = match &filters.stated {
+            // Derived twice, the acceleration looks furthest.
+            Some(_) => StatedFilter::reach(&curvature, &self.column),
+            None => filters.column_reach(),
+        };
         self.all_rows = match &filters.stated {
-            Some(filter) => {
-                // Derived twice, the acceleration looks furthest.
-                let reach = StatedFilter::reach(&curvature, &self.column);
-                filter.rows(points.len().saturating_sub(lost), reach)
-            }
-            None => (reach..last).step_by(filters.stride.max(1)).collect(),
+            Some(filter) => filter.rows(samples, reach),
+            None => (reach..samples.saturating_sub(reach))
+                .step_by(filters.stride.max(1))
+                .collect(),
         };
         let mut sliding = Sliding::default();
         let slides: Vec<bool> = points

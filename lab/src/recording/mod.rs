@@ -33,6 +33,7 @@ mod tally;
 use std::path::{Path, PathBuf};
 
 use ferntast_identification::{Dataset, RecordedSession};
+use ferntast_msgs::counted;
 
 use crate::{experiment::Experiment, table::Format};
 
@@ -225,10 +226,7 @@ fn read_file(
             "{}: {} samples left out, in {} of fewer than {} without a gap",
             path.display(),
             tally.in_short_stretches,
-            match tally.short_stretches {
-                1 => "1 stretch".to_owned(),
-                count => format!("{count} stretches"),
-            },
+            counted(tally.short_stretches, "stretch"),
             align::SHORTEST
         ));
     }

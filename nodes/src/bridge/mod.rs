@@ -9,4 +9,4 @@ pub mod gateway;
 pub mod others;
 pub mod player;
 pub mod recorder;
-mod state_services;
+pub mod state_services;

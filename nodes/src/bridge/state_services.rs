@@ -27,6 +27,31 @@ const WORDS: [(StateCommand, OperatingState); 4] = [
     (StateCommand::RESUME, OperatingState::ENABLED),
 ];
 
+/// Disables both devices.
+const STOP: &str = "/stop";
+/// Those that take words.
+const DEVICES: [&str; 2] = ["follower", "leader"];
+
+/// Whether everybody may say a word.
+fn is_stop(word: StateCommand) -> bool {
+    matches!(word, StateCommand::DISABLE | StateCommand::PAUSE)
+}
+
+fn name_of(device: &str, word: StateCommand) -> String {
+    format!("/{device}/{}", word.name().unwrap_or_default())
+}
+
+/// Names of the services, and whether everybody may call them.
+pub fn offered() -> Vec<(String, bool)> {
+    let of_devices = DEVICES.into_iter().flat_map(|device| {
+        let words = WORDS.map(|(word, _)| (name_of(device, word), is_stop(word)));
+        let (open, others): (Vec<_>, Vec<_>) = words.into_iter().partition(|(_, open)| *open);
+        open.into_iter().chain(others)
+    });
+    let stop = (STOP.to_owned(), true);
+    std::iter::once(stop).chain(of_devices).collect()
+}
+
 /// A device that takes words.
 struct Device {
     name: &'static str,
@@ -108,13 +133,13 @@ impl StateServices {
         let devices = [
             Device::open(
                 bus,
-                "follower",
+                DEVICES[0],
                 topics::FOLLOWER_STATE_COMMAND,
                 topics::FOLLOWER_OPERATING_STATE,
             )?,
             Device::open(
                 bus,
-                "leader",
+                DEVICES[1],
                 topics::LEADER_STATE_COMMAND,
                 topics::LEADER_OPERATING_STATE,
             )?,
@@ -133,12 +158,12 @@ impl StateServices {
         };
         for (place, device) in devices.iter().enumerate() {
             for (word, leads_to) in WORDS {
-                let name = format!("/{}/{}", device.name, word.name().unwrap_or_default());
+                let name = name_of(device.name, word);
                 offer(&name, (word, leads_to), place..place + 1)?;
             }
         }
         let stop = (StateCommand::DISABLE, OperatingState::DISABLED);
-        offer("/stop", stop, 0..devices.len())?;
+        offer(STOP, stop, 0..devices.len())?;
         Ok(StateServices {
             devices,
             offers,
@@ -162,9 +187,8 @@ impl StateServices {
 impl Offer {
     fn round(&mut self, now: Time, devices: &mut [Device], commands: bool) {
         let devices = devices.get_mut(self.devices.clone()).unwrap_or_default();
-        let is_stop = matches!(self.word, StateCommand::DISABLE | StateCommand::PAUSE);
         while let Some(call) = self.service.call() {
-            if !commands && !is_stop {
+            if !commands && !is_stop(self.word) {
                 let why = "peers on ROS 2 may pause, disable and stop only; begin the session with --ros-commands, \
                      or say it on the page or by ferntast state";
                 self.service.answer(call, false, why);

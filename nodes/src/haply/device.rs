@@ -6,6 +6,7 @@ use std::{
     time::Duration,
 };
 
+use ferntast_config::HaplyConfig;
 use tungstenite::{Error, Message, WebSocket};
 
 use super::message::{self, FrameError, Heard};
@@ -40,10 +41,8 @@ impl Device {
             url: url.to_owned(),
             reason,
         };
-        let place = url
-            .strip_prefix("ws://")
+        let place = HaplyConfig::address_of(url)
             .ok_or_else(|| refused("the address is no ws://HOST:PORT".to_owned()))?;
-        let place = place.split('/').next().unwrap_or(place);
         let all = place
             .to_socket_addrs()
             .map_err(|error| refused(error.to_string()))?;

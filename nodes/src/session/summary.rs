@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt};
 
+use ferntast_msgs::counted;
 use serde::Serialize;
 
 use super::state_times::StateTime;
@@ -215,14 +216,9 @@ impl fmt::Display for Summary {
         )?;
         writeln!(
             f,
-            "servo     {} Hz, {} {} missed",
+            "servo     {} Hz, {} missed",
             number(self.servo.rate_hz, 1),
-            self.servo.missed,
-            if self.servo.missed == 1 {
-                "deadline"
-            } else {
-                "deadlines"
-            }
+            counted(self.servo.missed, "deadline")
         )?;
         writeln!(
             f,

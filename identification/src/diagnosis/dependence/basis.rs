@@ -102,11 +102,14 @@ impl Channel {
 /// broadly than what is fitted. (A contact has no acceleration in its model.)
 fn channels(prepared: &PreparedModel) -> Vec<Channel> {
     let facts = &prepared.facts;
-    let filters = prepared.filters;
     let is_contact = facts.joint.is_contact();
+    let sessions = prepared.sessions.iter();
+    let kernels: Vec<[Kernel; 2]> = sessions
+        .map(|s| prepared.filters.broad_kernels(s.period))
+        .collect();
     let broad = |name: &str, value: &dyn Fn(&Signals, &[Kernel; 2]) -> Vec<f64>| {
-        let own = |s: &Signals| value(s, &filters.broad_kernels(s.period));
-        let values = prepared.sessions.iter().map(own).collect();
+        let sessions = prepared.sessions.iter().zip(&kernels);
+        let values = sessions.map(|(s, kernels)| value(s, kernels)).collect();
         Channel::new(facts.joint.signal(name), false, values)
     };
     let collect = |name: &str, slow: bool, value: &dyn Fn(&Signals, usize) -> f64| {

@@ -8,6 +8,7 @@ use std::{
 use ferntast_identification::Dataset;
 
 use super::{super::Opened, TrendError};
+use crate::experiment::Experiment;
 
 /// A pause \[s\] between sessions after which another date begins.
 const ANOTHER_DATE: f64 = 12.0 * 3600.0;
@@ -22,7 +23,7 @@ pub(super) struct Part<'a> {
 
 /// Whole experiments as parts.
 pub(super) fn whole<'a>(all: &[&'a Opened]) -> Vec<Part<'a>> {
-    let paths: Vec<&Path> = all.iter().map(|own| path_of(own)).collect();
+    let paths: Vec<&Path> = all.iter().map(|own| path_of(&own.experiment)).collect();
     let parts = all.iter().zip(told_apart(&paths));
     let part = parts.map(|(opened, name)| Part {
         name,
@@ -33,8 +34,8 @@ pub(super) fn whole<'a>(all: &[&'a Opened]) -> Vec<Part<'a>> {
     part.collect()
 }
 
-fn path_of(opened: &Opened) -> &Path {
-    let own = &opened.experiment;
+/// The experiment file, else the recording; of neither its title.
+pub(super) fn path_of(own: &Experiment) -> &Path {
     let path = own.path.as_ref().or(own.recordings.first());
     path.map_or(Path::new(&own.title), PathBuf::as_path)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use ferntast_identification::JointType;
 
-use super::{super::Opened, Part, Point, TrendError};
+use super::{super::Opened, Part, Point, TrendError, parts::path_of};
 use crate::experiment::Experiment;
 
 /// What a file's numbers are in.
@@ -62,11 +62,7 @@ pub(super) fn of_parameters(parts: &[Part<'_>], points: &[Point]) -> Result<(), 
 
 impl UnitIn {
     fn of(experiment: &Experiment, unit: String) -> UnitIn {
-        let path = experiment.path.as_ref().or(experiment.recordings.first());
-        let file = path.map_or_else(
-            || experiment.title.clone(),
-            |path| path.display().to_string(),
-        );
+        let file = path_of(experiment).display().to_string();
         UnitIn { file, unit }
     }
 }
