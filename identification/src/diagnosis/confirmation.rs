@@ -4,7 +4,8 @@
 //! the same position can tell some of it on rows left out, too: a delay, as it filters once more, and
 //! a map over acceleration, or over a load that is modelled by it. The noise of q̈ falls with the
 //! cut-off to the power of 5 in square, what is there in the motion hardly falls: so these count
-//! only where they are found at half the cut-off, too.
+//! only where they are found at half the cut-off, too. The same goes for formulas over such signals
+//! (`discovery::slower`).
 
 use std::ops::Range;
 
@@ -16,8 +17,8 @@ use crate::design::PreparedModel;
 use crate::effects::CHANNEL_DELAY;
 use crate::preparation::Filtered;
 
-/// How much slower the other filter is.
-const FACTOR: f64 = 0.5;
+/// The cut-off of the slower filter, as a ratio to that of the other.
+pub(crate) const FACTOR: f64 = 0.5;
 /// Probability of finding there by chance what was found before.
 const SIGNIFICANCE: f64 = 0.05;
 /// Ratio of two coefficients that are the same.
@@ -46,7 +47,7 @@ impl Confirmation {
         maps: &[Dependence],
     ) -> Confirmation {
         let mut own = Confirmation {
-            signals: signals(prepared),
+            signals: noisy_signals(prepared),
             slower: None,
         };
         let doubtful = passing.iter().any(is_doubtful) || maps.iter().any(|map| own.doubts(map));
@@ -95,8 +96,8 @@ impl Confirmation {
     }
 }
 
-/// Signals that have noise of the acceleration.
-fn signals(prepared: &PreparedModel) -> Vec<String> {
+/// Names of the signals that have noise of the acceleration, as results name them.
+pub(crate) fn noisy_signals(prepared: &PreparedModel) -> Vec<String> {
     let facts = &prepared.facts;
     let modelled: &[&str] = match facts.joint_torque {
         true => &[],

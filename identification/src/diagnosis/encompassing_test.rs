@@ -10,7 +10,7 @@ use crate::effects::{Effect, EffectDescription, EffectHandle, MAX_COLUMNS, Memor
 use crate::validation::beside;
 
 /// An effect adds to a rival if the p-value of its coefficients beside it is below this …
-const MAX_P_VALUE_ADDING: f64 = 1e-4;
+pub(super) const MAX_P_VALUE_ADDING: f64 = 1e-4;
 /// … and adds nothing if it is above this.
 pub(super) const MIN_P_VALUE_REDUNDANT: f64 = 0.01;
 
@@ -41,7 +41,7 @@ impl Effect for SingleColumn {
 pub(super) type BySession = Vec<Vec<Vec<f64>>>;
 
 /// p-value of the coefficients of `effect` in a model that has `first`, too.
-fn p_value_beside(
+pub(super) fn p_value_beside(
     prepared: &PreparedModel,
     design: &Design,
     first: &Candidate,

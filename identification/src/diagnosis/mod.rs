@@ -1,17 +1,19 @@
 //! Which effect is missing, if any.
 //!
-//! Every effect that the model lacks is a candidate (`candidates`). Of those that
-//! pass the tests (`verdict`) and lower the error that is reported (`acceptance`), the simplest of the equivalent ones comes first
-//! (`equivalents`), after pairs that are easily confused have been decided: by the
-//! rows at reversals, by the sensor's zero, by an encompassing test (`examination`). What noise of
-//! the acceleration may look like has to be there with a slower filter, too (`confirmation`).
-//! The same at other cut-offs tells what the filter has to do with it (`other_cutoffs`).
+//! Every effect that the model lacks is a candidate (`candidates`). Of those that pass the tests
+//! (`verdict`) and lower the error that is reported (`acceptance`), the simplest of the equivalent
+//! ones comes first (`equivalents`), after pairs that are easily confused have been decided: by the
+//! rows at reversals, by the sensor's zero, by what large torques have in common
+//! (`beyond_a_limit`), by an encompassing test (`examination`). What noise of the acceleration may
+//! look like has to be there with a slower filter, too (`confirmation`). The same at other cut-offs
+//! tells what the filter has to do with it (`other_cutoffs`).
 
 mod acceptance;
 mod at_reversals;
 mod backlash_or_presliding;
+mod beyond_a_limit;
 mod candidates;
-mod confirmation;
+pub(crate) mod confirmation;
 pub mod dependence;
 mod encompassing_test;
 mod equivalents;

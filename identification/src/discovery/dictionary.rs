@@ -233,6 +233,9 @@ impl Dictionary {
     }
 
     fn push(&mut self, rows: &Rows, term: Term, factors: &[&[f64]]) {
+        if term.is_inertia() {
+            return;
+        }
         let Some(column) = rows.column(factors) else {
             return;
         };

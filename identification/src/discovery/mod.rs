@@ -8,7 +8,8 @@
 //! functions, as long as they explain more than chance does in the same search
 //! (`search`, `significance`). What is found is printed (`term`), and judged as it is
 //! printed: by the model with that very text, on rows left out, with shared
-//! parameters (`proposals`), as when it is added.
+//! parameters (`proposals`), as when it is added. What reads signals that have noise of the
+//! acceleration has to be there with a slower filter, too (`slower`).
 
 mod constants;
 mod dictionary;
@@ -20,6 +21,7 @@ mod rows;
 mod search;
 mod shape;
 mod significance;
+mod slower;
 mod state;
 mod term;
 
@@ -71,13 +73,7 @@ pub fn discover(
         progress(0.4 + 0.4 * done);
     });
     let base = fit(&prepared, &design);
-    let judge = Judge {
-        filtered: &filtered,
-        spec,
-        prepared: &prepared,
-        base: &base,
-        rows: &rows,
-    };
+    let judge = Judge::new(&filtered, spec, (&prepared, &base), &rows);
     discovery.tried = dictionary.terms.len();
     discovery.formulas = judge.best(found, diagnosis.candidates.first(), &mut |done| {
         progress(0.8 + 0.2 * done);

@@ -1,6 +1,7 @@
 //! Which of the formulas found are proposed: judged as they are printed, on rows left
 //! out with shared parameters.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use ferntast_model::friction::Proposal;
@@ -10,14 +11,16 @@ use super::map::draw;
 use super::results::Formula;
 use super::rows::{Kind, Rows};
 use super::search::SIGNIFICANCE;
+use super::slower::Slower;
 use super::state::State;
 use super::term::{
-    Signal, Term as FormulaTerm, coefficient_names, constant, constant_names, constants, rounded,
-    set, text,
+    SUM, Signal, Term as FormulaTerm, coefficient_names, constant, constant_names, constants,
+    in_products, rounded, set,
 };
 use crate::data::{CustomEffect, ModelSpec, Subject, Term};
 use crate::design::{Design, PreparedModel};
 use crate::diagnosis::NamedCandidate;
+use crate::diagnosis::confirmation::noisy_signals;
 use crate::fit::addition::{Addition, add_to};
 use crate::fit::{Fit, Parameter};
 use crate::numerics::statistics::f_tail;
@@ -45,11 +48,13 @@ const NAME: &str = "formula";
 
 /// What formulas are judged by.
 pub(super) struct Judge<'a> {
-    pub(super) filtered: &'a Filtered<'a>,
-    pub(super) spec: &'a ModelSpec,
-    pub(super) prepared: &'a PreparedModel,
-    pub(super) base: &'a Fit,
-    pub(super) rows: &'a Rows,
+    filtered: &'a Filtered<'a>,
+    spec: &'a ModelSpec,
+    prepared: &'a PreparedModel,
+    base: &'a Fit,
+    rows: &'a Rows,
+    /// Made where a formula is in doubt.
+    slower: OnceCell<Slower<'a>>,
 }
 
 /// A formula as it is printed, in the model.
@@ -59,7 +64,24 @@ struct Judged {
     signals: Vec<usize>,
 }
 
-impl Judge<'_> {
+impl<'a> Judge<'a> {
+    /// By the model `spec`, bound as `prepared` and fitted as `base`, on `rows` of it.
+    pub(super) fn new(
+        filtered: &'a Filtered<'a>,
+        spec: &'a ModelSpec,
+        (prepared, base): (&'a PreparedModel, &'a Fit),
+        rows: &'a Rows,
+    ) -> Self {
+        Self {
+            filtered,
+            spec,
+            prepared,
+            base,
+            rows,
+            slower: OnceCell::new(),
+        }
+    }
+
     /// The formulas to propose, best first; where an effect is `named`, those that are
     /// certainly better than it.
     pub(super) fn best(
@@ -121,14 +143,14 @@ impl Judge<'_> {
         }
         let coefficients = coefficient_names(terms.len(), &signals);
         let names = constant_names(&terms, &signals);
-        let expression = text(&terms, &signals, &coefficients, &texts);
+        let products = in_products(&terms, &signals, &coefficients, &texts);
         let name = self.free_name();
-        let effect = Term::Custom(CustomEffect {
+        let effect = CustomEffect {
             name: name.clone(),
-            expression: expression.clone(),
+            expression: products.join(SUM),
             bounds: BTreeMap::new(),
-        });
-        let (addition, left_out) = self.with(&effect)?;
+        };
+        let (addition, left_out) = self.with(&Term::Custom(effect.clone()))?;
         let decrease = addition.decrease;
         let share = decrease.mean_square / decrease.before.powi(2).max(1e-300);
         let mut parameters = BTreeMap::new();
@@ -167,8 +189,8 @@ impl Judge<'_> {
         let named = read.iter().filter_map(|at| signals.get(*at));
         let formula = Formula {
             name,
-            form: text(&terms, &signals, &coefficients, &names),
-            expression,
+            form: in_products(&terms, &signals, &coefficients, &names).join(SUM),
+            expression: effect.expression.clone(),
             parameters,
             signals: named.map(|own| own.of_results.clone()).collect(),
             held_out_before: addition.held_out_before,
@@ -190,10 +212,50 @@ impl Judge<'_> {
         };
         let is_certain = addition.lowers_error && holds && share > MIN_SHARE;
         let is_certain = is_certain && state.p_value <= SIGNIFICANCE;
+        let each: Vec<_> = products.into_iter().zip(&terms).collect();
+        let is_certain = is_certain && self.is_no_noise(&effect, &each, &left_out);
         is_certain.then_some(Judged {
             formula,
             left_out,
             signals: read,
+        })
+    }
+
+    /// Whether the terms over signals that have noise of the acceleration explain something with a slower
+    /// filter, too. `formula` is the sum of `products`, each with its term, and leaves `left_out`.
+    fn is_no_noise(
+        &self,
+        formula: &CustomEffect,
+        products: &[(String, &FormulaTerm)],
+        left_out: &LeftOut,
+    ) -> bool {
+        let noisy = noisy_signals(self.prepared);
+        let signals = self.rows.signals();
+        let is_doubtful = |term: &FormulaTerm| {
+            let mut own = term.signals().filter_map(|at| signals.get(at));
+            own.any(|own| noisy.contains(&own.of_results))
+        };
+        let rest: Vec<&str> = (products.iter())
+            .filter(|(_, term)| !is_doubtful(term))
+            .map(|(product, _)| product.as_str())
+            .collect();
+        if rest.len() == products.len() {
+            return true;
+        }
+        let rest = (!rest.is_empty()).then(|| {
+            Term::Custom(CustomEffect {
+                expression: rest.join(SUM),
+                ..formula.clone()
+            })
+        });
+        let before = match &rest {
+            Some(rest) => self.with(rest).map(|(_, left_out)| left_out),
+            None => Some(self.base.left_out.clone()),
+        };
+        let slower = (self.slower).get_or_init(|| Slower::new(self.filtered, self.spec));
+        before.is_some_and(|before| {
+            let here = left_out.decrease_from(&before);
+            slower.confirms(&Term::Custom(formula.clone()), rest.as_ref(), here)
         })
     }
 

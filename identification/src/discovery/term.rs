@@ -69,6 +69,12 @@ impl Term {
         direction.into_iter().chain(factors)
     }
 
+    /// Whether it is J q̈, which every model has: filtered once more it is less noisy, and no law.
+    pub(super) fn is_inertia(&self) -> bool {
+        let is_plain = |own: &Factor| own.signal == ACCELERATION && own.shape == Shape::Linear;
+        !self.direction && self.factors.len() == 1 && self.factors.iter().all(is_plain)
+    }
+
     /// Unit of its coefficient.
     pub(super) fn unit(&self, signals: &[Signal]) -> Dimension {
         let mut unit = Dimension::force();
@@ -83,6 +89,8 @@ impl Term {
 
 /// Number of the velocity among the signals.
 pub(super) const VELOCITY: usize = 1;
+/// The same of the acceleration.
+pub(super) const ACCELERATION: usize = 2;
 
 /// All constants of `terms` that are not coefficients.
 pub(super) fn constants(terms: &[Term]) -> Vec<At> {
@@ -162,14 +170,17 @@ pub(super) fn constant_names(terms: &[Term], signals: &[Signal]) -> Vec<String> 
     each.collect()
 }
 
-/// A formula as the lab reads it: with the `texts` of its constants, in the order
-/// of [`constants`].
-pub(super) fn text(
+/// What stands between the products of a formula.
+pub(super) const SUM: &str = " + ";
+
+/// The products that a formula is the sum of, as the lab reads them: with the `texts` of its
+/// constants, in the order of [`constants`].
+pub(super) fn in_products(
     terms: &[Term],
     signals: &[Signal],
     coefficients: &[String],
     texts: &[String],
-) -> String {
+) -> Vec<String> {
     let order = constants(terms);
     let name = |signal: usize| signals.get(signal).map_or("", |own| own.name.as_str());
     let of = |wanted: At| Constant {
@@ -194,7 +205,7 @@ pub(super) fn text(
         }
         product
     });
-    each.collect::<Vec<_>>().join(" + ")
+    each.collect()
 }
 
 /// `value` with `digits` significant digits, and the number that this text is.
@@ -253,7 +264,7 @@ mod tests {
                 .into_iter()
                 .map(|at| format!("{}", constant(&terms, at)))
                 .collect();
-            let printed = text(&terms, &signals, &names, &texts);
+            let printed = in_products(&terms, &signals, &names, &texts).join(SUM);
             let weights = [0.7, -1.3, 2.1];
             let value = |name: &str| match name {
                 "q" => x[0],
@@ -306,7 +317,7 @@ mod tests {
         assert_eq!(names, ["q_0", "q_s", "q_0_2", "q_s_2"]);
         let texts = ["-0.2", "0.1", "-0.2", "0.1"].map(str::to_owned);
         assert_eq!(
-            text(&terms[..1], &all, &["k1".to_owned()], &texts),
+            in_products(&terms[..1], &all, &["k1".to_owned()], &texts).join(SUM),
             "k1*tanh((q + 0.2)/0.1)"
         );
     }

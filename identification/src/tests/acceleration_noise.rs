@@ -4,13 +4,14 @@ use std::f64::consts::TAU;
 
 use super::recordings::{self, model};
 use crate::data::{Dataset, Inertia, ModelSpec, RecordedSession};
-use crate::{Diagnosis, Verdict, diagnose};
+use crate::{Diagnosis, Verdict, diagnose, discover};
 
 const RATE: f64 = 500.0;
 
-/// 0.3 kg m² with Coulomb friction of 1 Nm and viscous friction of 0.5 Nm s in smooth motion, on an
-/// encoder of so many bits a turn; the torque is told `late` \[samples\].
-fn session(seed: u64, bits: i32, late: usize) -> RecordedSession {
+/// 0.3 kg m² with Coulomb friction of 1 Nm, which grows with the position by `slope` \[Nm/rad\], and
+/// viscous friction of 0.5 Nm s in smooth motion, on an encoder of so many bits a turn; the torque is
+/// told `late` \[samples\].
+fn session(seed: u64, bits: i32, late: usize, slope: f64) -> RecordedSession {
     let mut draw = recordings::noise(2 * seed + 1);
     let mut phases = [0.0; 3];
     phases.fill_with(|| TAU * draw());
@@ -35,25 +36,32 @@ fn session(seed: u64, bits: i32, late: usize) -> RecordedSession {
             })
         };
         let [q, ..] = at_time(at as f64 / RATE);
-        let [_, qd, qdd] = at_time((at as f64 - late as f64) / RATE);
         session.position.push((q / step).round() * step);
-        let torque = 0.3 * qdd + qd.signum() + 0.5 * qd;
+        let [q, qd, qdd] = at_time((at as f64 - late as f64) / RATE);
+        let torque = 0.3 * qdd + (1.0 + slope * q) * qd.signum() + 0.5 * qd;
         session.motor_torque.push(torque + 0.02 * draw());
     }
     session
 }
 
-fn asked(seed: u64, bits: i32, late: usize) -> Diagnosis {
-    let sessions = (0..4).map(|own| session(10 * seed + own, bits, late));
-    let data = Dataset {
+fn recording(seed: u64, bits: i32, late: usize, slope: f64) -> Dataset {
+    let sessions = (0..4).map(|own| session(10 * seed + own, bits, late, slope));
+    Dataset {
         sessions: sessions.collect(),
         ..Dataset::default()
-    };
-    let believed = ModelSpec {
+    }
+}
+
+fn believed() -> ModelSpec {
+    ModelSpec {
         inertia: Inertia::Fit,
         ..model(&["coulomb", "viscous"])
-    };
-    diagnose(&data, &believed, &mut |_| ()).unwrap()
+    }
+}
+
+fn asked(seed: u64, bits: i32, late: usize) -> Diagnosis {
+    let data = recording(seed, bits, late, 0.0);
+    diagnose(&data, &believed(), &mut |_| ()).unwrap()
 }
 
 #[test]
@@ -86,6 +94,22 @@ fn a_torque_that_is_late_is_named_on_a_coarse_encoder() {
         assert!(
             (delay.value - 0.010).abs() < 0.001,
             "{bits} bits: {delay:?}"
+        );
+    }
+}
+
+#[test]
+fn a_formula_has_no_term_for_it() {
+    for bits in [14, 16] {
+        let data = recording(3, bits, 0, 0.3);
+        let found = discover(&data, &believed(), 1, &mut |_| ()).unwrap();
+        let first = found.formulas.first().expect("a formula");
+        assert_eq!(first.expression, "c1*sign(qd)*q", "{bits} bits: {first:#?}");
+        let slope = &first.parameters["c1"];
+        let error = slope.std_error.expect("an error");
+        assert!(
+            (slope.value - 0.3).abs() < 4.0 * error && error < 0.02,
+            "{bits} bits: {slope:?}"
         );
     }
 }

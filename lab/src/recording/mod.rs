@@ -82,6 +82,7 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
     }
     let mut clock = Clock::default();
     let mut tallies = Vec::new();
+    plausible::check_names(experiment, &mut notes);
     let mut read = |paths: &[PathBuf]| -> Result<Vec<RecordedSession>, LoadError> {
         let mut sessions = Vec::new();
         for path in paths {

@@ -11,8 +11,8 @@ use crate::{
     unit::Unit,
 };
 
-/// Notes where a signal whose unit is not stated can hardly be in the unit that
-/// it is taken for.
+/// Notes where the numbers of a file whose unit is not stated can hardly be in the unit that
+/// they are taken for.
 pub(super) fn check(experiment: &Experiment, series: &[Series], notes: &mut Vec<String>) {
     let Some(position) = series.first() else {
         return;
@@ -45,6 +45,12 @@ pub(super) fn check(experiment: &Experiment, series: &[Series], notes: &mut Vec<
             ));
         }
     }
+    tell_offset(series, notes);
+}
+
+/// Notes where a signal is called as if it were in a unit other than that it is taken for.
+pub(super) fn check_names(experiment: &Experiment, notes: &mut Vec<String>) {
+    let signals = &experiment.signals;
     for (signal, path) in signals.named() {
         let (_, said) = unit_in_name(path);
         let Some(said) = said.filter(|_| signals.unit(signal).is_none()) else {
@@ -59,7 +65,6 @@ pub(super) fn check(experiment: &Experiment, series: &[Series], notes: &mut Vec<
             ));
         }
     }
-    tell_offset(series, notes);
 }
 
 /// Notes where signals of two files last equally long, but one begins later: then

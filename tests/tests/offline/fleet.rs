@@ -281,5 +281,9 @@ fn a_recording_with_a_twin_is_a_line_of_the_journal() {
         &["wrong.jsonl", "line 1", "\"robot\""],
     );
     refused(&session, &["fleet", "watch", "none.jsonl"], &["none.jsonl"]);
-    refused(&session, &["fleet", "watch"], &["<FILE|DIR>"]);
+    refused(
+        &session,
+        &["fleet", "watch"],
+        &["nothing to watch", "FILE or DIR"],
+    );
 }

@@ -330,6 +330,15 @@ fn real_recordings_are_identified() {
     // Filtered as a plain program would, the figures of an independent fit.
     let filtered = ferntast_tests::root().join("config/experiments/xl330_filtered.toml");
     let filtered = filtered.to_str().expect("a path in UTF-8");
+    let told = environment(&["lab", "diagnose", filtered, "--json"])
+        .success()
+        .json();
+    // A limit of torque lowers the error as much, on fewer samples, and adds nothing beside it.
+    assert_eq!(told["verdict"], "unexplained", "{told:#}");
+    assert_eq!(
+        told["helps_in_part"][0]["effect"], "load_coulomb",
+        "{told:#}"
+    );
     let add = |from: &str, effect: &str, to: &str| {
         environment(&["lab", "add", from, effect, "-o", to, "--json"])
             .success()
