@@ -5,8 +5,8 @@ use ferntast_msgs::{
     sample::{Fault, Faults, HealthSample, Level},
 };
 
-/// How often a node's health is published \[ns\].
-const PERIOD_NANOS: i64 = 100_000_000;
+/// How often a node's health is published \[ns\]: a sample has the faults since the one before.
+pub(crate) const HEALTH_PERIOD_NANOS: i64 = 100_000_000;
 /// Over how long rate and lateness are taken \[ns\].
 const WINDOW_NANOS: i64 = 1_000_000_000;
 
@@ -128,7 +128,7 @@ impl HealthMeter {
         if !self.is_due(now) {
             return None;
         }
-        self.next = now.plus_nanos(PERIOD_NANOS);
+        self.next = now.plus_nanos(HEALTH_PERIOD_NANOS);
         let sample = HealthSample {
             stamp: now,
             rate: self.rate,

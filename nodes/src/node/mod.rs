@@ -13,6 +13,7 @@ mod tests;
 
 pub use crate::{ports, topic_names};
 pub use fields::{Incoming, InputPort, Outgoing};
+pub(crate) use health::HEALTH_PERIOD_NANOS;
 pub use health::{HealthMeter, NodeHealth};
 pub use input::{BATCH, Batch, Newest};
 pub use input_watch::InputWatch;

@@ -5,6 +5,7 @@ mod felt_stiffness;
 mod host_resources;
 mod live;
 mod monitor;
+mod node_view;
 mod play;
 mod preflight;
 mod private_folder;

@@ -11,8 +11,8 @@ use ferntast_identification::numerics::statistics::quantile;
 use ferntast_msgs::{
     Message, Time,
     sample::{
-        AuthoritySample, ContactStateSample, Edge, Faults, FrictionStatusSample, HealthSample,
-        JointNames, LinkStatusSample, OperatingState, OperatingStateSample, RecorderCommandSample,
+        AuthoritySample, ContactStateSample, Edge, FrictionStatusSample, HealthSample, JointNames,
+        LinkStatusSample, OperatingState, OperatingStateSample, RecorderCommandSample,
         RecorderStatusSample, StateCommand, StateCommandSample, WrenchSample,
     },
     topics::{self, Topic},
@@ -24,57 +24,13 @@ use crate::{
     twin::{LastWords, TwinSummary},
 };
 
+use super::node_view::NodeView;
 use super::state_times::StateTimes;
 use super::summary::{
     ContactSummary, LeaderSummary, LinkSummary, NodeSummary, ServoSummary, StateSummary, TipSummary,
 };
 use super::thinned::Thinned;
 use super::touch::TouchMeter;
-
-/// A node that was not heard of for this long \[s\] is not alive.
-const ALIVE: f64 = 1.0;
-
-/// What is known of one node.
-#[derive(Debug, Default)]
-pub struct NodeView {
-    /// Its last word.
-    pub last: Option<HealthSample>,
-    /// Faults of the whole session.
-    pub faults: Faults,
-    /// Deadlines missed by earlier processes of the node.
-    missed_before: u64,
-    /// Messages lost by them.
-    lost_before: u64,
-}
-
-impl NodeView {
-    /// Whether it was heard of lately.
-    pub fn is_alive(&self, now: Time) -> bool {
-        self.last
-            .is_some_and(|health| now.seconds_since(health.stamp) < ALIVE)
-    }
-
-    fn note(&mut self, health: HealthSample) {
-        if let Some(last) = self.last
-            && last.process != health.process
-        {
-            self.missed_before += last.missed;
-            self.lost_before += last.lost;
-        }
-        self.faults.0 |= health.faults.0;
-        self.last = Some(health);
-    }
-
-    /// Deadlines missed since the start of the session.
-    pub fn missed(&self) -> u64 {
-        self.missed_before + self.last.map_or(0, |health| health.missed)
-    }
-
-    /// Messages lost since the start of the session.
-    pub fn lost(&self) -> u64 {
-        self.lost_before + self.last.map_or(0, |health| health.lost)
-    }
-}
 
 /// Watches the topics of a session.
 pub struct Monitor {
@@ -125,6 +81,8 @@ pub struct Monitor {
     refused_masters: u64,
     servo_rates: (f64, u64),
     updated: Time,
+    /// When what counts began.
+    begun: Option<Time>,
 }
 
 /// The operating states of one device.
@@ -201,6 +159,7 @@ impl Monitor {
             refused_masters: 0,
             servo_rates: (0.0, 0),
             updated: Time::INVALID,
+            begun: None,
         })
     }
 
@@ -237,7 +196,7 @@ impl Monitor {
             self.nodes
                 .entry(health.node.to_string())
                 .or_default()
-                .note(health);
+                .note(health, self.begun);
         }
         while let Some(received) = self.link.next(now) {
             let status = received.message;
@@ -347,6 +306,8 @@ impl Monitor {
         self.edges.clear();
         self.peak_hand_force = 0.0;
         self.servo_rates = (0.0, 0);
+        self.nodes.values_mut().for_each(NodeView::begin);
+        self.begun = Some(now);
     }
 
     /// The servo loop.

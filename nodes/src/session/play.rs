@@ -10,7 +10,9 @@ use ferntast_bus::{Bus, CreateError, SharedMemoryBus, SharedMemoryConfig};
 use ferntast_msgs::sample::JointNames;
 use serde::Serialize;
 
-use super::{Monitor, SessionError, Supervisor, host_resources::HostResources, monitor::NodeView};
+use super::{
+    Monitor, SessionError, Supervisor, host_resources::HostResources, node_view::NodeView,
+};
 use crate::{
     bridge::{
         others::{self, LeftOut, Sorted},

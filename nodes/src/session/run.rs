@@ -174,6 +174,11 @@ pub fn run(
     };
     drop((monitor, arming, teller, bus));
     let freed = resources.release();
+    if session.armed_at.is_none() {
+        // There is nothing to sum up.
+        outcome?;
+        outcome = Ok(());
+    }
     if outcome.is_ok() {
         outcome = match recording_faults {
             Some(faults) if !faults.is_empty() => Err(SessionError::Recording { faults }),
