@@ -4,7 +4,11 @@ use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_nodes::{
     graph::Graph,
-    process::{SessionContext, link_end, stop_on_signals},
+    process::{
+        End, SessionContext,
+        link_end::{self, LinkAccess},
+        stop_on_signals,
+    },
     session::{self, SessionOptions},
 };
 
@@ -25,7 +29,8 @@ use super::{
     ferntast session --scenario relay --law tdpa\n  \
     ferntast session --twin joint.toml         # and see where the lab's model fails while it moves\n  \
     ferntast session --middleware zenoh        # rmw_zenoh instead of DDS\n  \
-    ferntast session --foxglove                # watch in Foxglove or Lichtblick, ws://127.0.0.1:8765\n\n\
+    ferntast session --foxglove                # watch in Foxglove or Lichtblick, ws://127.0.0.1:8765\n  \
+    ferntast session --end arm --link-endpoint quic/ARM:7448   # the arm here, the hand elsewhere (docs/two_hosts.md)\n\n\
     While it runs: the page that it names, `ros2 topic list`, `ferntast state follower resume`
 (re-arm after a hold), `ferntast link law wave` (another delay law). Ctrl-C ends it cleanly; a second one, while it \
     ends, kills it at once, with exit code 130.")]
@@ -60,6 +65,12 @@ pub struct Arguments {
     #[command(flatten)]
     foxglove: FoxgloveOption,
 
+    /// Run one end of the link, the other end on another host (docs/two_hosts.md): `arm` has the arm, its
+    /// servo and its twins, `operator` the hand. Both take the same --session, --scenario, --arm and
+    /// --link-endpoint quic/HOST:PORT, HOST being the arm's.
+    #[arg(long, value_enum, value_name = "operator|arm")]
+    end: Option<EndOption>,
+
     /// Do not arm at the start: wait for `ferntast state follower enable` or a CRTK client.
     #[arg(long)]
     no_enable: bool,
@@ -69,6 +80,61 @@ pub struct Arguments {
     /// after a second, as long as nobody else stopped the arm or took the master and no node died.
     #[arg(long)]
     no_rearm: bool,
+}
+
+/// An end of the link, on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum EndOption {
+    /// With the hand
+    Operator,
+    /// With the arm
+    Arm,
+}
+
+impl EndOption {
+    fn end(self) -> End {
+        match self {
+            EndOption::Operator => End::Operator,
+            EndOption::Arm => End::Arm,
+        }
+    }
+}
+
+/// Refuses what only the other end has a use for.
+fn refuse_what_is_elsewhere(arguments: &Arguments) -> Result<(), Failure> {
+    let scenario = &arguments.scenario;
+    let (of_operator, of_arm) = (
+        [
+            ("--hand", scenario.hand.is_some()),
+            ("--arm-leader", scenario.arm_leader.is_some()),
+            ("--driver-leader", scenario.driver_leader.is_some()),
+            ("--link-peer", scenario.link_peer.is_some()),
+        ],
+        [
+            ("--driver", scenario.driver.is_some()),
+            ("--twin", !arguments.twin.is_empty()),
+        ],
+    );
+    let refused = |elsewhere: &[(&str, bool)], why: &str| {
+        let given = elsewhere.iter().find(|(_, given)| *given);
+        given.map_or(Ok(()), |(option, _)| {
+            Err(Failure::refused(format!("{option} {why}")))
+        })
+    };
+    match arguments.end {
+        Some(EndOption::Operator) => refused(
+            &of_arm,
+            "is of the arm's host: give it to 'session --end arm' there",
+        ),
+        Some(EndOption::Arm) => refused(
+            &of_operator,
+            "is of the operator's host: give it to 'session --end operator' there",
+        ),
+        None => refused(
+            &of_operator[3..],
+            "is of an end that runs alone: add --end operator, or leave it out",
+        ),
+    }
 }
 
 /// Runs it.
@@ -81,10 +147,23 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
         )));
     }
     let driver = arguments.scenario.driver();
+    let link_peer = arguments.scenario.link_peer.clone();
+    refuse_what_is_elsewhere(&arguments)?;
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.driver = driver;
-    context.link_access.secret = Some(link_end::draw_secret().map_err(Failure::failed)?);
+    context.end = arguments.end.map(EndOption::end);
+    context.link_access = match context.end {
+        // Both ends are here: what one of them knows the other does.
+        None => LinkAccess {
+            secret: Some(link_end::draw_secret().map_err(Failure::failed)?),
+            peer: None,
+        },
+        Some(_) => LinkAccess {
+            secret: None,
+            peer: link_peer,
+        },
+    };
     context.bag = arguments.record;
     let page = arguments.page.console()?;
     context.console = (!arguments.no_console).then_some(page);

@@ -5,7 +5,7 @@ use ferntast_nodes::{
     DrivenRows,
     graph::{Build, NodeRow},
     node::Ticking,
-    process::{NodeError, Priority},
+    process::{End, NodeError, Priority},
 };
 
 use crate::{
@@ -22,8 +22,10 @@ pub const fn rows() -> DrivenRows {
             "The simulated arm; hardware takes its place by speaking the same topics",
             Priority::Arm,
             arm,
-        ),
+        )
+        .at(End::Arm),
         leader: NodeRow {
+            end: Some(End::Operator),
             in_session: |session| session.loaded.scenario.hand.source == HandSource::Leader,
             ..NodeRow::step::<LeaderPorts>(
                 "leader",

@@ -21,7 +21,7 @@ use ferntast_config::HandSource;
 
 use bridge::{foxglove, gateway, player, recorder};
 use graph::{Graph, NodeRow, always, never};
-use process::Priority;
+use process::{End, Priority};
 
 /// The rows of nodes that have a driver, which nodes know nothing of.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +63,7 @@ pub fn session_graph(driven: DrivenRows) -> Graph {
             )
         },
         NodeRow {
+            end: Some(End::Operator),
             in_session: |session| session.loaded.scenario.hand.source == HandSource::Haply,
             ..NodeRow::service(
                 "haply",
@@ -77,20 +78,24 @@ pub fn session_graph(driven: DrivenRows) -> Graph {
             "The haptic master bridge",
             Priority::Master,
             master::make,
-        ),
+        )
+        .at(End::Operator),
         NodeRow::step::<link::LeaderLinkPorts>(
             link::LEADER,
             "The operator's end of the link",
             Priority::Link,
             link::make_leader,
-        ),
+        )
+        .at(End::Operator),
         NodeRow::step::<link::FollowerLinkPorts>(
             link::FOLLOWER,
             "The arm's end of the link",
             Priority::Link,
             link::make_follower,
-        ),
+        )
+        .at(End::Arm),
         NodeRow {
+            end: Some(End::Arm),
             in_replay: always,
             ..NodeRow::step::<servo::ServoPorts>(
                 "servo",
@@ -100,6 +105,7 @@ pub fn session_graph(driven: DrivenRows) -> Graph {
             )
         },
         NodeRow {
+            end: Some(End::Arm),
             in_playback: |session| session.play.estimate,
             in_replay: always,
             ..NodeRow::step::<estimator::EstimatorPorts>(
@@ -121,6 +127,7 @@ pub fn session_graph(driven: DrivenRows) -> Graph {
         },
         NodeRow {
             period_nanos: 10_000_000,
+            end: Some(End::Arm),
             in_session: |session| session.loaded.scenario.limits.is_some(),
             ..NodeRow::step::<limits::LimitsPorts>(
                 "limits",
@@ -130,6 +137,7 @@ pub fn session_graph(driven: DrivenRows) -> Graph {
             )
         },
         NodeRow {
+            end: Some(End::Arm),
             in_session: |session| !session.twins.is_empty(),
             in_playback: |session| !session.twins.is_empty(),
             in_replay: |session| !session.twins.is_empty(),

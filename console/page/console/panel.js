@@ -173,13 +173,14 @@ export function slow(snapshot) {
   const chips = JSON.stringify([state, leader, link?.connected, session.connected, holder(snapshot), snapshot.contact.on, snapshot.contact.edge, recorder.on]);
   if (chips !== chipsShown) {
     chipsShown = chips;
-    fill(byId("status"),
-      session.connected ? null : chip("bad", "page", "no connection"),
+    // What was so when the connection was lost may be otherwise now.
+    fill(byId("status"), ...(session.connected ? [
       chip(TONE[state], "arm", state), chip(TONE[leader], "master", leader),
       chip(link?.connected ? "good" : "bad", "link", link?.connected ? "up" : "down"),
       chip(snapshot.contact.on ? "warn" : "", "contact", snapshot.contact.on ? snapshot.contact.edge : "free"),
       chip("", "hand", holder(snapshot)),
-      recorder.on ? chip("bad", "rec", "on") : null);
+      recorder.on ? chip("bad", "rec", "on") : null,
+    ] : [chip("bad", "page", "no connection")]));
   }
   log.show(session.events);
   if (parts.nodes.parentElement.open) {

@@ -8,7 +8,7 @@ use ferntast_msgs::{
 use super::Build;
 use crate::{
     node::{Ports, Ticking},
-    process::{NodeError, Priority, ProcessContext, SessionContext},
+    process::{End, NodeError, Priority, ProcessContext, SessionContext},
 };
 
 /// Period of the servo loops, and least period of virtual time \[ns\].
@@ -38,6 +38,8 @@ pub struct NodeRow {
     pub period_nanos: i64,
     /// What its process asks the scheduler for, before it makes the node.
     pub priority: Priority,
+    /// The end of the link that it belongs to; `None` for both.
+    pub end: Option<End>,
     /// Whether a session runs it; in virtual time too, if it is [`Make::Step`].
     pub in_session: When,
     /// Whether the playback of a recording runs it.
@@ -80,6 +82,7 @@ impl NodeRow {
             about,
             period_nanos: STEP_NANOS,
             priority,
+            end: None,
             in_session: always,
             in_playback: never,
             in_replay: never,
@@ -103,11 +106,29 @@ impl NodeRow {
             about,
             period_nanos: STEP_NANOS,
             priority,
+            end: None,
             in_session: always,
             in_playback: never,
             in_replay: never,
             make: Make::Service(run),
         }
+    }
+
+    /// The same at one end of the link.
+    pub const fn at(self, end: End) -> NodeRow {
+        NodeRow {
+            end: Some(end),
+            ..self
+        }
+    }
+
+    /// Whether it takes part in `session` on this host.
+    pub fn takes_part(&self, session: &SessionContext) -> bool {
+        let is_elsewhere = self
+            .end
+            .zip(session.end)
+            .is_some_and(|(own, here)| own != here);
+        !is_elsewhere && (self.in_session)(session)
     }
 
     /// Topics that it takes of an arm of those joints; none of a service, which

@@ -72,7 +72,7 @@ impl LockstepSession {
         let joints = session.joints();
         let start = Time::from_nanos(loaded.scenario.start.saturating_mul(1_000_000_000));
         let mut time = VirtualTime::new(start)?;
-        let rows = graph.rows().filter(|row| (row.in_session)(session));
+        let rows = graph.rows().filter(|row| row.takes_part(session));
         time.add_nodes(rows, session)?;
 
         let mut follower = time.bus().publisher(topics::FOLLOWER_STATE_COMMAND)?;
@@ -107,7 +107,7 @@ impl LockstepSession {
             }
         };
         let mapping = loaded.scenario.law.mapping();
-        let monitor = Monitor::new(time.bus(), &joints)?.comparing(time.bus(), mapping)?;
+        let monitor = Monitor::new(time.bus(), &joints, None)?.comparing(time.bus(), mapping)?;
         Ok(LockstepSession {
             time,
             recording,

@@ -3,6 +3,7 @@
 
 mod clock;
 mod context;
+mod end;
 mod error;
 pub mod link_end;
 pub mod link_keys;
@@ -13,6 +14,7 @@ mod signals;
 
 pub use clock::Clock;
 pub use context::ProcessContext;
+pub use end::End;
 pub use error::NodeError;
 pub use priority::{Priority, Scheduling};
 pub use session_context::{ConsoleOptions, ContextError, PlayOptions, SessionContext};

@@ -13,7 +13,7 @@ use ferntast_control::planted::Planted;
 use ferntast_msgs::sample::JointNames;
 use serde::{Deserialize, Serialize};
 
-use super::{Clock, link_end::LinkAccess};
+use super::{Clock, End, link_end::LinkAccess};
 
 /// What every process of a session needs to know. The supervisor writes it to
 /// a file; each node reads that.
@@ -41,6 +41,9 @@ pub struct SessionContext {
     /// the simulated one, without.
     #[serde(default)]
     pub driver: Option<String>,
+    /// The end of the link that runs here; `None` for both.
+    #[serde(default)]
+    pub end: Option<End>,
     /// Whose frames the ends of the link take.
     pub link_access: LinkAccess,
     /// A safety rule that is taken out; in virtual time only, and only in builds for
@@ -141,6 +144,7 @@ impl SessionContext {
             foxglove: None,
             twins: Vec::new(),
             driver: None,
+            end: None,
             link_access: LinkAccess::default(),
             planted: Planted::NONE,
         }

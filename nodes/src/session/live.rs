@@ -122,7 +122,9 @@ fn describe(now: Time, elapsed: f64, monitor: &Monitor, supervisor: &Supervisor)
             text.push_str(" · free");
         }
     }
-    text.push_str(&format!(" · hand {:.1} N", monitor.hand_force));
+    if monitor.operating.contains_key("leader") {
+        text.push_str(&format!(" · hand {:.1} N", monitor.hand_force));
+    }
     let dead: Vec<&str> = supervisor
         .nodes()
         .filter(|(node, process, _)| process.is_none() || !monitor.is_alive(node, now))

@@ -20,6 +20,7 @@ use ferntast_msgs::{
 
 use crate::{
     events::{EventWatch, TELLER},
+    process::End,
     servo::FrictionSummary,
     twin::{LastWords, TwinSummary},
 };
@@ -109,12 +110,17 @@ fn watch<M: Message>(bus: &Bus, topic: Topic<M>) -> Result<Subscriber<M>, Create
 }
 
 impl Monitor {
-    /// Watches the session on `bus`, of an arm of those joints.
+    /// Watches the session on `bus`, of an arm of those joints; by the operator's end of the link, or
+    /// by the arm's where that is the only one here.
     ///
     /// # Errors
     ///
     /// A topic that cannot be opened.
-    pub fn new(bus: &Bus, joints: &JointNames) -> Result<Monitor, CreateError> {
+    pub fn new(bus: &Bus, joints: &JointNames, end: Option<End>) -> Result<Monitor, CreateError> {
+        let link = match end {
+            Some(End::Arm) => topics::LINK_FOLLOWER_STATUS,
+            _ => topics::LINK_STATUS,
+        };
         let friction = topics::FOLLOWER_JOINT_FRICTION.of_joints(joints)?;
         let friction = friction.into_iter().map(|topic| {
             let joint = bus.subscriber(topic, Depth::Newest)?;
@@ -122,7 +128,7 @@ impl Monitor {
         });
         Ok(Monitor {
             diagnostics: watch(bus, topics::DIAGNOSTICS)?,
-            link: watch(bus, topics::LINK_STATUS)?,
+            link: watch(bus, link)?,
             contact: watch(bus, topics::FOLLOWER_CONTACT_STATE)?,
             leader_force: watch(bus, topics::LEADER_SERVO_CF)?,
             states: [
@@ -173,6 +179,16 @@ impl Monitor {
             touch: Some(TouchMeter::new(bus, mapping)?),
             ..self
         })
+    }
+
+    /// The operating state of a device that it told last.
+    pub fn state_of(&self, device: &str) -> Option<OperatingStateSample> {
+        self.operating.get(device)?.last
+    }
+
+    /// Whether frames arrive from the other end.
+    pub fn is_connected(&self) -> bool {
+        self.link_status.is_some_and(|link| link.connected == 1)
     }
 
     /// Whether `node` was heard of lately.

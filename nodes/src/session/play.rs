@@ -111,7 +111,7 @@ pub fn play(
     let bus = Bus::SharedMemory(SharedMemoryBus::open(&SharedMemoryConfig {
         session: context.session.clone(),
     })?);
-    let mut monitor = Monitor::new(&bus, &joints)?;
+    let mut monitor = Monitor::new(&bus, &joints, None)?;
     let ready = clock.now().plus_seconds(1.0);
     let patience = clock.now().plus_seconds(TWIN_PATIENCE);
     loop {

@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 use ferntast_bus::frames::check_endpoint as check_link;
 
 use super::SessionError;
-use crate::process::SessionContext;
+use crate::process::{End, SessionContext};
 
 /// Whether the ports and the recording's folder are free.
 ///
@@ -21,11 +21,14 @@ pub fn check(context: &SessionContext) -> Result<(), SessionError> {
     }
     let scenario = &context.loaded.scenario;
     check_link(&scenario.link.endpoint)?;
-    check_endpoint(
-        "the link's endpoint",
-        &scenario.link.endpoint,
-        "--link-endpoint",
-    )?;
+    // The arm's end listens.
+    if context.end != Some(End::Operator) {
+        check_endpoint(
+            "the link's endpoint",
+            &scenario.link.endpoint,
+            "--link-endpoint",
+        )?;
+    }
     if let Some(listen) = context.console.as_ref().and_then(|console| console.listen) {
         check_endpoint("the page's address", &format!("tcp/{listen}"), "--listen")?;
     }

@@ -25,7 +25,7 @@ use crate::{
     events::{Event, EventWatch},
     graph::Graph,
     master::THIS_HOST,
-    process::{Clock, Priority, SessionContext},
+    process::{Clock, End, Priority, SessionContext},
 };
 
 /// How often the supervisor looks \[ns\].
@@ -41,6 +41,9 @@ const COMMAND_PERIOD: f64 = 0.25;
 
 /// What is said where the arm is not armed at the start.
 const STOPPED_BEFORE: &str = "somebody stopped the arm before it was armed: it is yours to arm it";
+
+/// What is said where the operator's end is ready before the arm's.
+const WAITS: &str = "all is ready here, and waits for the arm's host";
 
 /// What the operator of a script says when it does not arm the arm again.
 const LEFT_TO_YOU: &str =
@@ -77,7 +80,7 @@ pub fn run(
     let resources = HostResources::acquire(&context)?;
     let session_file = resources.session_file.clone();
     let executable = std::env::current_exe().map_err(SessionError::Executable)?;
-    let rows = graph.rows().filter(|row| (row.in_session)(&context));
+    let rows = graph.rows().filter(|row| row.takes_part(&context));
     let nodes: Vec<&str> = rows.map(|row| row.name).collect();
 
     let mut session = Running {
@@ -88,10 +91,12 @@ pub fn run(
         died: Vec::new(),
         operator: (options.enable
             && options.rearm
+            && context.end.is_none()
             && !context.loaded.scenario.hand.source.is_a_person())
         .then(ScriptedOperator::default),
         own_stop: None,
         is_stopped: false,
+        is_waiting: false,
         rearmed: 0,
         context,
     };
@@ -100,7 +105,8 @@ pub fn run(
         session: session.context.session.clone(),
     })?);
     let mapping = session.context.loaded.scenario.law.mapping();
-    let mut monitor = Monitor::new(&bus, &session.context.joints())?.comparing(&bus, mapping)?;
+    let mut monitor = Monitor::new(&bus, &session.context.joints(), session.context.end)?
+        .comparing(&bus, mapping)?;
     let mut arming = Arming {
         follower: bus.publisher(topics::FOLLOWER_STATE_COMMAND)?,
         leader: bus.publisher(topics::LEADER_STATE_COMMAND)?,
@@ -149,6 +155,7 @@ pub fn run(
     let recording_faults = recorder.as_ref().map(|recorder| recorder.faults.clone());
     let summary = Summary {
         scenario: session.context.loaded.scenario.name.clone(),
+        end: session.context.end,
         session: session.context.session.clone(),
         duration_s: session
             .armed_at
@@ -201,6 +208,8 @@ struct Running {
     own_stop: Option<Time>,
     /// Somebody stopped the arm before it was armed.
     is_stopped: bool,
+    /// It was said that all waits for the other host.
+    is_waiting: bool,
     /// How often the operator armed the arm again.
     rearmed: u32,
 }
@@ -211,13 +220,17 @@ struct Arming {
 }
 
 impl Arming {
-    /// Tells both devices.
-    fn tell_both(&mut self, now: Time, command: StateCommand) {
+    /// Tells the devices at `end`, or both.
+    fn tell(&mut self, now: Time, command: StateCommand, end: Option<End>) {
         // If a command is not sent the arm is not armed, which is noticed.
-        self.tell_arm(now, command);
-        let _ = self
-            .leader
-            .publish(now, &StateCommandSample::new(now, command));
+        if end != Some(End::Operator) {
+            self.tell_arm(now, command);
+        }
+        if end != Some(End::Arm) {
+            let _ = self
+                .leader
+                .publish(now, &StateCommandSample::new(now, command));
+        }
     }
 
     /// Tells the arm alone.
@@ -281,6 +294,12 @@ impl Running {
                 if reached > progress.0 {
                     progress = (reached, now);
                 }
+                if self.waits_for_the_other_host(now, monitor) {
+                    progress.1 = now;
+                    if !std::mem::replace(&mut self.is_waiting, true) {
+                        monitor.events.note(now, Level::OK, WAITS);
+                    }
+                }
                 let idle = now.seconds_since(progress.1);
                 if self.armed_at.is_none() && idle > START_PATIENCE {
                     return Err(SessionError::NotReady {
@@ -336,22 +355,41 @@ impl Running {
             self.armed_at = Some(now);
             return;
         }
-        let arm = monitor.operating.get("follower").and_then(|view| view.last);
-        let is = |state| arm.is_some_and(|arm| arm.state == state);
+        if self.waits_for_the_other_host(now, monitor) {
+            return;
+        }
+        let device = monitor.state_of(self.device());
+        let is = |state| device.is_some_and(|device| device.state == state);
         let said = |since: Time| now.seconds_since(since) <= COMMAND_PERIOD;
-        if is(OperatingState::ENABLED) {
+        // An arm by itself is enabled, and pauses until the other host commands it.
+        let is_paused = self.context.end == Some(End::Arm) && is(OperatingState::PAUSED);
+        if is(OperatingState::ENABLED) || is_paused {
             self.armed_at = Some(now);
         } else if !self.commanded_at.is_some_and(said) {
             let word = match is(OperatingState::FAULT) {
                 false => StateCommand::ENABLE,
                 // As from the moments in which the nodes were being started.
-                true if arm.is_some_and(|arm| is_silence(&arm)) => StateCommand::DISABLE,
+                true if device.is_some_and(|device| is_silence(&device)) => StateCommand::DISABLE,
                 true => return,
             };
             self.commanded_at = Some(now);
             self.note_own(now, word);
-            arming.tell_both(now, word);
+            arming.tell(now, word, self.context.end);
         }
+    }
+
+    /// The device whose state says that the session is armed.
+    fn device(&self) -> &'static str {
+        self.context.end.unwrap_or(End::Arm).device()
+    }
+
+    /// Whether the operator's end is all there, and not heard of by the arm's: its word to arm would
+    /// be lost.
+    fn waits_for_the_other_host(&self, now: Time, monitor: &Monitor) -> bool {
+        let mut nodes = self.supervisor.nodes();
+        self.context.end == Some(End::Operator)
+            && !monitor.is_connected()
+            && nodes.all(|(node, _, _)| monitor.is_alive(node, now))
     }
 
     /// Whether somebody else said since the last round that the arm is to stop.
@@ -381,10 +419,9 @@ impl Running {
             process.is_some() && monitor.is_alive(node, now)
         };
         let alive = self.supervisor.nodes().all(is_alive);
-        let connected = monitor.link_status.is_some_and(|link| link.connected == 1);
         let seen = Seen {
-            arm: monitor.operating.get("follower").and_then(|view| view.last),
-            well: alive && connected,
+            arm: monitor.state_of("follower"),
+            well: alive && monitor.is_connected(),
         };
         let Some((word, arm)) = operator.step(now, &seen) else {
             return;
@@ -424,13 +461,18 @@ impl Running {
         if !silent.is_empty() {
             return format!("nothing was heard of {}", silent.join(", "));
         }
-        match monitor.operating.get("follower").and_then(|view| view.last) {
+        let device = self.device();
+        let named = match device {
+            "leader" => "master",
+            _ => "arm",
+        };
+        match monitor.state_of(device) {
             Some(last) => format!(
-                "the arm is {} and was not armed: {}",
+                "the {named} is {} and was not armed: {}",
                 last.state.name().unwrap_or("in an unknown state"),
                 last.reason
             ),
-            None => "the servo has not published its operating state".to_owned(),
+            None => format!("the {named} has not told its operating state"),
         }
     }
 

@@ -6,7 +6,10 @@ use ferntast_msgs::counted;
 use serde::Serialize;
 
 use super::state_times::StateTime;
-use crate::{process::SessionContext, twin::TwinSummary};
+use crate::{
+    process::{End, SessionContext},
+    twin::TwinSummary,
+};
 
 /// The result of a session. Quantities that were never measured are `null`.
 #[derive(Debug, Serialize)]
@@ -15,6 +18,8 @@ pub struct Summary {
     pub scenario: String,
     /// The session's name.
     pub session: String,
+    /// The end of the link that ran here; `null` for both.
+    pub end: Option<End>,
     /// Time from when the arm was armed first to the stop \[s\].
     pub duration_s: f64,
     /// How long of that the arm was ENABLED \[s\].
@@ -26,7 +31,7 @@ pub struct Summary {
     pub arm: ArmSummary,
     /// The servo loop.
     pub servo: ServoSummary,
-    /// The link as the operator's end measured it.
+    /// The link as the operator's end measured it; the arm's, where only that ran here.
     pub link: LinkSummary,
     /// The contact as estimated.
     pub contact: ContactSummary,
@@ -209,17 +214,25 @@ impl fmt::Display for Summary {
             Some(value) => format!("{value:.digits$}"),
             None => "-".to_owned(),
         };
-        writeln!(
-            f,
-            "scenario {}, {:.1} s, of which the arm was armed for {:.1} s",
-            self.scenario, self.duration_s, self.armed_s
-        )?;
-        writeln!(
-            f,
-            "servo     {} Hz, {} missed",
-            number(self.servo.rate_hz, 1),
-            counted(self.servo.missed, "deadline")
-        )?;
+        // What belongs to the other host is not known here.
+        let [has_hand, has_arm] =
+            [End::Operator, End::Arm].map(|own| self.end.is_none_or(|end| end == own));
+        match has_arm {
+            true => writeln!(
+                f,
+                "scenario {}, {:.1} s, of which the arm was armed for {:.1} s",
+                self.scenario, self.duration_s, self.armed_s
+            )?,
+            false => writeln!(f, "scenario {}, {:.1} s", self.scenario, self.duration_s)?,
+        }
+        if has_arm {
+            writeln!(
+                f,
+                "servo     {} Hz, {} missed",
+                number(self.servo.rate_hz, 1),
+                counted(self.servo.missed, "deadline")
+            )?;
+        }
         writeln!(
             f,
             "link      {} ms round trip (p99 {}), {} % lost, {} % of the frames sent, law {}",
@@ -229,8 +242,12 @@ impl fmt::Display for Summary {
             number(self.link.sent.map(|sent| sent * 100.0), 1),
             self.link.law
         )?;
-        writeln!(f, "contact   {}", self.contact)?;
-        writeln!(f, "hand      peak force {:.1} N", self.leader.peak_force)?;
+        if has_arm {
+            writeln!(f, "contact   {}", self.contact)?;
+        }
+        if has_hand {
+            writeln!(f, "hand      peak force {:.1} N", self.leader.peak_force)?;
+        }
         for twin in &self.twins {
             writeln!(f, "{twin}")?;
         }

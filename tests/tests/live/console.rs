@@ -259,9 +259,14 @@ fn a_page_that_freezes_does_not_hold_the_arm() {
         PATIENCE,
         "return document.querySelector('#why').textContent.includes('stood still')",
     );
-    drop(browser);
     process.interrupt();
     process.wait(PATIENCE).success();
+    // What was so before the connection was lost is not shown as if it still were.
+    browser.until(
+        "only the loss is told",
+        PATIENCE,
+        "const own = document.querySelector('#status').children; return own.length === 1 && own[0].textContent.includes('no connection')",
+    );
 }
 
 #[test]

@@ -15,6 +15,7 @@ mod console_trouble;
 mod contact_force;
 mod crashes;
 mod dynamics;
+mod ends_on_two_hosts;
 mod fleet;
 mod foreign_bags;
 mod haply;

@@ -71,14 +71,19 @@ pub fn of_head(head: &str) -> Option<Dialect> {
     let first = content.get(best.first)?;
     let rows = content.get(best.first..)?;
     let bytes: usize = rows.iter().map(|line| line.text.len() + 1).sum();
-    let (names, units) = names(&content, &comments, &best);
+    let (names, mut units) = names(&content, &comments, &best);
     let named = names.is_some();
-    let names = names.unwrap_or_default();
+    let mut names = names.unwrap_or_default();
     let last = best.fields.saturating_sub(1);
     let has_value = |line: &Line<'_>| {
         let mut fields = best.separator.fields(line.text);
         fields.nth(last).is_some_and(|field| !field.is_empty())
     };
+    // One more value than names: what numbers the rows has none, as R and pandas write it.
+    if named && names.len() == last && rows.iter().all(has_value) {
+        names.insert(0, String::new());
+        units.insert(0, None);
+    }
     let last_is_empty = names.get(last).is_none_or(String::is_empty) && !rows.iter().any(has_value);
     Some(Dialect {
         separator: best.separator,
@@ -258,6 +263,13 @@ mod tests {
             ("t,q,state\n0,1,run\n1,1,run\n", Comma, "t q state", true, 2),
             ("t,q\n0,\n1,\n", Comma, "t q", true, 2),
             ("t,q\n0,1,\n1,2,\n", Comma, "t q column_3", true, 2),
+            (
+                "\"t\" \"q\"\n\"1\" 0 1\n\"2\" 1 2\n",
+                Blank,
+                "column_1 t q",
+                true,
+                2,
+            ),
             ("t,q\nx,y\n", Comma, "t q", true, 2),
         ] {
             let names: Vec<String> = names.split(' ').map(str::to_owned).collect();

@@ -1,0 +1,113 @@
+//! `ferntast session --end`: the hand on one host, the arm on another, as docs/two_hosts.md has it.
+
+use std::{collections::BTreeSet, fs};
+
+use ferntast_tests::{
+    Host, LINK_KEYS, PATIENCE, Process, Session, TwoHosts, number, refused, wait_until,
+};
+use serde_json::Value;
+
+/// `ferntast session` of an end on its host, whose runtime folder is its own as well.
+fn end(session: &Session, hosts: &TwoHosts, host: Host, arguments: &[&str]) -> Process {
+    let end = match host {
+        Host::Operator => "operator",
+        Host::Arm => "arm",
+    };
+    let runtime = session.folder().join(format!("runtime-{end}"));
+    fs::create_dir_all(&runtime).expect("scratch folder");
+    let endpoint = format!("quic/{}:7448", Host::Arm.address());
+    let mut command = session.ferntast(&["session", "--end", end, "--session", session.name()]);
+    command.args(["--link-endpoint", &endpoint, "--no-console", "--json"]);
+    command.args(["--record", end]).args(arguments);
+    command.env(LINK_KEYS, host.keys(session));
+    command.env("XDG_RUNTIME_DIR", &runtime);
+    hosts.start(host, &command)
+}
+
+fn nodes(summary: &Value) -> BTreeSet<&str> {
+    let nodes = summary["nodes"].as_object().expect("nodes");
+    nodes.keys().map(String::as_str).collect()
+}
+
+#[test]
+fn each_host_runs_its_end_by_one_command() {
+    let session = Session::new();
+    let hosts = TwoHosts::new();
+    hosts.exchange_keys(&session);
+    // The operator comes first and waits, longer than for anything of its own.
+    let mut operator = end(&session, &hosts, Host::Operator, &["--duration", "20"]);
+    operator.await_stderr("waits for the arm's host", PATIENCE);
+    let arm = end(&session, &hosts, Host::Arm, &[]);
+    let told = |host: Host, arguments: &[&str]| {
+        let all = [
+            &["state"],
+            arguments,
+            &["--session", session.name(), "--json"],
+        ]
+        .concat();
+        let told = hosts.start(host, &session.ferntast(&all)).wait(PATIENCE);
+        told.stdout
+    };
+    let is = |state: &str| told(Host::Arm, &["follower"]).contains(&format!("\"{state}\""));
+    assert!(
+        wait_until(PATIENCE, || is("ENABLED")),
+        "the arm is not armed"
+    );
+    // Who stands there stops it, and the operator's word over the link lets it go on.
+    told(Host::Arm, &["follower", "pause"]);
+    assert!(wait_until(PATIENCE, || is("PAUSED")));
+    told(Host::Operator, &["leader", "resume"]);
+    assert!(
+        wait_until(PATIENCE, || is("ENABLED")),
+        "the operator's word does not arrive"
+    );
+    let operator = operator.wait(PATIENCE).success().json();
+    arm.interrupt();
+    let arm = arm.wait(PATIENCE).success().json();
+
+    let both = ["gateway", "recorder"];
+    let of_operator = ["link_leader", "master"];
+    let of_arm = ["arm", "estimator", "link_follower", "servo"];
+    let expected = |own: &[&'static str]| own.iter().chain(&both).copied().collect::<BTreeSet<_>>();
+    assert_eq!(nodes(&operator), expected(&of_operator));
+    assert_eq!(nodes(&arm), expected(&of_arm));
+    assert_eq!(
+        (&operator["end"], &arm["end"]),
+        (&"operator".into(), &"arm".into())
+    );
+
+    // What the script's hand pressed, it felt.
+    assert!(number(&arm, "armed_s") > 8.0, "{arm:#}");
+    assert!(number(&arm, "contact.peak_normal_force_N") > 2.0, "{arm:#}");
+    assert!(
+        number(&operator, "leader.peak_force_N") > 0.1,
+        "{operator:#}"
+    );
+    // The scenario's channel and a line of microseconds.
+    for own in [&operator, &arm] {
+        let round_trip = number(own, "link.rtt_ms");
+        assert!((18.0..40.0).contains(&round_trip), "{own:#}");
+    }
+}
+
+#[test]
+fn what_belongs_to_the_other_end_is_refused() {
+    let session = Session::new();
+    for (arguments, words) in [
+        (
+            &["--end", "operator", "--driver", "simulated"][..],
+            ["--driver", "session --end arm"],
+        ),
+        (
+            &["--end", "operator", "--twin", "joint.toml"],
+            ["--twin", "arm's host"],
+        ),
+        (
+            &["--end", "arm", "--hand", "crtk"],
+            ["--hand", "session --end operator"],
+        ),
+        (&["--link-peer", "arm"], ["--link-peer", "--end operator"]),
+    ] {
+        refused(&session, &[&["session"][..], arguments].concat(), &words);
+    }
+}
