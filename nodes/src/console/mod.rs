@@ -23,7 +23,7 @@ use ferntast_msgs::{
 use crate::{
     events::TELLER,
     node::{InputWatch, NodeHealth},
-    process::{NodeError, Priority, ProcessContext},
+    process::{End, NodeError, Priority, ProcessContext},
 };
 
 /// How far the hand goes from the middle \[m\].
@@ -77,7 +77,10 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     };
     let mut ports = SessionPorts::connect(
         &process.bus,
-        &process.session.joints(),
+        (
+            &process.session.joints(),
+            process.session.end == Some(End::Operator),
+        ),
         shared.clone(),
         hand,
         mapping,

@@ -49,6 +49,7 @@ fn each_host_runs_its_end_by_one_command() {
         told.stdout
     };
     let is = |state: &str| told(Host::Arm, &["follower"]).contains(&format!("\"{state}\""));
+    operator.await_stderr("master ENABLED", PATIENCE);
     assert!(
         wait_until(PATIENCE, || is("ENABLED")),
         "the arm is not armed"
@@ -82,6 +83,12 @@ fn each_host_runs_its_end_by_one_command() {
     assert!(
         number(&operator, "leader.peak_force_N") > 0.1,
         "{operator:#}"
+    );
+    // What the arm's end says of its arm is told at the operator's.
+    let visited = operator["states"]["follower"]["visited"].to_string();
+    assert!(
+        visited.contains(r#""ENABLED","PAUSED","ENABLED""#),
+        "{visited}"
     );
     // The scenario's channel and a line of microseconds.
     for own in [&operator, &arm] {
