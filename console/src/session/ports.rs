@@ -7,9 +7,9 @@ use ferntast_msgs::{
     Message, Text, Time,
     sample::{
         AuthoritySample, ContactStateSample, Frame, HealthSample, JointNames, JointSample,
-        LawCommandSample, LinkCommandSample, LinkPeerSample, LinkStatusSample, MAX_JOINTS,
-        OperatingStateSample, PoseSample, RecorderAction, RecorderCommandSample,
-        RecorderStatusSample, StateCommandSample, TemperatureSample, WrenchSample,
+        LawCommandSample, LinkCommandSample, LinkStatusSample, MAX_JOINTS, OperatingStateSample,
+        PoseSample, RecorderAction, RecorderCommandSample, RecorderStatusSample,
+        StateCommandSample, TemperatureSample, WrenchSample,
     },
     topics,
 };
@@ -81,8 +81,6 @@ pub struct SessionPorts {
     hand_force: Newest<WrenchSample>,
     links: [Newest<LinkStatusSample>; 2],
     states: [(&'static str, Newest<OperatingStateSample>); 2],
-    /// Where the arm is on another host: what its end of the link says of it.
-    peer: Option<Newest<LinkPeerSample>>,
     authority: Newest<AuthoritySample>,
     temperatures: Vec<Newest<TemperatureSample>>,
     recorder: Newest<RecorderStatusSample>,
@@ -116,6 +114,10 @@ impl SessionPorts {
         mapping: HandMapping,
         teller: &'static str,
     ) -> Result<Self, CreateError> {
+        let arm_state = match elsewhere {
+            true => topics::LINK_ARM_STATE,
+            false => topics::FOLLOWER_OPERATING_STATE,
+        };
         Ok(SessionPorts {
             shared,
             hand,
@@ -134,16 +136,9 @@ impl SessionPorts {
                 Newest::open(bus, topics::LINK_FOLLOWER_STATUS)?,
             ],
             states: [
-                (
-                    "follower",
-                    Newest::open(bus, topics::FOLLOWER_OPERATING_STATE)?,
-                ),
+                ("follower", Newest::open(bus, arm_state)?),
                 ("leader", Newest::open(bus, topics::LEADER_OPERATING_STATE)?),
             ],
-            peer: match elsewhere {
-                true => Some(Newest::open(bus, topics::LINK_PEER)?),
-                false => None,
-            },
             authority: Newest::open(bus, topics::LEADER_AUTHORITY)?,
             temperatures: topics::FOLLOWER_JOINT_TEMPERATURE
                 .of_joints(joints)?
@@ -231,20 +226,12 @@ impl SessionPorts {
     }
 
     fn command(&mut self, now: Time, word: StateRequest) {
-        for at in 0..self.states.len() {
-            let state = self.state(at, now).map(|sample| sample.state);
+        for (publisher, (_, state)) in self.state_commands.iter_mut().zip(&mut self.states) {
+            let state = state.take(now).map(|sample| sample.state);
             if let Some(command) = word.command(state) {
                 let sample = StateCommandSample::new(now, command);
-                self.failed += u64::from(self.state_commands[at].publish(now, &sample).is_err());
+                self.failed += u64::from(publisher.publish(now, &sample).is_err());
             }
-        }
-    }
-
-    /// What was told last of the arm (0) or the master (1).
-    fn state(&mut self, at: usize, now: Time) -> Option<OperatingStateSample> {
-        match &mut self.peer {
-            Some(peer) if at == 0 => peer.take(now)?.device(),
-            _ => self.states[at].1.take(now),
         }
     }
 
@@ -350,15 +337,17 @@ impl SessionPorts {
             link: self.links[0].take(now).map(|status| link(&status)),
             follower_link: self.links[1].take(now).map(|status| link(&status)),
             channel: self.channel(now),
-            states: (0..self.states.len())
-                .filter_map(|at| {
-                    let sample = self.state(at, now)?;
+            states: self
+                .states
+                .iter_mut()
+                .filter_map(|(device, state)| {
+                    let sample = state.take(now)?;
                     let view = StateView {
                         state: sample.state.name().unwrap_or("UNKNOWN"),
                         reason: sample.reason.to_string(),
                         silent: now.seconds_since(sample.stamp) > STATE_LIFE,
                     };
-                    Some((self.states[at].0, view))
+                    Some((*device, view))
                 })
                 .collect(),
             authority: self.authority.take(now).map(authority).unwrap_or_default(),

@@ -6,9 +6,7 @@
 
 use ferntast_derive::message;
 
-use super::{
-    Flag, Identity, MAX_TWIN_PARAMETERS, OperatingState, OperatingStateSample, codes::codes,
-};
+use super::{Flag, Identity, MAX_TWIN_PARAMETERS, codes::codes};
 use crate::{InvalidMessage, Text, Time};
 
 /// Which source of hand positions drives the arm, and which was refused last.
@@ -251,8 +249,6 @@ pub struct LinkPeerSample {
     pub handshakes: u64,
     /// it asks this end to hold: its device is not ENABLED, or it hears nothing
     pub holds: Flag,
-    /// operating state of its device, as its frames say; DISABLED before the first
-    pub state: OperatingState,
     /// \[s\] the other clock is ahead of this one by so much
     #[field(section = "From the echoes in frames, both ways taken for equally long.")]
     pub clock_offset: f64,
@@ -263,14 +259,6 @@ pub struct LinkPeerSample {
     pub clock_error: f64,
     /// how often one of the clocks jumped
     pub clock_jumps: u64,
-}
-
-impl LinkPeerSample {
-    /// What it says of the other end's device; `None` before the first handshake.
-    pub fn device(&self) -> Option<OperatingStateSample> {
-        let told = OperatingStateSample::new(self.stamp, self.state, "told over the link");
-        (self.handshakes > 0).then_some(told)
-    }
 }
 
 codes! {

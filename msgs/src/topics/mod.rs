@@ -133,6 +133,8 @@ topics! {
     LINK_FOLLOWER_STATUS: Topic<LinkStatusSample> = "/link/follower_status", Stream, from(link_follower), Never;
     /// Whom the operator's end talks to, and that one's clock.
     LINK_PEER: Topic<LinkPeerSample> = "/link/peer", State, from(link_leader), Never;
+    /// CRTK state of the arm's servo, as the arm's end said it over the link.
+    LINK_ARM_STATE: Topic<OperatingStateSample> = "/link/arm_state", State, from(link_leader), Never;
     /// Whom the arm's end talks to, and that one's clock.
     LINK_FOLLOWER_PEER: Topic<LinkPeerSample> = "/link/follower_peer", State, from(link_follower), Never;
     /// Command to the link: another delay law.

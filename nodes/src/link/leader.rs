@@ -9,8 +9,8 @@ use ferntast_msgs::{
     Text, Time,
     sample::{
         Fault, Frame, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkPeerSample,
-        LinkStatusSample, OperatingStateSample, PoseSample, StateCommand, StateCommandSample,
-        WrenchSample,
+        LinkStatusSample, OperatingState, OperatingStateSample, PoseSample, StateCommand,
+        StateCommandSample, WrenchSample,
     },
 };
 
@@ -40,6 +40,7 @@ ports! {
         reflected_cf: WrenchSample = LEADER_REFLECTED_CF,
         status: LinkStatusSample = LINK_STATUS,
         peer: LinkPeerSample = LINK_PEER,
+        arm_state: OperatingStateSample = LINK_ARM_STATE,
     }
     extra { frame: FrameOutput, }
 }
@@ -122,6 +123,10 @@ impl Node for LeaderLinkNode {
         let state = self.link.state(now.nanos());
         output.status = self.status.step(now, &state, &input.frames);
         output.peer = self.status.peer(now, &state, peer);
+        // Told as often, once there is somebody.
+        let told = output.peer.filter(|own| own.handshakes > 0);
+        let arm = OperatingState(state.peer.code());
+        output.arm_state = told.map(|_| OperatingStateSample::new(now, arm, "told over the link"));
         if let Some(law) = &self.unknown_law {
             output.health.raise(Fault::CommandInvalid, Level::WARN);
             output.health.message = Text::display(format_args!(

@@ -3,7 +3,7 @@
 use ferntast_control::{link::LinkState, operating::OperatingState};
 use ferntast_msgs::{
     Text, Time,
-    sample::{self, Fault, Level, LinkEnd, LinkPeerSample, LinkStatusSample},
+    sample::{Fault, Level, LinkEnd, LinkPeerSample, LinkStatusSample},
 };
 use ferntast_seal::Established;
 
@@ -95,7 +95,6 @@ impl Status {
             key: established.map_or(Text::EMPTY, |own| Text::display(own.peer)),
             handshakes: established.map_or(0, |own| own.incarnation),
             holds: u8::from(state.held),
-            state: sample::OperatingState(state.peer.code()),
             clock_offset: clock.offset,
             clock_drift: clock.drift,
             clock_error: clock.error,

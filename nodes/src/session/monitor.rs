@@ -12,9 +12,8 @@ use ferntast_msgs::{
     Message, Time,
     sample::{
         AuthoritySample, ContactStateSample, Edge, FrictionStatusSample, HealthSample, JointNames,
-        LinkPeerSample, LinkStatusSample, OperatingState, OperatingStateSample,
-        RecorderCommandSample, RecorderStatusSample, StateCommand, StateCommandSample,
-        WrenchSample,
+        LinkStatusSample, OperatingState, OperatingStateSample, RecorderCommandSample,
+        RecorderStatusSample, StateCommand, StateCommandSample, WrenchSample,
     },
     topics::{self, Topic},
 };
@@ -38,8 +37,6 @@ use super::touch::TouchMeter;
 pub struct Monitor {
     diagnostics: Subscriber<HealthSample>,
     link: Subscriber<LinkStatusSample>,
-    /// At the operator's end alone: what the arm's says of its arm.
-    peer: Option<Subscriber<LinkPeerSample>>,
     contact: Subscriber<ContactStateSample>,
     leader_force: Subscriber<WrenchSample>,
     states: [(&'static str, Subscriber<OperatingStateSample>); 2],
@@ -124,6 +121,10 @@ impl Monitor {
             Some(End::Arm) => topics::LINK_FOLLOWER_STATUS,
             _ => topics::LINK_STATUS,
         };
+        let arm_state = match end {
+            Some(End::Operator) => topics::LINK_ARM_STATE,
+            _ => topics::FOLLOWER_OPERATING_STATE,
+        };
         let friction = topics::FOLLOWER_JOINT_FRICTION.of_joints(joints)?;
         let friction = friction.into_iter().map(|topic| {
             let joint = bus.subscriber(topic, Depth::Newest)?;
@@ -132,14 +133,10 @@ impl Monitor {
         Ok(Monitor {
             diagnostics: watch(bus, topics::DIAGNOSTICS)?,
             link: watch(bus, link)?,
-            peer: match end {
-                Some(End::Operator) => Some(watch(bus, topics::LINK_PEER)?),
-                _ => None,
-            },
             contact: watch(bus, topics::FOLLOWER_CONTACT_STATE)?,
             leader_force: watch(bus, topics::LEADER_SERVO_CF)?,
             states: [
-                ("follower", watch(bus, topics::FOLLOWER_OPERATING_STATE)?),
+                ("follower", watch(bus, arm_state)?),
                 ("leader", watch(bus, topics::LEADER_OPERATING_STATE)?),
             ],
             state_commands: [
@@ -203,17 +200,6 @@ impl Monitor {
         self.nodes.get(node).is_some_and(|view| view.is_alive(now))
     }
 
-    fn note_state(&mut self, device: &'static str, told: OperatingStateSample) {
-        let view = self.operating.entry(device).or_default();
-        let name = told.state.name().unwrap_or("UNKNOWN");
-        if view.visited.last().is_none_or(|last| last != name) {
-            view.visited.push(name.to_owned());
-        }
-        view.times.note(&told);
-        self.events.state(device, &told);
-        view.last = Some(told);
-    }
-
     /// Takes in what arrived until `now`.
     pub fn update(&mut self, now: Time) {
         self.updated = now;
@@ -249,14 +235,16 @@ impl Monitor {
             self.hand_force = force.iter().map(|f| f * f).sum::<f64>().sqrt();
             self.peak_hand_force = self.peak_hand_force.max(self.hand_force);
         }
-        while let Some(received) = self.peer.as_mut().and_then(|peer| peer.next(now)) {
-            if let Some(told) = received.message.device() {
-                self.note_state(End::Arm.device(), told);
-            }
-        }
-        for at in 0..self.states.len() {
-            while let Some(received) = self.states[at].1.next(now) {
-                self.note_state(self.states[at].0, received.message);
+        for (device, subscriber) in &mut self.states {
+            while let Some(received) = subscriber.next(now) {
+                let view = self.operating.entry(device).or_default();
+                let name = received.message.state.name().unwrap_or("UNKNOWN");
+                if view.visited.last().is_none_or(|last| last != name) {
+                    view.visited.push(name.to_owned());
+                }
+                view.times.note(&received.message);
+                self.events.state(device, &received.message);
+                view.last = Some(received.message);
             }
         }
         for commands in &mut self.state_commands {
