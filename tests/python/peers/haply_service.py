@@ -60,6 +60,10 @@ async def main() -> None:
         return json.dumps({"inverse3": [own], "wireless_verse_grip": [grip]})
 
     async def serve(socket) -> None:
+        if told["frames"] > 0:
+            # Who comes again after the silence is told no more.
+            await done.wait()
+            return
         loop = asyncio.get_running_loop()
         begin = loop.time()
 
