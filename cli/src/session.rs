@@ -103,38 +103,37 @@ impl EndOption {
 /// Refuses what only the other end has a use for.
 fn refuse_what_is_elsewhere(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = &arguments.scenario;
-    let (of_operator, of_arm) = (
-        [
-            ("--hand", scenario.hand.is_some()),
-            ("--arm-leader", scenario.arm_leader.is_some()),
-            ("--driver-leader", scenario.driver_leader.is_some()),
-            ("--link-peer", scenario.link_peer.is_some()),
-        ],
-        [
-            ("--driver", scenario.driver.is_some()),
-            ("--twin", !arguments.twin.is_empty()),
-        ],
-    );
-    let refused = |elsewhere: &[(&str, bool)], why: &str| {
-        let given = elsewhere.iter().find(|(_, given)| *given);
-        given.map_or(Ok(()), |(option, _)| {
-            Err(Failure::refused(format!("{option} {why}")))
-        })
+    let first = |options: &[(&'static str, bool)]| {
+        let given = options.iter().find(|(_, given)| *given);
+        given.map(|(option, _)| *option)
     };
-    match arguments.end {
-        Some(EndOption::Operator) => refused(
-            &of_arm,
+    let of_arm = first(&[
+        ("--driver", scenario.driver.is_some()),
+        ("--twin", !arguments.twin.is_empty()),
+    ]);
+    let of_hand = first(&[
+        ("--hand", scenario.hand.is_some()),
+        ("--arm-leader", scenario.arm_leader.is_some()),
+        ("--driver-leader", scenario.driver_leader.is_some()),
+    ]);
+    let of_one_end = first(&[("--link-peer", scenario.link_peer.is_some())]);
+    let (elsewhere, why) = match arguments.end {
+        Some(EndOption::Operator) => (
+            of_arm,
             "is of the arm's host: give it to 'session --end arm' there",
         ),
-        Some(EndOption::Arm) => refused(
-            &of_operator,
+        Some(EndOption::Arm) => (
+            of_hand.or(of_one_end),
             "is of the operator's host: give it to 'session --end operator' there",
         ),
-        None => refused(
-            &of_operator[3..],
+        None => (
+            of_one_end,
             "is of an end that runs alone: add --end operator, or leave it out",
         ),
-    }
+    };
+    elsewhere.map_or(Ok(()), |option| {
+        Err(Failure::refused(format!("{option} {why}")))
+    })
 }
 
 /// Runs it.
