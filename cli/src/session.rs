@@ -146,22 +146,18 @@ pub fn run(graph: &Graph, arguments: Arguments, json: bool) -> Result<ExitCode, 
         )));
     }
     let driver = arguments.scenario.driver();
-    let link_peer = arguments.scenario.link_peer.clone();
     refuse_what_is_elsewhere(&arguments)?;
     let loaded = arguments.scenario.load()?;
     let mut context = SessionContext::new(&arguments.session, loaded).map_err(Failure::refused)?;
     context.driver = driver;
     context.end = arguments.end.map(EndOption::end);
-    context.link_access = match context.end {
+    context.link_access = LinkAccess {
         // Both ends are here: what one of them knows the other does.
-        None => LinkAccess {
-            secret: Some(link_end::draw_secret().map_err(Failure::failed)?),
-            peer: None,
+        secret: match context.end {
+            None => Some(link_end::draw_secret().map_err(Failure::failed)?),
+            Some(_) => None,
         },
-        Some(_) => LinkAccess {
-            secret: None,
-            peer: link_peer,
-        },
+        peer: arguments.scenario.link_peer,
     };
     context.bag = arguments.record;
     let page = arguments.page.console()?;

@@ -114,10 +114,7 @@ impl EventWatch {
             OperatingState::PAUSED => Level::WARN,
             _ => Level::OK,
         };
-        let name = match device {
-            "follower" => "arm",
-            _ => "master",
-        };
+        let name = name_of(device);
         let state = sample.state.name().unwrap_or("UNKNOWN");
         self.note(
             sample.stamp,
@@ -233,6 +230,14 @@ impl EventWatch {
             health.level,
             format_args!("{}: {}", health.node, health.message),
         );
+    }
+}
+
+/// What people call a device, `follower` or `leader`.
+pub(crate) fn name_of(device: &str) -> &'static str {
+    match device {
+        "follower" => "arm",
+        _ => "master",
     }
 }
 

@@ -100,7 +100,7 @@ pub struct SessionPorts {
 }
 
 impl SessionPorts {
-    /// Opens the topics on `bus`, of an arm of those joints, which may be `elsewhere`: on another host.
+    /// Opens the topics on `bus`, of an arm of those joints, whose state is told on `arm_state`.
     /// `teller` is whose status on `/diagnostics` says what happens.
     ///
     /// # Errors
@@ -108,16 +108,13 @@ impl SessionPorts {
     /// A topic that cannot be opened.
     pub fn connect(
         bus: &Bus,
-        (joints, elsewhere): (&JointNames, bool),
+        joints: &JointNames,
+        arm_state: topics::Topic<OperatingStateSample>,
         shared: Arc<SharedSession>,
         hand: PageHand,
         mapping: HandMapping,
         teller: &'static str,
     ) -> Result<Self, CreateError> {
-        let arm_state = match elsewhere {
-            true => topics::LINK_ARM_STATE,
-            false => topics::FOLLOWER_OPERATING_STATE,
-        };
         Ok(SessionPorts {
             shared,
             hand,

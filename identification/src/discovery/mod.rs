@@ -14,6 +14,7 @@
 mod constants;
 mod dictionary;
 mod dimension;
+mod fitted;
 mod map;
 mod proposals;
 mod results;
@@ -33,6 +34,7 @@ use crate::fit::fit;
 use crate::preparation::Filtered;
 
 use dictionary::Dictionary;
+use fitted::Fitted;
 pub use map::FormulaMap;
 use proposals::Judge;
 pub use results::{Discovery, Formula, NamedEffect};
@@ -73,7 +75,13 @@ pub fn discover(
         progress(0.4 + 0.4 * done);
     });
     let base = fit(&prepared, &design);
-    let judge = Judge::new(&filtered, spec, (&prepared, &base), &rows);
+    let fitted = Fitted {
+        filtered: &filtered,
+        spec,
+        prepared: &prepared,
+        base: &base,
+    };
+    let judge = Judge::new(fitted, &rows);
     discovery.tried = dictionary.terms.len();
     discovery.formulas = judge.best(found, diagnosis.candidates.first(), &mut |done| {
         progress(0.8 + 0.2 * done);

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use ferntast_model::friction::Proposal;
 
 use super::constants::errors;
+use super::fitted::Fitted;
 use super::map::draw;
 use super::results::Formula;
 use super::rows::{Kind, Rows};
@@ -17,14 +18,11 @@ use super::term::{
     SUM, Signal, Term as FormulaTerm, coefficient_names, constant, constant_names, constants,
     in_products, rounded, set,
 };
-use crate::data::{CustomEffect, ModelSpec, Subject, Term};
-use crate::design::{Design, PreparedModel};
+use crate::data::{CustomEffect, Subject, Term};
 use crate::diagnosis::NamedCandidate;
 use crate::diagnosis::confirmation::noisy_signals;
-use crate::fit::addition::{Addition, add_to};
-use crate::fit::{Fit, Parameter};
+use crate::fit::Parameter;
 use crate::numerics::statistics::f_tail;
-use crate::preparation::Filtered;
 use crate::validation::left_out::LeftOut;
 
 /// Formulas of so many terms that are judged.
@@ -48,10 +46,7 @@ const NAME: &str = "formula";
 
 /// What formulas are judged by.
 pub(super) struct Judge<'a> {
-    filtered: &'a Filtered<'a>,
-    spec: &'a ModelSpec,
-    prepared: &'a PreparedModel,
-    base: &'a Fit,
+    fitted: Fitted<'a>,
     rows: &'a Rows,
     /// Made where a formula is in doubt.
     slower: OnceCell<Slower<'a>>,
@@ -65,18 +60,10 @@ struct Judged {
 }
 
 impl<'a> Judge<'a> {
-    /// By the model `spec`, bound as `prepared` and fitted as `base`, on `rows` of it.
-    pub(super) fn new(
-        filtered: &'a Filtered<'a>,
-        spec: &'a ModelSpec,
-        (prepared, base): (&'a PreparedModel, &'a Fit),
-        rows: &'a Rows,
-    ) -> Self {
+    /// By the model as it is `fitted`, on `rows` of it.
+    pub(super) fn new(fitted: Fitted<'a>, rows: &'a Rows) -> Self {
         Self {
-            filtered,
-            spec,
-            prepared,
-            base,
+            fitted,
             rows,
             slower: OnceCell::new(),
         }
@@ -97,8 +84,8 @@ impl<'a> Judge<'a> {
         }
         let count = chosen.len().max(1) as f64;
         let named = named.and_then(|own| {
-            let (_, left_out) = self.with(&Term::Catalogue(own.effect.clone()))?;
-            Some(left_out)
+            let effect = Term::Catalogue(own.effect.clone());
+            self.fitted.left_out(Some(&effect))
         });
         let mut judged: Vec<Judged> = Vec::new();
         for (number, state) in chosen.iter().enumerate() {
@@ -117,14 +104,6 @@ impl<'a> Judge<'a> {
             error(a).total_cmp(&error(b))
         });
         self.ranked(judged)
-    }
-
-    /// The model with one more effect, and what it leaves of rows left out.
-    fn with(&self, effect: &Term) -> Option<(Addition, LeftOut)> {
-        let both = (self.prepared, self.base);
-        let (addition, extended) = add_to(self.filtered, self.spec, both, effect, None).ok()?;
-        let left_out = LeftOut::new(&extended, &Design::new(&extended));
-        Some((addition, left_out))
     }
 
     /// A formula as it is printed, where it lowers the error and is no chance.
@@ -150,7 +129,7 @@ impl<'a> Judge<'a> {
             expression: products.join(SUM),
             bounds: BTreeMap::new(),
         };
-        let (addition, left_out) = self.with(&Term::Custom(effect.clone()))?;
+        let (addition, left_out) = self.fitted.with(&Term::Custom(effect.clone()))?;
         let decrease = addition.decrease;
         let share = decrease.mean_square / decrease.before.powi(2).max(1e-300);
         let mut parameters = BTreeMap::new();
@@ -171,7 +150,7 @@ impl<'a> Judge<'a> {
                 fitted.value,
                 // What places and scales may be makes a coefficient less certain.
                 (conditional.max(*error), freedom),
-                &term.unit(&signals).text(self.prepared.facts.joint),
+                &term.unit(&signals).text(self.fitted.prepared.facts.joint),
                 &name,
             );
             parameters.insert(own.clone(), parameter);
@@ -207,7 +186,7 @@ impl<'a> Judge<'a> {
                 &terms,
                 &signals,
                 &read,
-                self.prepared.facts.joint,
+                self.fitted.prepared.facts.joint,
             ),
         };
         let is_certain = addition.lowers_error && holds && share > MIN_SHARE;
@@ -229,7 +208,7 @@ impl<'a> Judge<'a> {
         products: &[(String, &FormulaTerm)],
         left_out: &LeftOut,
     ) -> bool {
-        let noisy = noisy_signals(self.prepared);
+        let noisy = noisy_signals(self.fitted.prepared);
         let signals = self.rows.signals();
         let is_doubtful = |term: &FormulaTerm| {
             let mut own = term.signals().filter_map(|at| signals.get(at));
@@ -248,11 +227,9 @@ impl<'a> Judge<'a> {
                 ..formula.clone()
             })
         });
-        let before = match &rest {
-            Some(rest) => self.with(rest).map(|(_, left_out)| left_out),
-            None => Some(self.base.left_out.clone()),
-        };
-        let slower = (self.slower).get_or_init(|| Slower::new(self.filtered, self.spec));
+        let Fitted { filtered, spec, .. } = self.fitted;
+        let slower = (self.slower).get_or_init(|| Slower::new(filtered, spec));
+        let before = self.fitted.left_out(rest.as_ref());
         before.is_some_and(|before| {
             let here = left_out.decrease_from(&before);
             slower.confirms(&Term::Custom(formula.clone()), rest.as_ref(), here)
@@ -261,7 +238,13 @@ impl<'a> Judge<'a> {
 
     /// A name that no effect of the model has.
     fn free_name(&self) -> String {
-        let is_free = |name: &String| self.spec.effects.iter().all(|own| own.name() != name);
+        let is_free = |name: &String| {
+            self.fitted
+                .spec
+                .effects
+                .iter()
+                .all(|own| own.name() != name)
+        };
         let numbered = (2..).map(|number| format!("{NAME}_{number}"));
         let mut names = std::iter::once(NAME.to_owned()).chain(numbered);
         names.find(is_free).unwrap_or_default()
@@ -275,7 +258,7 @@ impl<'a> Judge<'a> {
             return true;
         }
         let error = fitted.std_error.unwrap_or(f64::INFINITY).max(1e-300);
-        let freedom = self.prepared.facts.sessions as f64 - 1.0;
+        let freedom = self.fitted.prepared.facts.sessions as f64 - 1.0;
         f_tail((fitted.value / error).powi(2), 1.0, freedom) < BETWEEN_SESSIONS
     }
 
@@ -291,7 +274,9 @@ impl<'a> Judge<'a> {
         let signal = factor.and_then(|own| signals.get(own.signal));
         match signal.and_then(|own| own.place_unit) {
             Some(unit) if at.which == 0 => unit.to_owned(),
-            _ => signal.map_or_else(String::new, |own| own.unit.text(self.prepared.facts.joint)),
+            _ => signal.map_or_else(String::new, |own| {
+                own.unit.text(self.fitted.prepared.facts.joint)
+            }),
         }
     }
 
@@ -368,7 +353,7 @@ impl<'a> Judge<'a> {
         if votes.is_empty() {
             votes.clone_from(&own.signals);
         }
-        let subject = self.prepared.facts.joint.subject();
+        let subject = self.fitted.prepared.facts.joint.subject();
         let varied = votes.iter().map(|signal| {
             let channel = self.rows.channels.get(*signal);
             let name = channel.map_or("", |own| own.signal.name.as_str());

@@ -4,13 +4,13 @@
 //! some of it, alone or beside the right law. What they explain falls with the noise then, where what
 //! a law explains stays (`diagnosis::confirmation`).
 
+use super::fitted::Fitted;
 use crate::data::{ModelSpec, Term};
 use crate::design::{Design, PreparedModel};
 use crate::diagnosis::confirmation::FACTOR;
-use crate::fit::addition::add_to;
 use crate::fit::{Fit, fit};
 use crate::preparation::Filtered;
-use crate::validation::left_out::{Decrease, LeftOut};
+use crate::validation::left_out::Decrease;
 
 /// Smallest ratio of the mean squares that the terms of a law explain there and here: half the
 /// amplitude. Noise keeps 1/32.
@@ -42,16 +42,14 @@ impl<'a> Slower<'a> {
         let Some((filtered, prepared, base)) = &self.fitted else {
             return true;
         };
-        let with = |effect: &Term| -> Option<LeftOut> {
-            let both = (prepared, base);
-            let (_, extended) = add_to(filtered, self.spec, both, effect, None).ok()?;
-            Some(LeftOut::new(&extended, &Design::new(&extended)))
+        let fitted = Fitted {
+            filtered,
+            spec: self.spec,
+            prepared,
+            base,
         };
-        let before = match rest {
-            Some(rest) => with(rest),
-            None => Some(base.left_out.clone()),
-        };
-        let (Some(before), Some(after)) = (before, with(formula)) else {
+        let (Some(before), Some(after)) = (fitted.left_out(rest), fitted.left_out(Some(formula)))
+        else {
             return false;
         };
         let there = after.decrease_from(&before);

@@ -77,10 +77,8 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     };
     let mut ports = SessionPorts::connect(
         &process.bus,
-        (
-            &process.session.joints(),
-            process.session.end == Some(End::Operator),
-        ),
+        &process.session.joints(),
+        End::arm_state(process.session.end),
         shared.clone(),
         hand,
         mapping,

@@ -124,11 +124,8 @@ impl NodeRow {
 
     /// Whether it takes part in `session` on this host.
     pub fn takes_part(&self, session: &SessionContext) -> bool {
-        let is_elsewhere = self
-            .end
-            .zip(session.end)
-            .is_some_and(|(own, here)| own != here);
-        !is_elsewhere && (self.in_session)(session)
+        let is_here = self.end.is_none_or(|own| own.is_at(session.end));
+        is_here && (self.in_session)(session)
     }
 
     /// Topics that it takes of an arm of those joints; none of a service, which

@@ -117,13 +117,9 @@ impl Monitor {
     ///
     /// A topic that cannot be opened.
     pub fn new(bus: &Bus, joints: &JointNames, end: Option<End>) -> Result<Monitor, CreateError> {
-        let link = match end {
-            Some(End::Arm) => topics::LINK_FOLLOWER_STATUS,
-            _ => topics::LINK_STATUS,
-        };
-        let arm_state = match end {
-            Some(End::Operator) => topics::LINK_ARM_STATE,
-            _ => topics::FOLLOWER_OPERATING_STATE,
+        let link = match End::Operator.is_at(end) {
+            true => topics::LINK_STATUS,
+            false => topics::LINK_FOLLOWER_STATUS,
         };
         let friction = topics::FOLLOWER_JOINT_FRICTION.of_joints(joints)?;
         let friction = friction.into_iter().map(|topic| {
@@ -136,7 +132,7 @@ impl Monitor {
             contact: watch(bus, topics::FOLLOWER_CONTACT_STATE)?,
             leader_force: watch(bus, topics::LEADER_SERVO_CF)?,
             states: [
-                ("follower", watch(bus, arm_state)?),
+                ("follower", watch(bus, End::arm_state(end))?),
                 ("leader", watch(bus, topics::LEADER_OPERATING_STATE)?),
             ],
             state_commands: [

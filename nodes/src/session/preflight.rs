@@ -22,7 +22,7 @@ pub fn check(context: &SessionContext) -> Result<(), SessionError> {
     let scenario = &context.loaded.scenario;
     check_link(&scenario.link.endpoint)?;
     // The arm's end listens.
-    if context.end != Some(End::Operator) {
+    if End::Arm.is_at(context.end) {
         check_endpoint(
             "the link's endpoint",
             &scenario.link.endpoint,

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     bridge::recorder,
-    events::{Event, EventWatch},
+    events::{Event, EventWatch, name_of},
     graph::Graph,
     master::THIS_HOST,
     process::{Clock, End, Priority, SessionContext},
@@ -117,8 +117,7 @@ pub fn run(
         due: Time::INVALID,
     };
     session.supervisor.start()?;
-    let mut outcome =
-        session.supervise(clock, &mut monitor, &mut arming, &mut teller, options, stop);
+    let outcome = session.supervise(clock, &mut monitor, &mut arming, &mut teller, options, stop);
     let ended = clock.now();
     monitor.update(ended);
     // As they were before the nodes were told to stop.
@@ -181,11 +180,11 @@ pub fn run(
     };
     drop((monitor, arming, teller, bus));
     let freed = resources.release();
-    if session.armed_at.is_none() {
+    let mut outcome = match (session.armed_at, outcome) {
         // There is nothing to sum up.
-        outcome?;
-        outcome = Ok(());
-    }
+        (None, Err(error)) => return Err(error),
+        (_, outcome) => outcome,
+    };
     if outcome.is_ok() {
         outcome = match recording_faults {
             Some(faults) if !faults.is_empty() => Err(SessionError::Recording { faults }),
@@ -223,10 +222,10 @@ impl Arming {
     /// Tells the devices at `end`, or both.
     fn tell(&mut self, now: Time, command: StateCommand, end: Option<End>) {
         // If a command is not sent the arm is not armed, which is noticed.
-        if end != Some(End::Operator) {
+        if End::Arm.is_at(end) {
             self.tell_arm(now, command);
         }
-        if end != Some(End::Arm) {
+        if End::Operator.is_at(end) {
             let _ = self
                 .leader
                 .publish(now, &StateCommandSample::new(now, command));
@@ -462,10 +461,7 @@ impl Running {
             return format!("nothing was heard of {}", silent.join(", "));
         }
         let device = self.device();
-        let named = match device {
-            "leader" => "master",
-            _ => "arm",
-        };
+        let named = name_of(device);
         match monitor.state_of(device) {
             Some(last) => format!(
                 "the {named} is {} and was not armed: {}",

@@ -215,8 +215,7 @@ impl fmt::Display for Summary {
             None => "-".to_owned(),
         };
         // What belongs to the other host is not known here.
-        let [has_hand, has_arm] =
-            [End::Operator, End::Arm].map(|own| self.end.is_none_or(|end| end == own));
+        let [has_hand, has_arm] = [End::Operator, End::Arm].map(|own| own.is_at(self.end));
         match has_arm {
             true => writeln!(
                 f,
