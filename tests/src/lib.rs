@@ -41,7 +41,7 @@ pub use live::{
 pub use machine::{Machine, Window, now};
 pub use memory::{MemoryLog, own_memory};
 pub use pair::{Member, Pair, PairOptions, Word};
-pub use places::{data, ferntast, peer, python, root};
+pub use places::{data, ferntast, is_thorough, peer, python, root};
 pub use process::{Ended, Process, limit_files};
 pub use python::ask_python;
 pub use session::{Session, free_tcp_port};

@@ -4,14 +4,14 @@ use std::fs;
 
 use ferntast_msgs::topics;
 use ferntast_tests::{
-    PATIENCE, Process, Session, await_armed, free_tcp_port, messages, number, recording, start,
-    state_of_follower, wait_until,
+    PATIENCE, Process, Session, await_armed, free_tcp_port, messages, number, recording, signal,
+    start, state_of_follower, wait_until,
 };
 
 /// The hand goes away from the operator, which is x of the arm, and presses on the edge there by 3 mm.
 #[test]
 fn a_haply_drives_the_arm_feels_the_edge_and_lets_go_where_its_service_is_silent() {
-    let session = Session::new();
+    let session = Session::alone();
     let port = free_tcp_port();
     let shipped = ferntast_tests::root().join("config/scenarios/operator.toml");
     let text = fs::read_to_string(shipped).expect("a scenario");
@@ -21,11 +21,12 @@ fn a_haply_drives_the_arm_feels_the_edge_and_lets_go_where_its_service_is_silent
     );
     fs::write(session.folder().join("haply.toml"), text).expect("scratch");
     let port = port.to_string();
-    let arguments = ["--port", &port, "--rest", "6"];
-    let mut service = Process::spawn(session.peer("haply_service.py", &arguments));
+    let mut service = Process::spawn(session.peer("haply_service.py", &["--port", &port]));
     service.await_stderr("ready", PATIENCE);
     let mut process = start(&session, &["--scenario", "haply.toml"]);
     await_armed(&session, &mut process);
+    let hand = i32::try_from(service.id()).expect("a process id");
+    signal(hand, libc::SIGUSR1);
     let told = service.wait(PATIENCE).success().json();
     println!("{told:#}");
     // The service fell silent: the arm holds.

@@ -64,30 +64,32 @@ fn who_claims_passivity_gives_out_no_more_than_it_took_in() {
 fn around_the_other_laws_the_layer_leaves_a_tenth_of_a_joule_of_it() {
     let (arm, stiffness) = stiff_arm();
     for inside in InnerLaw::all() {
-        let cases = 60;
-        let outcomes = |bare: bool| -> Vec<f64> {
-            let energy = |seed| {
-                let inside = inside.clone();
-                let make = |draw: &mut Draw| {
-                    let layered = Law::TwoLayer(two_layer(draw, inside.clone(), stiffness));
-                    match bare {
-                        true => Law::by_name(inside.name())
-                            .expect("every inner law is a law")
-                            .between(&layered.mapping()),
-                        false => layered,
-                    }
-                };
-                let trial = trial(&arm, seed, make);
-                trial.run().expect("a valid trial").energy_margin
+        let energy = |seed: u64, bare: bool| {
+            let inside = inside.clone();
+            let make = |draw: &mut Draw| {
+                let layered = Law::TwoLayer(two_layer(draw, inside.clone(), stiffness));
+                match bare {
+                    true => Law::by_name(inside.name())
+                        .expect("every inner law is a law")
+                        .between(&layered.mapping()),
+                    false => layered,
+                }
             };
-            (0..cases).map(energy).collect()
+            let trial = trial(&arm, seed, make);
+            trial.run().expect("a valid trial").energy_margin
         };
-        let worst = |bare| outcomes(bare).into_iter().fold(0.0, f64::min);
-        let (with, without) = (worst(false), worst(true));
-        let told = format!("{}: {with:.3} J, bare {without:.3} J", inside.name());
+        let cases = 0..60;
+        let with = cases.clone().map(|seed| energy(seed, false));
+        let with = with.fold(0.0, f64::min);
+        let told = format!("{}: {with:.3} J", inside.name());
         assert!(with > -0.15, "{told}");
+        let much = 5.0 * with.min(-0.02);
+        let mut without = cases.map(|seed| energy(seed, true));
         let makes_energy = inside.name() != "model_mediated";
-        assert!(!makes_energy || without < 5.0 * with.min(-0.02), "{told}");
+        assert!(
+            !makes_energy || without.any(|own| own < much),
+            "{told}, bare above {much:.3} J"
+        );
         println!("{told}");
     }
 }

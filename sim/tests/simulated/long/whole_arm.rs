@@ -66,16 +66,21 @@ fn run(name: &str, round_trip: f64, environment: Environment, task: Task) -> Out
     trial.run().expect("a valid trial")
 }
 
+/// Tasks and round trips \[s\] of an environment.
+fn ways() -> impl Iterator<Item = (Task, f64)> {
+    let round_trips = [0.02, 0.1, 0.3, 1.0];
+    let of = move |task| round_trips.map(|round_trip| (task, round_trip));
+    Task::ALL.into_iter().flat_map(of)
+}
+
 /// The least energy over round trips and tasks, and where.
 fn worst(name: &str, environment: Environment) -> (f64, String) {
     let mut worst = (0.0, String::new());
-    for task in Task::ALL {
-        for round_trip in [0.02, 0.1, 0.3, 1.0] {
-            let outcome = run(name, round_trip, environment, task);
-            if outcome.energy_margin < worst.0 {
-                let told = format!("{}, {}, {round_trip} s", environment.name(), task.name());
-                worst = (outcome.energy_margin, told);
-            }
+    for (task, round_trip) in ways() {
+        let outcome = run(name, round_trip, environment, task);
+        if outcome.energy_margin < worst.0 {
+            let told = format!("{}, {}, {round_trip} s", environment.name(), task.name());
+            worst = (outcome.energy_margin, told);
         }
     }
     worst
@@ -85,18 +90,24 @@ fn worst(name: &str, environment: Environment) -> (f64, String) {
 fn a_law_claims_passivity_where_it_makes_no_energy_and_only_there() {
     for law in Law::all() {
         let name = law.name();
-        let worst = thread::scope(|scope| {
-            let tried = Environment::ALL.map(|own| scope.spawn(move || worst(name, own)));
-            let all = tried.map(|own| own.join().expect("no panic"));
-            all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
-        });
-        let (energy, told) = worst.expect("some environment");
-        match law.claims_passivity() {
-            true => assert!(energy > -BOUND, "{name} makes {energy:.3} J: {told}"),
-            false => assert!(
-                energy < -BOUND,
-                "{name} makes {energy:.3} J at most: it may claim passivity"
-            ),
+        if law.claims_passivity() {
+            let worst = thread::scope(|scope| {
+                let tried = Environment::ALL.map(|own| scope.spawn(move || worst(name, own)));
+                let all = tried.map(|own| own.join().expect("no panic"));
+                all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
+            });
+            let (energy, told) = worst.expect("some environment");
+            assert!(energy > -BOUND, "{name} makes {energy:.3} J: {told}");
+        } else {
+            let makes_energy = |environment| {
+                ways().any(|(task, round_trip)| {
+                    run(name, round_trip, environment, task).energy_margin < -BOUND
+                })
+            };
+            assert!(
+                Environment::ALL.into_iter().any(makes_energy),
+                "{name} makes {BOUND} J nowhere: it may claim passivity"
+            );
         }
     }
 }

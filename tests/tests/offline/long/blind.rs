@@ -2,8 +2,21 @@
 
 use std::time::Duration;
 
-use ferntast_tests::{Process, Session, number};
+use ferntast_tests::{Process, Session, is_thorough, number};
 use serde_json::Value;
+
+/// What `ferntast challenge blind` tells of the seed that every test here has.
+fn blind(session: &Session, arguments: &[&str]) -> Value {
+    let mut command = session.ferntast(&["challenge", "blind", "--seed", "424242", "--json"]);
+    command.args(arguments);
+    let limit = Duration::from_secs(if is_thorough() { 1800 } else { 900 });
+    Process::spawn(command).wait(limit).success().json()
+}
+
+/// At half the strength an effect is hard enough to find that a change for the worse shows.
+fn strengths() -> &'static str {
+    if is_thorough() { "1,0.5,0.25" } else { "0.5" }
+}
 
 /// Recordings that hide an effect of the catalogue at one strength: each once. `ferntast challenge
 /// blind` says it of as many as one likes.
@@ -19,31 +32,25 @@ fn hidden(session: &Session, subject: &str) -> f64 {
 #[test]
 fn blind_on_recordings_that_nobody_has_seen() {
     let session = Session::new();
-    let arguments = [
-        "challenge",
-        "blind",
-        "--repeats",
-        "1",
-        "--strengths",
-        "1,0.5,0.25",
-        "--nothing",
-        "60",
-        "--two",
-        "6",
-        "--real-like",
-        "0",
-        "--seed",
-        "424242",
-        "--json",
-    ];
-    let limit = Duration::from_secs(900);
-    let told = Process::spawn(session.ferntast(&arguments))
-        .wait(limit)
-        .success()
-        .json();
+    let nothing = if is_thorough() { "60" } else { "30" };
+    let told = blind(
+        &session,
+        &[
+            "--repeats",
+            "1",
+            "--strengths",
+            strengths(),
+            "--nothing",
+            nothing,
+            "--two",
+            "6",
+            "--real-like",
+            "0",
+        ],
+    );
     let share = |value: &Value| number(value, "found") / number(value, "tried");
     assert_eq!(
-        number(&told["right_first"]["1"], "tried"),
+        number(&told["right_first"]["0.5"], "tried"),
         hidden(&session, "joint")
     );
     for (row, strength, least) in [
@@ -60,6 +67,9 @@ fn blind_on_recordings_that_nobody_has_seen() {
         ("as_good_as_true", "1", 0.90),
         ("as_good_as_true", "0.5", 0.95),
     ] {
+        if !strengths().split(',').any(|own| own == strength) {
+            continue;
+        }
         let found = share(&told[row][strength]);
         assert!(
             found >= least,
@@ -75,81 +85,75 @@ fn blind_on_recordings_that_nobody_has_seen() {
     let coverage = &told["coverage"];
     for (of, least) in [("fitted", 0.87), ("searched", 0.65), ("one_session", 0.87)] {
         let held = share(&coverage[of]);
-        assert!(
-            (least..=0.995).contains(&held),
-            "{of}: {held}, {coverage:#}"
-        );
+        // Of few intervals all may hold.
+        let most = match number(&coverage[of], "tried") {
+            few if few < 100.0 => 1.0,
+            _ => 0.995,
+        };
+        assert!((least..=most).contains(&held), "{of}: {held}, {coverage:#}");
     }
 }
 
 #[test]
 fn blind_on_contacts_that_nobody_has_seen() {
     let session = Session::new();
-    let arguments = [
-        "challenge",
-        "blind",
-        "--contact",
-        "--repeats",
-        "1",
-        "--strengths",
-        "1,0.5,0.25",
-        "--nothing",
-        "40",
-        "--two",
-        "6",
-        "--seed",
-        "424242",
-        "--json",
-    ];
-    let told = Process::spawn(session.ferntast(&arguments))
-        .wait(Duration::from_secs(900))
-        .success()
-        .json();
+    let nothing = if is_thorough() { "40" } else { "20" };
+    let told = blind(
+        &session,
+        &[
+            "--contact",
+            "--repeats",
+            "1",
+            "--strengths",
+            strengths(),
+            "--nothing",
+            nothing,
+            "--two",
+            "6",
+        ],
+    );
     let share = |value: &Value| number(value, "found") / number(value, "tried");
     let misses = &told["misses"];
     assert_eq!(
-        number(&told["right_first"]["1"], "tried"),
+        number(&told["right_first"]["0.5"], "tried"),
         hidden(&session, "contact")
     );
-    assert!(share(&told["right_first"]["1"]) >= 0.95, "{misses:#}");
-    assert!(share(&told["in_family"]["1"]) >= 0.99, "{misses:#}");
     assert!(share(&told["right_first"]["0.5"]) >= 0.80, "{misses:#}");
-    assert!(share(&told["unknown_not_named"]["1"]) >= 0.90, "{misses:#}");
+    if is_thorough() {
+        assert!(share(&told["right_first"]["1"]) >= 0.95, "{misses:#}");
+        assert!(share(&told["in_family"]["1"]) >= 0.99, "{misses:#}");
+        assert!(share(&told["unknown_not_named"]["1"]) >= 0.90, "{misses:#}");
+    }
     assert!(share(&told["one_of_two"]) >= 0.8, "{told:#}");
     assert!(share(&told["false_alarms"]) <= 0.03, "{misses:#}");
 }
 
 /// Recordings like real ones, one lack of the bench's at a time. What is named beyond what is
 /// there, or told to be indistinguishable from it: measured on 40 of each kind at another seed
-/// 0 to 2 of 40. 20 of each kind are few: the bounds leave room for chance.
+/// 0 to 2 of 40. 8 or 20 of each kind are few: the bounds leave room for chance.
 #[test]
 fn blind_on_recordings_like_real_ones() {
     let session = Session::new();
-    let arguments = [
-        "challenge",
-        "blind",
-        "--repeats",
-        "0",
-        "--nothing",
-        "0",
-        "--two",
-        "0",
-        "--real-like",
-        "20",
-        "--seed",
-        "424242",
-        "--json",
-    ];
-    let told = Process::spawn(session.ferntast(&arguments))
-        .wait(Duration::from_secs(900))
-        .success()
-        .json();
+    let of_each = if is_thorough() { 20.0 } else { 8.0 };
+    let told = blind(
+        &session,
+        &[
+            "--repeats",
+            "0",
+            "--nothing",
+            "0",
+            "--two",
+            "0",
+            "--real-like",
+            &of_each.to_string(),
+        ],
+    );
     let rows = told["real_like"].as_object().expect("rows by kind");
     assert_eq!(rows.len(), 7, "{rows:#?}");
     let mut beyond_family = 0.0;
     for (kind, row) in rows {
-        assert_eq!(number(row, "recordings"), 20.0, "{kind}");
-        assert_eq!(number(row, "false_names.tried"), 20.0, "{kind}");
+        assert_eq!(number(row, "recordings"), of_each, "{kind}");
+        assert_eq!(number(row, "false_names.tried"), of_each, "{kind}");
         let own = number(row, "false_names.found") - number(row, "false_in_family");
         match kind.as_str() {
             // A load that a model gives wrongly is told as that: 1 of 40 at the other seed.
@@ -157,14 +161,11 @@ fn blind_on_recordings_like_real_ones() {
                 let all = number(row, "false_names.found");
                 assert!((0.0..=1.0).contains(&own) && all <= 1.0, "{row:#}");
                 let right = number(row, "right_first.found");
-                assert!((18.0..=20.0).contains(&right), "{row:#}");
+                assert!((0.9 * of_each..=of_each).contains(&right), "{row:#}");
             }
-            _ => assert!(own <= 2.0, "{kind}: {row:#}"),
+            _ => assert!(own <= 0.1 * of_each + 0.5, "{kind}: {row:#}"),
         }
         beyond_family += own;
-        let share = |of: &str| {
-            number(row, &format!("{of}.found")) / number(row, &format!("{of}.tried")).max(1.0)
-        };
         let least = match kind.as_str() {
             // Few moves show few effects, and of one session nobody knows how it varies.
             "little_excitation" => 0.0,
@@ -172,7 +173,11 @@ fn blind_on_recordings_like_real_ones() {
             "one_session" => 0.5,
             _ => 0.75,
         };
-        assert!(share("in_family") >= least, "{kind}: {row:#}");
+        // One of few is a large share.
+        let slack = if is_thorough() { 0.0 } else { 1.0 };
+        let found = number(row, "in_family.found");
+        let least = least * number(row, "in_family.tried") - slack;
+        assert!(found >= least, "{kind}: {row:#}");
     }
-    assert!(beyond_family <= 5.0, "{told:#}");
+    assert!(beyond_family <= 0.25 * of_each, "{told:#}");
 }
