@@ -47,6 +47,7 @@ mod scan;
 mod sink;
 mod text;
 mod topic;
+mod write_behind;
 mod writer;
 
 pub use directory::bag_files;

@@ -3,6 +3,7 @@
 use std::{
     fs::File,
     io::{self, Seek, SeekFrom, Write},
+    mem,
     sync::{
         Arc,
         atomic::{AtomicU64, Ordering},
@@ -14,10 +15,11 @@ use mcap::records::op;
 use super::{
     block::{FRAME, frame},
     definitions::Definitions,
+    write_behind::WriteBehind,
 };
 
 /// A file, as far as a recording needs one.
-pub(crate) trait Storage: Write + Send {
+pub(crate) trait Storage: Write + Send + 'static {
     /// Cuts the store to `length` bytes; the next write goes to its end.
     fn cut(&mut self, length: u64) -> io::Result<()>;
     /// Brings what was written to the disk.
@@ -35,7 +37,7 @@ impl Storage for File {
     }
 }
 
-/// How many bytes a store holds, for whoever gave the store away.
+/// How many bytes a store holds, or will hold soon, for whoever gave the store away.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stored(Arc<AtomicU64>);
 
@@ -48,26 +50,25 @@ impl Stored {
 
 /// Gathers bytes in memory and hands them to the store at [`Write::flush`],
 /// all of them or, when the store refuses, none: then they wait for the next
-/// flush, and the store ends behind the last chunk that is whole. Behind a
+/// flush, and the store ends behind the last chunk that is whole. What a disk
+/// refuses is known at the flush after it, since it is written behind. Behind a
 /// flush, where no chunk is open, copies of the definitions are put in; so the
 /// checksum of all data is counted here.
 pub(crate) struct Sink<S: Storage> {
-    store: S,
+    store: Arc<WriteBehind<S>>,
     stored: Stored,
     staged: Vec<u8>,
-    torn: bool,
     /// Of what is stored.
     checksum: crc32fast::Hasher,
     definitions: Definitions,
 }
 
 impl<S: Storage> Sink<S> {
-    pub(crate) fn new(store: S, definitions: Definitions) -> Sink<S> {
+    pub(crate) fn new(store: Arc<WriteBehind<S>>, definitions: Definitions) -> Sink<S> {
         Sink {
             store,
             stored: Stored::default(),
             staged: Vec::new(),
-            torn: false,
             checksum: crc32fast::Hasher::new(),
             definitions,
         }
@@ -84,14 +85,9 @@ impl<S: Storage> Sink<S> {
         }
     }
 
-    /// Bytes that the store holds.
+    /// Bytes that the store holds, or will hold soon.
     pub(crate) fn stored(&self) -> Stored {
         self.stored.clone()
-    }
-
-    /// See [`Storage::sync`].
-    pub(crate) fn sync(&mut self) -> io::Result<()> {
-        self.store.sync()
     }
 }
 
@@ -105,25 +101,17 @@ impl<S: Storage> Write for Sink<S> {
         if self.staged.is_empty() {
             return Ok(());
         }
-        if self.torn {
-            self.store.cut(self.stored.bytes())?;
-            self.torn = false;
-        }
         self.seal();
-        let written = self
-            .store
-            .write_all(&self.staged)
-            .and_then(|()| self.store.flush());
-        if let Err(error) = written {
-            // What the store took of the chunk would be a broken end. Should
-            // the cut fail too, it is tried again before the next write.
-            self.torn = self.store.cut(self.stored.bytes()).is_err();
+        let mut checksum = self.checksum.clone();
+        checksum.update(&self.staged);
+        let length = self.staged.len() as u64;
+        if let Err((chunk, error)) = self.store.put(mem::take(&mut self.staged)) {
+            self.staged = chunk;
             return Err(error);
         }
-        let stored = self.stored.bytes() + self.staged.len() as u64;
+        self.checksum = checksum;
+        let stored = self.stored.bytes() + length;
         self.stored.0.store(stored, Ordering::Relaxed);
-        self.checksum.update(&self.staged);
-        self.staged.clear();
         if let Some(copy) = self.definitions.copy_due(stored) {
             self.staged = copy;
         }
@@ -196,16 +184,22 @@ pub(crate) mod tests {
     #[test]
     fn a_refused_chunk_leaves_no_trace_and_waits() {
         let disk = SmallDisk::new(10);
-        let mut sink = Sink::new(disk.clone(), Definitions::default());
+        let store = Arc::new(WriteBehind::begin(disk.clone()).unwrap());
+        let mut sink = Sink::new(store.clone(), Definitions::default());
         sink.write_all(b"12345678").unwrap();
         sink.flush().unwrap();
         sink.write_all(b"abcdef").unwrap();
-        assert_eq!(sink.flush().unwrap_err().kind(), io::ErrorKind::StorageFull);
+        sink.flush().unwrap();
+        assert_eq!(store.sync().unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert_eq!(*disk.content.lock().unwrap(), b"12345678");
+        sink.write_all(b"gh").unwrap();
+        assert_eq!(sink.flush().unwrap_err().kind(), io::ErrorKind::StorageFull);
+        assert_eq!(sink.stored().bytes(), 14);
 
         *disk.size.lock().unwrap() = 100;
         sink.flush().unwrap();
-        assert_eq!(*disk.content.lock().unwrap(), b"12345678abcdef");
-        assert_eq!(sink.stored().bytes(), 14);
+        store.sync().unwrap();
+        assert_eq!(*disk.content.lock().unwrap(), b"12345678abcdefgh");
+        assert_eq!(sink.stored().bytes(), 16);
     }
 }

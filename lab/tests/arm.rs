@@ -124,6 +124,19 @@ fn armatures_that_are_not_given_are_fitted_with_friction_joint_by_joint() {
 }
 
 #[test]
+fn a_joint_that_is_left_out_is_told_to_stand_at_zero() {
+    let folder = folder(false);
+    assert_eq!(
+        open(&folder, &format!("{ARM}{SIGNALS}{MODEL}")).notes,
+        [""; 0]
+    );
+    let only = ARM.replace(", \"elbow\"", "");
+    let notes = open(&folder, &format!("{only}{SIGNALS}{MODEL}")).notes;
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].starts_with("elbow of ") && notes[0].contains("taken to stand at zero"));
+}
+
+#[test]
 fn what_is_missing_in_an_arm_is_written_into_its_file() {
     let folder = folder(true);
     let given = format!("{ARM}armature = [0.3, 0.1]\n{SIGNALS}{MODEL}");

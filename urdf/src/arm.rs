@@ -28,6 +28,9 @@ pub struct Arm {
     pub efforts: Vec<Option<f64>>,
     /// Greatest speed \[rad/s\] or \[m/s\] of each joint, where the file tells it.
     pub velocities: Vec<Option<f64>>,
+    /// Joints of the file that are none of these and carry something that these carry, as a
+    /// gripper's: all that is taken to stand at zero.
+    pub standing: Vec<String>,
 }
 
 impl Robot {
@@ -291,7 +294,26 @@ impl Robot {
             tip: self.links[tip].name.clone(),
             efforts: moving.iter().map(|j| limit(j)?.effort).collect(),
             velocities: moving.iter().map(|j| limit(j)?.velocity).collect(),
+            standing: self.standing(&moving),
         })
+    }
+
+    /// Joints that are none of `moving`, and turn or slide something with a mass that these carry.
+    fn standing(&self, moving: &[&Joint]) -> Vec<String> {
+        let Some(first) = moving.first() else {
+            return Vec::new();
+        };
+        let carries = |joint: &Joint| {
+            let mut links = self.links.iter().enumerate();
+            links.any(|(link, own)| own.inertia.is_some() && self.way(joint.child, link).is_some())
+        };
+        let others = self.joints.iter().filter(|joint| {
+            joint.joint_type != JointType::Fixed
+                && !moving.iter().any(|own| own.child == joint.child)
+                && self.way(first.child, joint.parent).is_some()
+                && carries(joint)
+        });
+        others.map(|joint| joint.name.clone()).collect()
     }
 
     /// What each of these joints carries, without what the next one carries, in the frame

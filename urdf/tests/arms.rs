@@ -117,6 +117,10 @@ fn a_list_of_joints_stands_on_what_is_fixed_below_it() {
     assert_eq!((arm.base.as_str(), arm.tip.as_str()), ("world", "fore"));
     let only = robot.of_joints(&["slide"]).unwrap();
     assert_eq!((only.base.as_str(), only.joints.len()), ("upper", 1));
+    // What moves further out, and carries something.
+    assert_eq!(arm.standing, ["finger_joint"]);
+    let first = robot.of_joints(&["shoulder"]).unwrap();
+    assert_eq!(first.standing, ["slide", "finger_joint"]);
     let told = |names: &[&str]| robot.of_joints(names).unwrap_err().to_string();
     assert_eq!(
         told(&["shoulder", "slidr"]),

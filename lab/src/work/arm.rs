@@ -82,6 +82,22 @@ pub fn held_possible(effect: &str) -> String {
     )
 }
 
+/// What is said where joints of the file are none of the arm's.
+fn standing(arm: &ArmTable) -> Option<String> {
+    let others = &arm.arm.standing;
+    let (are, carried, which) = match others.len() {
+        0 => return None,
+        1 => ("is", "it carries", "it if it"),
+        _ => ("are", "they carry", "those that"),
+    };
+    Some(format!(
+        "{} of {} {are} not among the joints of [arm]: what {carried} is taken to stand at zero; list {which} moved or \
+         stood elsewhere",
+        others.join(", "),
+        arm.urdf.display()
+    ))
+}
+
 impl OpenedArm {
     pub(super) fn read(experiment: Experiment, arm: &ArmTable) -> Result<OpenedArm, WorkError> {
         let loaded = recording::load(&experiment)?;
@@ -101,11 +117,13 @@ impl OpenedArm {
             },
             effects: experiment.model.effects.iter().map(ArmTerm::of).collect(),
         };
+        let mut notes = loaded.notes;
+        notes.extend(standing(arm));
         Ok(OpenedArm {
             experiment,
             dataset,
             spec,
-            notes: loaded.notes,
+            notes,
             tallies: loaded.tallies,
         })
     }
