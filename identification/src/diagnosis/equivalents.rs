@@ -11,7 +11,7 @@ const MAX_GAIN_DIFFERENCE: f64 = 2.0;
 /// Smallest ratio of an equivalent's gain to that of the best …
 const MIN_GAIN_RATIO: f64 = 0.85;
 /// … and largest ratio of the mean squares that they leave.
-const MAX_REMAINDER_RATIO: f64 = 1.05;
+pub(super) const MAX_REMAINDER_RATIO: f64 = 1.05;
 /// Smallest share of the mean square that a suspect explains.
 const SUSPECT_MIN_SHARE: f64 = 0.2;
 /// A suspect is equivalent to the best if the ratio of their gains is above this …

@@ -9,8 +9,8 @@ use super::dependence::Dependence;
 use super::results::Verdict;
 use super::verdict::{judge, maps, passing};
 use super::{
-    at_reversals, backlash_or_presliding, beyond_a_limit, encompassing_test, equivalents,
-    modelled_load, sensor_zero,
+    at_reversals, backlash_or_presliding, beyond_a_limit, by_left_out, encompassing_test,
+    equivalents, modelled_load, sensor_zero,
 };
 use crate::data::ModelSpec;
 use crate::data::error::PrepareError;
@@ -68,6 +68,7 @@ pub(super) fn examine(
     encompassing_test::drop_redundant_terms(&prepared, &design, &mut passing);
     modelled_load::drop_pulls(&prepared, &design, &mut passing, &trial.candidates);
     equivalents::order(&design, &mut passing);
+    by_left_out::put_first(&mut acceptance, &mut passing);
     beyond_a_limit::put_behind(&prepared, &design, &mut passing);
     modelled_load::put_first(&prepared, &design, &mut passing);
     backlash_or_presliding::decide(&prepared, &mut passing, &trial.candidates);

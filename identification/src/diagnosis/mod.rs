@@ -2,7 +2,7 @@
 //!
 //! Every effect that the model lacks is a candidate (`candidates`). Of those that pass the tests
 //! (`verdict`) and lower the error that is reported (`acceptance`), the simplest of the equivalent
-//! ones comes first (`equivalents`), after pairs that are easily confused have been decided: by the
+//! ones comes first (`equivalents`), or what leaves clearly less of that error (`by_left_out`), after pairs that are easily confused have been decided: by the
 //! rows at reversals, by the sensor's zero, by what large torques have in common
 //! (`beyond_a_limit`), by an encompassing test (`examination`). What noise of the acceleration may
 //! look like has to be there with a slower filter, too (`confirmation`). The same at other cut-offs
@@ -12,6 +12,7 @@ mod acceptance;
 mod at_reversals;
 mod backlash_or_presliding;
 mod beyond_a_limit;
+mod by_left_out;
 mod candidates;
 pub(crate) mod confirmation;
 pub mod dependence;

@@ -11,7 +11,7 @@ use crate::data::{Dataset, Inertia, ModelSpec, Term};
 use crate::design::{Design, PreparedModel};
 use crate::effects;
 use crate::preparation::{Filtered, KnownShape};
-use crate::validation::left_out::Decrease;
+use crate::validation::left_out::{Decrease, LeftOut};
 
 /// Errors and parameters without and with one more effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,6 +24,9 @@ pub struct Addition {
     pub held_out_after: f64,
     /// The same as mean squares, with the uncertainty of their difference.
     pub decrease: Decrease,
+    /// Residuals on rows left out, after.
+    #[serde(skip)]
+    pub left_out: LeftOut,
     /// Whether the error on rows left out falls by more than its own uncertainty.
     pub lowers_error: bool,
     /// Share of the rows fitted that count for errors: torque beyond a limit of the
@@ -98,6 +101,7 @@ pub(crate) fn add_to(
         judged_share: 1.0 - count(unjudged_rows(&extended)) / count(rows(&extended)).max(1.0),
         train_before: before.train,
         train_after: after.train,
+        left_out: after.left_out,
         parameters: after.parameters,
         not_excited: after.not_excited,
         soundness: after.soundness,

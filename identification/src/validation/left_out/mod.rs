@@ -80,6 +80,13 @@ impl LeftOut {
         Self { blocks }
     }
 
+    /// Whether these are on rows of which the other has as many, block by block.
+    #[must_use]
+    pub fn has_rows_of(&self, other: &Self) -> bool {
+        let lengths = |own: &Self| own.blocks.iter().map(Vec::len).collect::<Vec<_>>();
+        lengths(self) == lengths(other)
+    }
+
     /// Root mean square \[Nm\].
     #[must_use]
     pub fn rms(&self) -> f64 {
