@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn places_in_source_files_are_left_out_and_causes_stay() {
-        let text = "Unable to open listener at /root/.cargo/registry/src/index-1/zenoh-1.5/src/net/utils.rs:523. - \
+        let text = "Unable to open listener at /home/me/.cargo/registry/src/index-1/zenoh-1.5/src/net/utils.rs:523. - \
                     Caused by: address in use at src/tcp.rs:7.";
         let expected = "Unable to open listener. - Caused by: address in use.";
         assert_eq!(words(text), expected);
