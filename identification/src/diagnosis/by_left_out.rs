@@ -4,31 +4,28 @@
 //! effects apart; the reported error has one set for all recordings. Whoever reads both wonders why
 //! the effect below leaves less.
 
-use super::acceptance::Acceptance;
+use std::collections::BTreeMap;
+
 use super::candidates::Candidate;
 use super::equivalents::MAX_REMAINDER_RATIO;
+use crate::fit::addition::Addition;
 
 /// Puts first what leaves clearly less of the reported error than the first of `passing` does, if
-/// anything: by more than effects that count as equal, and than that is uncertain.
-pub(super) fn put_first(acceptance: &mut Acceptance<'_>, passing: &mut Vec<Candidate>) {
-    let Some(first) = passing.first().and_then(|own| acceptance.of(own)).cloned() else {
+/// anything: by more than effects that count as equal, and than that is uncertain. `made` has the
+/// model with each of them.
+pub(super) fn put_first(made: &BTreeMap<String, Option<Addition>>, passing: &mut Vec<Candidate>) {
+    let left_out = |own: &Candidate| Some(&made.get(own.id())?.as_ref()?.left_out);
+    let Some(first) = passing.first().and_then(left_out) else {
         return;
     };
-    let mut best: Option<(usize, f64)> = None;
-    for (at, own) in passing.iter().enumerate().skip(1) {
-        let Some(other) = acceptance.of(own) else {
-            continue;
-        };
-        if !other.left_out.has_rows_of(&first.left_out) {
-            continue;
-        }
-        let decrease = other.left_out.decrease_from(&first.left_out);
+    let clearly_less = passing.iter().enumerate().filter_map(|(at, own)| {
+        let other = left_out(own).filter(|other| other.has_rows_of(first))?;
+        let decrease = other.decrease_from(first);
         let is_clear = decrease.is_certain()
             && decrease.before.powi(2) > MAX_REMAINDER_RATIO * decrease.after.powi(2);
-        if is_clear && best.is_none_or(|(_, least)| decrease.after < least) {
-            best = Some((at, decrease.after));
-        }
-    }
+        is_clear.then_some((at, decrease.after))
+    });
+    let best = clearly_less.min_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((at, _)) = best {
         let own = passing.remove(at);
         passing.insert(0, own);

@@ -68,7 +68,7 @@ pub(super) fn examine(
     encompassing_test::drop_redundant_terms(&prepared, &design, &mut passing);
     modelled_load::drop_pulls(&prepared, &design, &mut passing, &trial.candidates);
     equivalents::order(&design, &mut passing);
-    by_left_out::put_first(&mut acceptance, &mut passing);
+    by_left_out::put_first(&acceptance.made, &mut passing);
     beyond_a_limit::put_behind(&prepared, &design, &mut passing);
     modelled_load::put_first(&prepared, &design, &mut passing);
     backlash_or_presliding::decide(&prepared, &mut passing, &trial.candidates);

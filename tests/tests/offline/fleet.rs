@@ -161,6 +161,7 @@ fn journal(folder: &Path) -> String {
         .expect("an arm")
         .parse()
         .expect("TOML");
+    let arms = arms();
     let next = AtomicUsize::new(0);
     let threads = thread::available_parallelism().map_or(2, |own| own.get());
     let work = || {
@@ -168,10 +169,10 @@ fn journal(folder: &Path) -> String {
         let mut text = String::new();
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
-            if i >= arms() * DAYS as usize {
+            if i >= arms * DAYS as usize {
                 return text;
             }
-            let line = day_of(&graph, folder, &shipped, i % arms(), (i / arms()) as i64);
+            let line = day_of(&graph, folder, &shipped, i % arms, (i / arms) as i64);
             writeln!(text, "{line}").expect("memory");
         }
     };
