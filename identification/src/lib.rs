@@ -50,7 +50,7 @@ pub use data::{
     CustomEffect, Dataset, Inertia, JointType, ModelSpec, RecordedSession, Subject, Term,
 };
 pub use design::PreparedModel;
-pub use diagnosis::{Diagnosis, Suspect, Verdict, diagnose, diagnose_at_cutoffs};
+pub use diagnosis::{Diagnosis, NotTested, Suspect, Verdict, diagnose, diagnose_at_cutoffs};
 pub use discovery::{Discovery, Formula, discover};
 pub use effects::EffectDescription;
 pub use ferntast_model::friction::Proposal;

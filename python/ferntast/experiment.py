@@ -101,11 +101,19 @@ class Experiment:
         experiment.made = json.loads(made)
         return experiment
 
-    def save(self, folder: PathLike) -> Experiment:
+    def save(self, folder: PathLike, force: bool = False) -> Experiment:
         """Copies an experiment that was made of arrays, with its recordings and those
-        experiments that came of it, into `folder`; gives the one there."""
+        experiments that came of it, into `folder`; gives the one there. What is there already
+        is refused, or written over where `force` says so."""
         if self._keep is None:
             raise RefusedError(f"{self.path} is a file already: copy it with its recordings")
+        names = sorted(own.name for own in self.path.parent.iterdir())
+        there = [name for name in names if (Path(folder) / name).exists()]
+        if there and not force:
+            raise RefusedError(
+                f"{folder} has {there[0]} already: name another folder, or write over it with "
+                "force=True"
+            )
         shutil.copytree(self.path.parent, folder, dirs_exist_ok=True)
         return Experiment(Path(folder) / self.path.name)
 

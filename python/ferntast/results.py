@@ -89,6 +89,10 @@ class Diagnosis(_Answer):
     suspected: list[Record]
     residual_depends_on: list[Record]
     tried: int
+    not_tested: list[str]
+    """Effects that these recordings cannot show, whatever the verdict."""
+    why_not_tested: list[str]
+    """The same in words, a line for each reason."""
 
     @classmethod
     def from_answer(cls, answer: dict[str, Any], _experiment: Experiment) -> Diagnosis:

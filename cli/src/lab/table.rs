@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use ferntast_identification::{
-    Comparison, Diagnosis, Discovery, Formula, Usage, Verdict,
+    Comparison, Diagnosis, Discovery, Formula, NotTested, Usage, Verdict,
     comparison::{VariesTogether, residual_map::ResidualMap},
     diagnosis::NamedCandidate,
     fit::{Parameter, Soundness},
@@ -251,13 +251,13 @@ pub fn formula(formula: &Formula, number: usize, unit: &str) {
 }
 
 /// What a verdict does not rest on.
-pub fn not_tested(effects: &[String]) {
-    if !effects.is_empty() {
+pub fn not_tested(own: &NotTested) {
+    if !own.why_not_tested.is_empty() {
         println!();
-        println!(
-            "not tested, since the motions of other joints are not among the signals: {}",
-            effects.join(", ")
-        );
+        println!("not tested, since these recordings cannot show it");
+    }
+    for line in &own.why_not_tested {
+        println!("  {line}");
     }
 }
 

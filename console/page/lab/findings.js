@@ -44,6 +44,12 @@ export function ranking(candidates, { unitOf, nameOf, whereOf = null, add }) {
     }))));
 }
 
+/** What a verdict does not rest on, a line for each reason; null where there is none. */
+export function notTested({ why_not_tested: why }) {
+  return why.length ? make("div", { className: "note", id: "not-tested" }, "These recordings cannot show ",
+    make("ul", {}, why.map((line) => make("li", { textContent: words(line) })))) : null;
+}
+
 /** The verdict with its ranking and evidence. */
 export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
   const { unit } = view.joints[joint];
@@ -66,7 +72,8 @@ export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
       make("h2", { textContent: "The residual depends on", style: "margin-top:14px" }),
       make("p", { className: "quiet small", textContent: "The parts overlap, since signals go together: their sum says nothing." }),
       make("table", {}, make("tbody", {}, found.residual_depends_on.map((dependence) => make("tr", {},
-        make("td", { textContent: dependence.signals.map(words).join(" and ") }), make("td", { className: "right number", textContent: percent(dependence.strength) })))))] : null);
+        make("td", { textContent: dependence.signals.map(words).join(" and ") }), make("td", { className: "right number", textContent: percent(dependence.strength) })))))] : null,
+    notTested(found));
 }
 
 /** Every chart of an experiment. */

@@ -23,8 +23,7 @@ use super::trial::{Tried, try_all, try_one};
 use crate::comparison::{Usage, VariesTogether, noise_floor::NoiseFloor};
 use crate::data::Term;
 use crate::diagnosis::dependence::Dependence;
-use crate::diagnosis::{self, Diagnosis, NamedCandidate, Suspect, Verdict};
-use crate::effects::COUPLING;
+use crate::diagnosis::{self, Diagnosis, NamedCandidate, NotTested, Suspect, Verdict};
 use crate::fit::Rms;
 use ferntast_model::friction::Proposal;
 
@@ -119,8 +118,10 @@ pub struct ArmDiagnosis {
     pub varies_together: Vec<VariesTogether>,
     /// Every joint.
     pub joints: BTreeMap<String, JointDiagnosis>,
-    /// Effects that these recordings cannot show, whatever the verdict.
-    pub not_tested: Vec<String>,
+    /// What these recordings cannot show of any joint, whatever the verdict: `not_tested`,
+    /// `why_not_tested`.
+    #[serde(flatten)]
+    pub not_tested: NotTested,
     /// Effects and shapes tried.
     pub tried: usize,
 }
@@ -215,10 +216,8 @@ pub fn diagnose(
         residual_depends_on: depends_on(&arm, &each),
         varies_together: varies_together(&arm.joints),
         joints,
-        not_tested: match all.len() > 1 {
-            true => Vec::new(),
-            false => vec![COUPLING.to_owned()],
-        },
+        // Every joint has the same sessions, and the links' torque for a load.
+        not_tested: (each.first()).map_or_else(NotTested::default, |own| own.not_tested.clone()),
         tried: each.iter().map(|own| own.tried).sum::<usize>() + tried.len(),
     })
 }

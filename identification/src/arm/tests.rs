@@ -145,7 +145,17 @@ fn all_complete(told: &ArmDiagnosis) {
     assert_eq!(told.verdict, Verdict::Complete, "{:#?}", told.candidates);
     let mut joints = told.joints.values();
     assert!(joints.all(|own| own.verdict == Verdict::Complete));
-    assert!(told.candidates.is_empty() && told.not_tested.is_empty());
+    assert!(told.candidates.is_empty());
+    // Motions of the other joint are there; these sessions have no temperature, and no sensor.
+    let not_tested = &told.not_tested.not_tested;
+    assert!(
+        !not_tested.iter().any(|own| own == "joint_coupling"),
+        "{not_tested:?}"
+    );
+    assert!(
+        not_tested.iter().any(|own| own == "elasticity"),
+        "{not_tested:?}"
+    );
 }
 
 #[test]

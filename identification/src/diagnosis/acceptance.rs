@@ -18,8 +18,8 @@ use crate::fit::addition::{Addition, add_to};
 use crate::preparation::Filtered;
 
 /// Largest share of the samples beyond a limit of torque: what is measured there tells
-/// nothing of the model.
-const MAX_SHARE_BEYOND: f64 = 0.25;
+/// nothing of the model. Of a drive's limit it is less by the limits that are tried.
+const MAX_SHARE_BEYOND: f64 = 0.35;
 
 /// Additions of candidates, by their ids; made once.
 pub struct Acceptance<'a> {

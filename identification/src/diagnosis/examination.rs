@@ -87,9 +87,15 @@ pub(super) fn examine(
     }
     acceptance.keep_accepted(&mut passing);
     progress(0.75);
-    let verdict = judge(&prepared, &passing, &maps, &confirmation, &mut |done| {
-        progress(0.75 + 0.2 * done)
-    });
+    let mut tell = |done| progress(0.75 + 0.2 * done);
+    let verdict = judge(
+        &prepared,
+        &design,
+        &passing,
+        &maps,
+        &confirmation,
+        &mut tell,
+    );
     let made = acceptance.made.into_iter();
     let additions = made.filter_map(|(id, addition)| Some((id, addition?)));
     let additions = additions.collect();

@@ -20,6 +20,7 @@ mod encompassing_test;
 mod equivalents;
 mod examination;
 mod modelled_load;
+mod not_tested;
 mod other_cutoffs;
 mod results;
 mod sensor_zero;
@@ -32,13 +33,13 @@ use crate::data::check::check;
 use crate::data::error::PrepareError;
 use crate::data::{Dataset, ModelSpec, RecordedSession};
 use crate::design::{Design, PreparedModel};
-use crate::effects::COUPLING;
 use crate::fit::addition::Addition;
 use crate::fit::{Parameter, Rms};
 use crate::preparation::Filtered;
 
 use candidates::{Candidate, Trial};
 use examination::Examination;
+pub use not_tested::NotTested;
 pub use results::{Diagnosis, NamedCandidate, RunnerUp, Suspect, Verdict, VerdictAtCutoff, WhyNot};
 use verdict::why_not;
 
@@ -142,10 +143,7 @@ fn describe_all(dataset: &Dataset, found: &Examination) -> Diagnosis {
         varies_together: varies_together::find(dataset),
         residual_depends_on: depends_on,
         tried: trial.variants + trial.variants_between,
-        not_tested: match prepared.coupling().is_some() || dataset.joint.is_contact() {
-            true => Vec::new(),
-            false => vec![COUPLING.to_owned()],
-        },
+        not_tested: NotTested::of(prepared, prepared.coupling().is_some()),
     }
 }
 

@@ -6,6 +6,7 @@ use ferntast_model::friction::Proposal;
 use serde::{Deserialize, Serialize};
 
 use super::dependence::Dependence;
+use super::not_tested::NotTested;
 use crate::comparison::noise_floor::NoiseFloor;
 use crate::comparison::usage::Usage;
 use crate::comparison::varies_together::VariesTogether;
@@ -161,9 +162,9 @@ pub struct Diagnosis {
     pub residual_depends_on: Vec<Dependence>,
     /// Effects and shapes tried.
     pub tried: usize,
-    /// Effects that these recordings cannot show, whatever the verdict: coupling
-    /// with joints whose motion is not among them.
-    pub not_tested: Vec<String>,
+    /// What these recordings cannot show, whatever the verdict: `not_tested`, `why_not_tested`.
+    #[serde(flatten)]
+    pub not_tested: NotTested,
 }
 
 impl Diagnosis {

@@ -1,5 +1,6 @@
 //! The terms that a search begins from, each with its column: functions of one signal
-//! and products of two, with their constants on a coarse grid.
+//! and products of two, with their constants on a coarse grid; of three signals over which
+//! there is a map, products of three of the plainest.
 
 use super::rows::{Channel, Kind, Rows, square};
 use super::shape::Shape;
@@ -168,6 +169,20 @@ pub(super) fn factors_in_products(rows: &Rows) -> Vec<Factor> {
         .collect()
 }
 
+/// Of those that enter products the plainest, which enter products of three, too.
+fn plainest(factors: &Factors) -> impl Iterator<Item = &Factor> {
+    const PLAIN: [Shape; 6] = [
+        Shape::Linear,
+        Shape::Size,
+        Shape::Shifted,
+        Shape::Bowl,
+        Shape::Sine,
+        Shape::Cosine,
+    ];
+    let all = factors.in_products.iter();
+    all.filter(|own| PLAIN.contains(&own.shape))
+}
+
 /// Whether a term with these factors can change its sign with the direction, too:
 /// functions of the velocity have a sign of their own.
 fn may_turn(factors: &[Factor]) -> bool {
@@ -175,9 +190,10 @@ fn may_turn(factors: &[Factor]) -> bool {
 }
 
 impl Dictionary {
-    /// Every term over the signals of `rows` whose column is not the model's own.
+    /// Every term over the signals of `rows` whose column is not the model's own; `triples` are
+    /// the numbers of signals over which the residual goes together.
     /// `progress` is called with the share done, 0 … 1.
-    pub(super) fn new(rows: &Rows, progress: &mut dyn FnMut(f64)) -> Self {
+    pub(super) fn new(rows: &Rows, triples: &[[usize; 3]], progress: &mut dyn FnMut(f64)) -> Self {
         let of_signals: Vec<Factors> = rows
             .channels
             .iter()
@@ -228,6 +244,25 @@ impl Dictionary {
                 }
             }
             progress((second + 1).pow(2) as f64 / count.pow(2) as f64);
+        }
+        for triple in triples {
+            let [Some(first), Some(second), Some(third)] = triple.map(|at| of_signals.get(at))
+            else {
+                continue;
+            };
+            for first in plainest(first) {
+                let of_first = rows.factor(first);
+                for second in plainest(second) {
+                    let of_second = rows.factor(second);
+                    for third in plainest(third) {
+                        let of_third = rows.factor(third);
+                        both(
+                            &[*first, *second, *third],
+                            &[&of_first, &of_second, &of_third],
+                        );
+                    }
+                }
+            }
         }
         dictionary
     }

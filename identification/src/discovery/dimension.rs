@@ -33,6 +33,11 @@ impl Dimension {
         Self::of([0.0, 1.0, -f64::from(order), 0.0])
     }
 
+    /// Of time.
+    pub(super) const fn second() -> Self {
+        Self::of([0.0, 0.0, 1.0, 0.0])
+    }
+
     /// Of differences of temperature.
     pub(super) const fn kelvin() -> Self {
         Self::of([0.0, 0.0, 0.0, 1.0])

@@ -70,7 +70,8 @@ pub fn discover(
         .flat_map(|own| own.signals.clone())
         .collect();
     let rows = Rows::new(&prepared, &design, &depends_on);
-    let dictionary = Dictionary::new(&rows, &mut |done| progress(0.3 + 0.1 * done));
+    let triples = rows.triples(&diagnosis.residual_depends_on);
+    let dictionary = Dictionary::new(&rows, &triples, &mut |done| progress(0.3 + 0.1 * done));
     let found = search(&rows, &dictionary, seed, &mut |done| {
         progress(0.4 + 0.4 * done);
     });

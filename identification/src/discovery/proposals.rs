@@ -371,6 +371,8 @@ impl<'a> Judge<'a> {
 fn varied_by(subject: Subject, signal: &str) -> Proposal {
     match (subject, signal) {
         (_, "T") => Proposal::TemperatureSweep,
+        (Subject::Joint, "t") => Proposal::DateSweep,
+        (Subject::Contact, "t") => Proposal::ContactDates,
         (Subject::Joint, "q") => Proposal::WidePosition,
         (Subject::Joint, "qd") => Proposal::WideSpeedRange,
         (Subject::Joint, "tau") => Proposal::LoadSteps,

@@ -5,9 +5,11 @@
 use super::dimension::Dimension;
 use super::term::{Signal, Term, VELOCITY};
 use crate::design::{Design, PreparedModel};
+use crate::diagnosis::dependence::Dependence;
 use crate::effects::expression::signal_names;
 use crate::numerics::statistics::quantile_or_zero;
-use crate::signals::{Point, Signals};
+use crate::preparation::has_dates;
+use crate::signals::{Point, SECONDS_PER_DAY, Signals};
 
 /// Rows that a search works on, at most …
 const MAX_ROWS: usize = 3500;
@@ -155,6 +157,21 @@ impl Rows {
         rows
     }
 
+    /// The numbers of the signals, in order, of every map over three.
+    pub(super) fn triples(&self, maps: &[Dependence]) -> Vec<[usize; 3]> {
+        let number = |name: &String| {
+            let mut all = self.channels.iter();
+            all.position(|own| &own.signal.of_results == name)
+        };
+        let each = maps.iter().filter_map(|map| {
+            let numbers: Option<Vec<usize>> = map.signals.iter().map(number).collect();
+            let mut triple: [usize; 3] = numbers?.try_into().ok()?;
+            triple.sort_unstable();
+            Some(triple)
+        });
+        each.collect()
+    }
+
     /// Number of rows.
     pub(super) fn count(&self) -> usize {
         self.residual.len()
@@ -253,6 +270,18 @@ fn sources(prepared: &PreparedModel, first: &[String]) -> Vec<Source> {
             },
             kind: Kind::Slow,
             read: Box::new(move |signals, at| signals.points[at].temperature + mean),
+        });
+    }
+    if has_dates(facts) {
+        all.push(Source {
+            signal: Signal {
+                name: names[6].to_owned(),
+                of_results: "date".to_owned(),
+                unit: Dimension::second(),
+                place_unit: None,
+            },
+            kind: Kind::Slow,
+            read: Box::new(|signals, at| signals.points[at].days * SECONDS_PER_DAY),
         });
     }
     let mut extras: Vec<String> = (prepared.sessions.first())

@@ -17,7 +17,8 @@ const MAX_BINS: usize = 1 << 15;
 ///
 /// The residual (each session with parameters of its own) is averaged in narrow
 /// bins of position, apart for slow and fast rows, because the filter takes the
-/// ripple out of fast ones; then sine and cosine are projected on the bins.
+/// ripple out of fast ones; then sine and cosine are projected on the bins. Of an effect that
+/// goes with the load it is the residual's slope over the load that is averaged.
 #[must_use]
 pub fn peaks(
     prepared: &PreparedModel,
@@ -37,6 +38,7 @@ pub fn peaks(
     let bins = ((range / finest * BINS_A_PERIOD).ceil() as usize).clamp(64, MAX_BINS);
     let highest = highest.min(std::f64::consts::TAU * bins as f64 / (4.0 * range));
     let width = range / bins as f64;
+    let goes_with_load = effect.row().own_signals.names.contains(&"load");
     let mut sums = vec![(0.0, 0.0); bins];
     for (session, signals) in design.sessions.iter().zip(&prepared.sessions) {
         let residual = session.own_residual();
@@ -51,9 +53,10 @@ pub fn peaks(
             let bin = ((point.position - prepared.facts.position[0]) / width).floor();
             if bin >= 0.0 && (bin as usize) < bins {
                 let weight = 1.0 / (1.0 + (point.velocity / typical).powi(2));
+                let factor = if goes_with_load { point.load } else { 1.0 };
                 let (sum, weights) = &mut sums[bin as usize];
-                *sum += weight * r;
-                *weights += weight;
+                *sum += weight * factor * r;
+                *weights += weight * factor * factor;
             }
         }
     }

@@ -20,7 +20,8 @@ pub use point::Point;
 pub(crate) use sliding::{Motion, Sliding};
 use sliding::{rows_clear_of_bad_samples, touches_and_moves};
 
-const SECONDS_PER_DAY: f64 = 86_400.0;
+/// Seconds of a day.
+pub(crate) const SECONDS_PER_DAY: f64 = 86_400.0;
 
 /// A session at its working rate, and the rows of the regression. For a prismatic
 /// joint read m for rad and N for Nm; of a contact see [`Point`].

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 use crate::{
     CustomEffect, Dataset, Diagnosis, ExpressionError, Inertia, ModelSpec, PrepareError, Term,
-    Verdict, add, compare, diagnose, effects,
+    Verdict, add, compare, diagnose, discover, effects,
 };
 use recordings::{INERTIA, JointState, model, plain, recording};
 
@@ -71,6 +71,29 @@ fn ripple_of_any_period_is_found() {
         let found = diagnosis.candidates[0].parameters["k"].value;
         assert!((found - k).abs() < 0.01 * k, "{found} for {k}");
     }
+}
+
+/// A gain that is periodic leaves nothing in the mean over position: the residual's slope over
+/// the load has the period.
+#[test]
+fn a_ripple_of_the_gain_is_told_from_one_of_torque() {
+    let diagnosis = ask(|s| plain(s) + 0.2 * s.tau * (77.0 * s.q + 1.0).sin());
+    assert_eq!(named(&diagnosis), "load_ripple");
+    let parameters = &diagnosis.candidates[0].parameters;
+    let value = |name: &str| parameters[name].value;
+    assert!((value("kaT") - 77.0).abs() < 0.5, "{parameters:?}");
+    let size = value("a_sT").hypot(value("a_cT"));
+    assert!((size - 0.2).abs() < 0.02, "{parameters:?}");
+    let both = ask(|s| plain(s) + (0.5 + 0.2 * s.tau) * (77.0 * s.q + 1.0).sin());
+    let names: Vec<&str> = both
+        .candidates
+        .iter()
+        .map(|own| own.effect.as_str())
+        .collect();
+    assert!(
+        names.contains(&"load_ripple") && names.contains(&"ripple"),
+        "{names:?}"
+    );
 }
 
 #[test]
@@ -153,6 +176,49 @@ fn what_the_catalogue_lacks_has_signals_and_no_name() {
         "{:?}",
         first.signals
     );
+}
+
+/// A product of three signals, one of them the temperature: each session has another sign or size
+/// of the same map over two, and the mean over sessions may be nothing.
+#[test]
+fn a_product_with_the_temperature_is_seen_and_written_down() {
+    type Law = fn(&JointState) -> f64;
+    let laws: [(Law, [&str; 2]); 3] = [
+        (
+            |s| 0.5 * (s.temperature - 11.0) * (s.q - 0.2) * s.qd,
+            ["position", "velocity"],
+        ),
+        (
+            |s| 3.0 * s.temperature * (s.q - 0.2) * s.qd,
+            ["position", "velocity"],
+        ),
+        (
+            |s| 0.05 * (s.temperature - 11.0) * s.tau * s.qd,
+            ["velocity", "load"],
+        ),
+    ];
+    for (law, pair) in laws {
+        let data = recording(3, |s| plain(s) + law(s));
+        let spec = model(&["coulomb", "viscous"]);
+        let found = discover(&data, &spec, 1, &mut |_| ()).unwrap();
+        assert_eq!(found.verdict, Verdict::Unexplained, "{pair:?}");
+        let maps: Vec<&[String]> = (found.residual_depends_on.iter())
+            .map(|own| own.signals.as_slice())
+            .collect();
+        let has = |signal: &str| maps[0].iter().any(|own| own == signal);
+        assert!(
+            has("temperature") && pair.iter().any(|own| has(own)),
+            "{maps:?}"
+        );
+        // The noise alone leaves 0.1019 Nm: 1 % of friction from session to session, and the sensors.
+        let formula = &found.formulas[0];
+        assert!(
+            formula.held_out_after < 0.105 && formula.held_out_after > 0.095,
+            "{} leaves {}",
+            formula.expression,
+            formula.held_out_after
+        );
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::facts::{Facts, JointType};
 use super::proposal::{Contrast, Proposal};
 use super::row::{
-    ANGLE, Direction, EffectParameter, Exact, OwnSignals, Row, STIFFNESS, TORQUE, Unit,
+    ANGLE, Direction, EffectParameter, Exact, ONE, OwnSignals, Row, STIFFNESS, TORQUE, Unit,
 };
 use super::static_effect::{Signal, StaticEffect};
 
@@ -11,6 +11,35 @@ const OVER_POSITION: OwnSignals = OwnSignals::new(&["position"], Direction::Same
 
 const fn torque(name: &'static str) -> EffectParameter {
     EffectParameter::new(name, TORQUE, -1000.0, 1000.0)
+}
+
+const fn by_load(name: &'static str) -> EffectParameter {
+    EffectParameter::new(name, ONE, -10.0, 10.0)
+}
+
+const WAVE_NUMBER: Unit = Unit::new("1/rad", "1/m");
+
+/// Turns of the wave generator: other periods are found from the residual.
+fn wave_numbers_of_the_gear(facts: &Facts) -> Vec<Vec<f64>> {
+    match (facts.joint, facts.gear_ratio) {
+        (JointType::Revolute, Some(ratio)) => [1.0, 2.0, 4.0]
+            .into_iter()
+            .map(|times| vec![times * ratio])
+            .filter(|shape| shape[0] * facts.travel() > 9.0)
+            .collect(),
+        // Per metre of travel: the gear ratio is motor turns a screw turn,
+        // whose lead is not known; only the free search applies.
+        _ => Vec::new(),
+    }
+}
+
+/// A few turns at least, else it is a slope; more than a few samples a turn at the slowest
+/// speed, else it is aliased.
+fn bounds_of_wave_numbers(facts: &Facts) -> Vec<[f64; 2]> {
+    let low = 9.0 / facts.travel();
+    let finest = 800.0 * std::f64::consts::TAU / facts.travel();
+    let high = f64::min(1.5 / (facts.speed[0] * facts.period), finest);
+    vec![[low, high.max(2.0 * low)]]
 }
 
 /// All of them.
@@ -21,12 +50,7 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
             equation: "τ_F = a_s · sin(k q) + a_c · cos(k q)",
             source: "wave generator of a harmonic drive: k = 2N, also N and 4N, N the gear ratio",
             coefficients: &[torque("a_s"), torque("a_c")],
-            shape: &[EffectParameter::new(
-                "k",
-                Unit::new("1/rad", "1/m"),
-                1e-3,
-                1e6,
-            )],
+            shape: &[EffectParameter::new("k", WAVE_NUMBER, 1e-3, 1e6)],
             shows_as: "periodic in q",
             excited_by: "slow constant speed, so slow that the ripple is not aliased",
             shown_by: Proposal::WidePosition,
@@ -41,25 +65,36 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
                 (*sine, *cosine) = (k * state.position).sin_cos();
             }
         },
-        // Other periods are found from the residual.
-        shapes: |facts| match (facts.joint, facts.gear_ratio) {
-            (JointType::Revolute, Some(ratio)) => [1.0, 2.0, 4.0]
-                .into_iter()
-                .map(|times| vec![times * ratio])
-                .filter(|shape| shape[0] * facts.travel() > 9.0)
-                .collect(),
-            // Per metre of travel: the gear ratio is motor turns a screw turn,
-            // whose lead is not known; only the free search applies.
-            _ => Vec::new(),
+        shapes: wave_numbers_of_the_gear,
+        bounds: bounds_of_wave_numbers,
+        ..StaticEffect::NONE
+    },
+    StaticEffect {
+        row: Row {
+            id: "load_ripple",
+            equation: "τ_F = τ · (a_sT · sin(k q) + a_cT · cos(k q))",
+            source: "gain of a harmonic drive or of the torque sensor on it over the wave generator's turn: k = 2N, also N and 4N",
+            coefficients: &[by_load("a_sT"), by_load("a_cT")],
+            shape: &[EffectParameter::new("kaT", WAVE_NUMBER, 1e-3, 1e6)],
+            shows_as: "periodic in q, and the higher the larger the load",
+            excited_by: "slow constant speed under several loads, so slow that the ripple is not aliased",
+            shown_by: Proposal::LoadSteps,
+            contrasts: &[Contrast::LoadSteps],
+            confusable_with: &["ripple"],
+            is_periodic: true,
+            own_signals: OwnSignals::new(&["load"], Direction::Same),
+            ..Row::NONE
         },
-        // A few turns at least, else it is a slope; more than a few samples a
-        // turn at the slowest speed, else it is aliased.
-        bounds: |facts| {
-            let low = 9.0 / facts.travel();
-            let finest = 800.0 * std::f64::consts::TAU / facts.travel();
-            let high = f64::min(1.5 / (facts.speed[0] * facts.period), finest);
-            vec![[low, high.max(2.0 * low)]]
+        reads: &[Signal::Position, Signal::Load],
+        columns: |state, shape, columns| {
+            if let ([sine, cosine], [k, ..]) = (columns, shape) {
+                let (of_sine, of_cosine) = (k * state.position).sin_cos();
+                (*sine, *cosine) = (state.load * of_sine, state.load * of_cosine);
+            }
         },
+        unavailable: Facts::no_load,
+        shapes: wave_numbers_of_the_gear,
+        bounds: bounds_of_wave_numbers,
         ..StaticEffect::NONE
     },
     StaticEffect {

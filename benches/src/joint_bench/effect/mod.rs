@@ -18,6 +18,7 @@ mod elasticity;
 mod equation_4;
 mod gravity;
 mod inertia;
+mod load_ripple;
 mod load_stribeck;
 mod local_friction;
 mod motor_constant;
@@ -220,5 +221,7 @@ truths! {
         LoadStribeck = "load_stribeck" => load_stribeck::draw(strength, random),
         /// Wrong gain and zero of the torque sensor at once.
         TorqueSensorCalibration = "torque_sensor_calibration" => torque_sensor_calibration::draw(strength, random),
+        /// A gain that is periodic in the wave generator's turn.
+        LoadRipple = "load_ripple" => load_ripple::draw(strength, joint.gear_ratio, random),
     }
 }

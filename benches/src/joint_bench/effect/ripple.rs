@@ -18,12 +18,17 @@ struct Ripple {
     phase: f64,
 }
 
-pub(super) fn draw(strength: f64, gear_ratio: f64, random: &mut Random) -> Box<dyn Effect> {
-    let order = match random.uniform() {
+/// n.
+pub(super) fn order(random: &mut Random) -> f64 {
+    match random.uniform() {
         which if which < 0.6 => 2.0,
         which if which < 0.8 => 1.0,
         _ => 4.0,
-    };
+    }
+}
+
+pub(super) fn draw(strength: f64, gear_ratio: f64, random: &mut Random) -> Box<dyn Effect> {
+    let order = order(random);
     Box::new(Ripple {
         amplitude: strength * about(2.5, random),
         rate: order * gear_ratio,

@@ -161,6 +161,11 @@ fn torques_over_position() {
     c.is(0.2, |row| {
         c.get("amplitude") * (c.get("rate") * row.q + c.get("phase")).sin()
     });
+    let mut c = standard(HiddenEffect::LoadRipple);
+    c.rows.retain(|row| row.v.abs() < 0.02);
+    c.is(0.2, |row| {
+        c.get("gain") * row.tau * (c.get("rate") * row.q + c.get("phase")).sin()
+    });
     let c = standard(HiddenEffect::LocalFriction);
     c.is(0.2, |row| {
         let off = (row.q - c.get("centre")) / c.get("width");

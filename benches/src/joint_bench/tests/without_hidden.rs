@@ -65,7 +65,7 @@ fn what_an_effect_adds_is_taken_out_and_nothing_else() {
         assert!(hidden > 3.0 * nothing, "{effect}: {hidden}");
         let most = match effect {
             // Faster than a log shows: teeth that meet, a ripple at high speed.
-            HiddenEffect::Backlash | HiddenEffect::Ripple => 1.5,
+            HiddenEffect::Backlash | HiddenEffect::Ripple | HiddenEffect::LoadRipple => 1.5,
             // What is clipped does not scatter.
             HiddenEffect::CurrentSaturation => 1.4,
             _ => 1.05,

@@ -7,6 +7,7 @@ use crate::effects::{Direction, LOAD_OF};
 use crate::numerics::filter::Kernel;
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::quantile_or_zero;
+use crate::preparation::has_dates;
 use crate::signals::{Point, Signals};
 
 /// Knots of a map over one signal, …
@@ -146,7 +147,7 @@ fn channels(prepared: &PreparedModel) -> Vec<Channel> {
             s.points[at].temperature
         }));
     }
-    if facts.days > 0.5 && facts.sessions >= 4 {
+    if has_dates(facts) {
         all.push(collect("date", true, &|s, at| s.points[at].days));
     }
     let names: Vec<String> = prepared
@@ -252,6 +253,15 @@ struct SessionRows {
     direction: Vec<usize>,
 }
 
+/// How a signal that hardly varies within a session enters a map.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Slow {
+    /// Its deviation from the mean times every function.
+    Times,
+    /// The same, and every function without it: what grows from zero instead of from the mean.
+    AndWithout,
+}
+
 /// A model with the signals over which its residual is mapped.
 pub(super) struct Ground<'a> {
     pub(super) channels: Vec<Channel>,
@@ -292,6 +302,7 @@ impl<'a> Ground<'a> {
         chosen: &[&Channel],
         direction: Direction,
         knots_of_pair: usize,
+        slow_enters: Slow,
     ) -> BlockGrams {
         let fast: Vec<&&Channel> = chosen.iter().filter(|c| !c.slow).collect();
         let count = if fast.len() > 1 {
@@ -300,8 +311,12 @@ impl<'a> Ground<'a> {
             KNOTS_ALONE
         };
         let hats: Vec<&Hats> = fast.iter().take(2).map(|c| c.hats(count)).collect();
-        let functions = hats.iter().map(|own| own.knots).product::<usize>().max(1);
+        let over_fast = hats.iter().map(|own| own.knots).product::<usize>().max(1);
         let slow = chosen.iter().find(|c| c.slow);
+        let functions = match slow_enters {
+            Slow::Times => over_fast,
+            Slow::AndWithout => 2 * over_fast,
+        };
         let mean = slow.map_or(0.0, |c| {
             let all: Vec<f64> = c.values.iter().flatten().copied().collect();
             all.iter().sum::<f64>() / all.len().max(1) as f64
@@ -327,6 +342,12 @@ impl<'a> Ground<'a> {
                             }
                         }
                     }
+                }
+            }
+            if slow_enters == Slow::AndWithout && scale != 0.0 {
+                for at in 0..out.len() {
+                    let (function, value) = out[at];
+                    out.push((over_fast + function, value / scale));
                 }
             }
         };

@@ -1,12 +1,13 @@
 //! On which signals, and on which pairs of them, the residual still depends.
 //!
 //! Maps with free shape: piecewise linear over one signal or over two, the same
-//! in both directions of motion or opposite. A map shows that something is left
+//! in both directions of motion or opposite; of two that change within a session, times one
+//! that changes from session to session, too. A map shows that something is left
 //! and where, but names no effect.
 
 mod basis;
 
-use basis::{Channel, Ground, KNOTS_PAIR, KNOTS_PRODUCT};
+use basis::{Channel, Ground, KNOTS_PAIR, KNOTS_PRODUCT, Slow};
 use serde::Serialize;
 
 use crate::design::{Design, PreparedModel};
@@ -17,7 +18,7 @@ use crate::validation::{Score, between, gain_within};
 /// A dependence of the residual on one signal or two.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Dependence {
-    /// One signal or two: `position`, `velocity`, `load`, `acceleration`,
+    /// One to three signals: `position`, `velocity`, `load`, `acceleration`,
     /// `load_rate`, `temperature`, `date`, `time`, or the name of an extra signal;
     /// of a contact as [`JointType::signal`](crate::JointType::signal) calls them.
     pub signals: Vec<String>,
@@ -30,7 +31,7 @@ pub struct Dependence {
     pub p_value: f64,
     /// See [`Score::certainty`].
     pub certainty: f64,
-    /// Mean residual over the signals.
+    /// Mean residual over the signals; empty where there are three.
     pub map: Map,
 }
 
@@ -61,12 +62,20 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
             }
         }
     }
+    // What turns round with temperature is nothing in the mean over sessions.
+    let pairs: Vec<Vec<usize>> = (choices.iter())
+        .filter(|pair| pair.len() == 2 && pair.iter().all(|i| is_own_motion(&channels[*i])))
+        .cloned()
+        .collect();
+    for slow in (0..channels.len()).filter(|i| channels[*i].slow) {
+        choices.extend(pairs.iter().map(|pair| [pair.as_slice(), &[slow]].concat()));
+    }
     let tried = choices.len() as f64;
     let mut found: Vec<Dependence> = Vec::new();
     for choice in choices {
         let chosen: Vec<&Channel> = choice.iter().map(|i| &channels[*i]).collect();
-        let with_knots = |knots| ground.grams(&chosen, Direction::Either, knots);
-        let all = with_knots(KNOTS_PAIR);
+        let map = |knots, slow| ground.grams(&chosen, Direction::Either, knots, slow);
+        let all = map(KNOTS_PAIR, Slow::Times);
         // The model's own parameters, one set a session, can absorb what changes
         // with temperature or date only; shared ones cannot, but the variation of
         // all parameters between sessions masks it.
@@ -78,8 +87,17 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
             scores.push(gain_within(design, &all));
         }
         let motions = |c: &&&Channel| Origin::of(&c.name) == Origin::Motion;
-        if chosen.len() > 1 && chosen.iter().any(|c| motions(&c)) {
-            scores.push(gain_within(design, &with_knots(KNOTS_PRODUCT)));
+        let is_of_three = chosen.len() > 2;
+        if is_of_three || (chosen.len() > 1 && chosen.iter().any(|c| motions(&c))) {
+            scores.push(gain_within(design, &map(KNOTS_PRODUCT, Slow::Times)));
+        }
+        if chosen.iter().any(|c| c.slow) && chosen.iter().any(|c| !c.slow) {
+            let knots = if is_of_three {
+                KNOTS_PRODUCT
+            } else {
+                KNOTS_PAIR
+            };
+            scores.push(gain_within(design, &map(knots, Slow::AndWithout)));
         }
         let names: Vec<String> = chosen.iter().map(|c| c.name.clone()).collect();
         let best = scores
@@ -104,7 +122,9 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
             .iter()
             .filter_map(|name| channels.iter().find(|c| &c.name == name))
             .collect();
-        dependence.map = draw(prepared, &chosen, &residuals);
+        if chosen.len() < 3 {
+            dependence.map = draw(prepared, &chosen, &residuals);
+        }
     }
     found
 }
@@ -112,14 +132,18 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
 /// Whether a map over both is tried: with another joint's position or velocity another
 /// such, or this joint's; its torque alone.
 fn goes_with(a: &Channel, b: &Channel) -> bool {
-    const OWN: [&str; 3] = ["position", "velocity", "load"];
     let [of_a, of_b] = [a, b].map(|channel| Origin::of(&channel.name));
     let counts = |origin: Origin, channel: &Channel| match origin {
         Origin::Motion => true,
         Origin::Torque => false,
-        Origin::Own => OWN.contains(&channel.name.as_str()),
+        Origin::Own => is_own_motion(channel),
     };
     (of_a == Origin::Own && of_b == Origin::Own) || (counts(of_a, a) && counts(of_b, b))
+}
+
+/// Whether it is this joint's position, velocity or load.
+fn is_own_motion(channel: &Channel) -> bool {
+    ["position", "velocity", "load"].contains(&channel.name.as_str())
 }
 
 /// Whose a signal is.
@@ -165,7 +189,7 @@ pub fn on_own_signals(prepared: &PreparedModel, design: &Design, effect: &Effect
     choices
         .iter()
         .filter_map(|chosen| {
-            let grams = ground.grams(chosen, own.direction, KNOTS_PAIR);
+            let grams = ground.grams(chosen, own.direction, KNOTS_PAIR, Slow::Times);
             let slow = chosen.iter().any(|c| c.slow);
             let score = if slow {
                 between(design, &grams)
@@ -238,18 +262,19 @@ fn slow_variation(prepared: &PreparedModel, design: &Design) -> Score {
     gain_within(design, &design.with(&columns))
 }
 
-/// Sorts by gain; keeps a pair only where it explains clearly more than its parts, or
-/// leaves clearly less.
+/// Sorts by gain; keeps what is over several signals only where it explains clearly more than
+/// its parts, or leaves clearly less.
 fn rank(found: &mut Vec<Dependence>) {
     let all = found.clone();
     found.retain(|d| {
-        d.signals.len() == 1
-            || !all.iter().any(|part| {
-                part.signals.len() == 1
-                    && d.signals.contains(&part.signals[0])
-                    && part.gain > 0.9 * d.gain
-                    && 1.0 - d.strength > 0.5 * (1.0 - part.strength)
-            })
+        // Of three signals a map has four times the functions, some of which suit any shape.
+        let most = if d.signals.len() > 2 { 0.7 } else { 0.9 };
+        !all.iter().any(|part| {
+            part.signals.len() < d.signals.len()
+                && part.signals.iter().all(|own| d.signals.contains(own))
+                && part.gain > most * d.gain
+                && 1.0 - d.strength > 0.5 * (1.0 - part.strength)
+        })
     });
     found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use super::{Effect, EffectDescription, Facts, MAX_COLUMNS, Memory, Point, Quantity, Row, Unit};
 use crate::data::error::ExpressionError;
 use crate::data::{CustomEffect, Subject};
-use crate::signals::Signals;
+use crate::signals::{SECONDS_PER_DAY, Signals};
 use ferntast_model::friction::Proposal;
 use grammar::Formula;
 pub use load::is_load;
@@ -52,8 +52,6 @@ const NAMES_OF_SIGNALS: [&str; 18] = [
     "time",
     "date",
 ];
-
-const SECONDS_PER_DAY: f64 = 86_400.0;
 
 /// Names of the signals that formulas can read, separated by commas.
 fn known_signals(facts: &Facts, extras: &[String]) -> String {

@@ -233,6 +233,14 @@ fn values(hidden: Option<&str>, truth: &[(&str, f64)]) -> Vec<(&'static str, f64
             ("ql", of("centre")),
             ("wl", of("width")),
         ],
+        "load_ripple" => {
+            let (sine, cosine) = of("phase").sin_cos();
+            vec![
+                ("a_sT", of("gain") * cosine),
+                ("a_cT", of("gain") * sine),
+                ("kaT", of("rate")),
+            ]
+        }
         "ripple" => {
             let (sine, cosine) = of("phase").sin_cos();
             vec![
