@@ -303,9 +303,9 @@ fn uneven_samples_become_even() {
 }
 
 #[test]
-fn files_whose_clock_begins_anew_lie_one_behind_the_other() {
+fn files_whose_clock_begins_anew_lie_one_behind_the_other_or_at_their_dates() {
     let bench = Bench::new();
-    for name in ["a.csv", "b.csv"] {
+    for name in ["a.csv", "b.csv", "c.csv"] {
         let rows = (0..100).map(|n| format!("{},{n},{}\n", f64::from(n) * 0.01, n % 7));
         fs::write(
             bench.path(name),
@@ -326,6 +326,35 @@ fn files_whose_clock_begins_anew_lie_one_behind_the_other() {
         b.start
     );
     assert_eq!(b.extra["again"][3], 6.0);
+    // A day and a half apart, the later one named first; the third says nothing.
+    let stated = "[{ file = \"b.csv\", date = 2026-03-10T12:00:00Z }, { file = \"a.csv\", date = 2026-03-09 }, \"c.csv\"]";
+    let loaded = load(&bench.experiment(stated, &format!("{signals}{MODEL}"))).unwrap();
+    let names: Vec<&str> = loaded
+        .dataset
+        .sessions
+        .iter()
+        .map(|own| own.name.as_str())
+        .collect();
+    assert_eq!(names, ["a.csv", "b.csv", "c.csv"]);
+    assert_eq!(loaded.dataset.sessions[1].start, 1.5 * DAY as f64);
+    assert_eq!(loaded.date, Some(1_773_014_400.0));
+    let without = loaded.notes.iter().find(|note| note.contains("no date"));
+    assert!(
+        without.is_some_and(|note| note.contains("c.csv")),
+        "{:?}",
+        loaded.notes
+    );
+    let undated = "[{ file = \"a.csv\", date = 14:30:00 }]";
+    let told = Experiment::parse(
+        &format!("recording = {undated}\n{signals}{MODEL}"),
+        &bench.path("e.toml"),
+        Path::new("/nowhere"),
+    );
+    let told = told.unwrap_err().to_string();
+    assert!(
+        told.contains("recording.date") && told.contains("2026-03-09"),
+        "{told}"
+    );
 }
 
 #[test]

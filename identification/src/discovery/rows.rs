@@ -272,7 +272,8 @@ fn sources(prepared: &PreparedModel, first: &[String]) -> Vec<Source> {
             read: Box::new(move |signals, at| signals.points[at].temperature + mean),
         });
     }
-    if has_dates(facts) {
+    // The more signals, the more does as well by chance.
+    if has_dates(facts) && first.iter().any(|own| own == "date") {
         all.push(Source {
             signal: Signal {
                 name: names[6].to_owned(),

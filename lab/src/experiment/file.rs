@@ -42,11 +42,11 @@ pub(super) enum Recordings {
     Many(Vec<Files>),
 }
 
-/// One recording: a file, or several that are joined, with its conditions or without.
+/// One recording: a file, or several that are joined, with what is stated of it or without.
 #[derive(Debug, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a path, a list of files to be joined, or { file = \"…\", conditions = { kp = 100 } }"
+    expecting = "expected a path, a list of files to be joined, or { file = \"…\", date = 2026-03-09T14:30:00, conditions = { kp = 100 } }"
 )]
 pub(super) enum Files {
     One(String),
@@ -54,11 +54,27 @@ pub(super) enum Files {
     Stated(Stated),
 }
 
-/// A recording, and the conditions that it was made under.
+/// A recording, when it began, and the conditions that it was made under.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Stated {
     pub(super) file: SameFiles,
+    pub(super) date: Option<toml::value::Datetime>,
+    #[serde(default)]
+    pub(super) conditions: BTreeMap<String, f64>,
+}
+
+/// A recording in a list.
+pub(super) struct Listed {
+    /// The one that gives the time first.
+    pub(super) files: Vec<String>,
+    pub(super) stated: StatedOfRecording,
+}
+
+/// What is stated of a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct StatedOfRecording {
+    pub(super) date: Option<toml::value::Datetime>,
     pub(super) conditions: BTreeMap<String, f64>,
 }
 
@@ -80,17 +96,27 @@ impl Default for Recordings {
 }
 
 impl Recordings {
-    /// The files of each recording, the one that gives the time first, and its conditions.
-    pub(super) fn list(self) -> Vec<(Vec<String>, BTreeMap<String, f64>)> {
+    /// Each recording.
+    pub(super) fn list(self) -> Vec<Listed> {
+        let alone = |files| Listed {
+            files,
+            stated: StatedOfRecording::default(),
+        };
         match self {
-            Recordings::One(path) => vec![(vec![path], BTreeMap::new())],
+            Recordings::One(path) => vec![alone(vec![path])],
             Recordings::Many(paths) => {
                 let paths = paths.into_iter().map(|files| match files {
-                    Files::One(path) => (vec![path], BTreeMap::new()),
-                    Files::Joined(paths) => (paths, BTreeMap::new()),
-                    Files::Stated(Stated { file, conditions }) => match file {
-                        SameFiles::One(path) => (vec![path], conditions),
-                        SameFiles::Joined(paths) => (paths, conditions),
+                    Files::One(path) => alone(vec![path]),
+                    Files::Joined(paths) => alone(paths),
+                    Files::Stated(own) => Listed {
+                        files: match own.file {
+                            SameFiles::One(path) => vec![path],
+                            SameFiles::Joined(paths) => paths,
+                        },
+                        stated: StatedOfRecording {
+                            date: own.date,
+                            conditions: own.conditions,
+                        },
                     },
                 });
                 paths.collect()

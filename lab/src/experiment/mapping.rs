@@ -130,7 +130,7 @@ impl Mapping {
         let kept = kept(&file);
         let groups = |recordings: file::Recordings| -> Vec<Vec<String>> {
             let list = recordings.list().into_iter();
-            list.map(|(files, _)| files).collect()
+            list.map(|own| own.files).collect()
         };
         let catalogue = file.model.effects.iter().filter_map(|effect| match effect {
             file::Effect::Catalogue(id) => Some(id.clone()),

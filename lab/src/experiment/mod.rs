@@ -4,6 +4,7 @@
 //! recording = "run.mcap"        # or a list: rosbag2 directories, .mcap, tables (.csv, .npz, .mat, …);
 //!                               # in the list [["q.csv", "i.csv"]]: files that are joined
 //!                               # or with what stayed the same: { file = "a.csv", conditions = { kp = 100 } }
+//!                               # and when it began, where its times do not say: date = 2026-03-09T14:30:00
 //! columns = ["t", "q", "i"]     # tables only, optional: names in place of those in the file
 //! rate_hz = 500                 # tables only, in place of time
 //! join = "time"                 # or "row"; else by time where each file has one
@@ -63,6 +64,7 @@
 mod arm;
 mod change;
 mod contact;
+mod date;
 mod error;
 mod file;
 mod lineage;
@@ -113,6 +115,8 @@ pub struct Experiment {
     pub joined: BTreeMap<PathBuf, Vec<PathBuf>>,
     /// Conditions under which a recording was made, by that.
     pub conditions: BTreeMap<PathBuf, BTreeMap<String, f64>>,
+    /// When a recording began \[ns since 1970\], by that: in place of what its times say.
+    pub dates: BTreeMap<PathBuf, i64>,
     /// How tables are read.
     pub reading: Reading,
     /// What is never fitted.
@@ -172,6 +176,7 @@ impl Experiment {
             recordings: vec![recording.to_owned()],
             joined: BTreeMap::new(),
             conditions: BTreeMap::new(),
+            dates: BTreeMap::new(),
             reading: Reading::default(),
             held_out: Vec::new(),
             unloaded: Vec::new(),
@@ -256,10 +261,11 @@ impl Experiment {
         let of_text = |text: String| recording_at(&text, &folder, data_folder);
         let mut joined = BTreeMap::new();
         let mut conditions = BTreeMap::new();
+        let mut dates = BTreeMap::new();
         let mut known = BTreeMap::new();
         let mut resolve = |key: &str, recordings: file::Recordings| {
             let mut firsts = Vec::new();
-            for (files, stated) in recordings.list() {
+            for file::Listed { files, stated } in recordings.list() {
                 let mut files = files.into_iter().map(of_text);
                 let Some(first) = files.next() else {
                     continue;
@@ -280,8 +286,13 @@ impl Experiment {
                 if !others.is_empty() {
                     joined.insert(first.clone(), others);
                 }
-                if !stated.is_empty() {
-                    conditions.insert(first.clone(), stated);
+                if let Some(date) = &stated.date {
+                    let began = date::nanoseconds(date)
+                        .map_err(|reason| refuse(&format!("{key}.date"), reason))?;
+                    dates.insert(first.clone(), began);
+                }
+                if !stated.conditions.is_empty() {
+                    conditions.insert(first.clone(), stated.conditions);
                 }
                 firsts.push(first);
             }
@@ -344,6 +355,7 @@ impl Experiment {
             recordings,
             joined,
             conditions,
+            dates,
             reading: reading::reading(file.columns, file.rate_hz, file.join, &refuse)?,
             held_out,
             unloaded,

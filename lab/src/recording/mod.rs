@@ -118,6 +118,16 @@ pub fn load(experiment: &Experiment) -> Result<Loaded, LoadError> {
         session.start -= origin;
     }
     check_constant(&sessions, experiment, &mut notes)?;
+    if let (Some(_), Some(first)) = (clock.first_date, clock.undated.first()) {
+        let file = first.display();
+        let others = match clock.undated.len() - 1 {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        notes.push(format!(
+            "{file}{others}: no date, while other recordings have one: taken to follow these; state it as {{ file = …, date = 2026-03-09T14:30:00 }}"
+        ));
+    }
     Ok(Loaded {
         dataset: Dataset {
             sessions,
@@ -183,12 +193,18 @@ struct Clock {
     first_date: Option<i64>,
     /// End of the last session \[s\].
     end: f64,
+    /// Files without a date.
+    undated: Vec<PathBuf>,
 }
 
 impl Clock {
-    /// What is added to the times of a file that begins at `start` \[ns\], so
-    /// that times in seconds keep their digits.
-    fn offset(&mut self, start: i64) -> (i64, f64) {
+    /// What is taken from the times \[ns\] of a file that begins at `start`, and what is added then
+    /// \[s\], so that times in seconds keep their digits; `stated` is the date that it began at.
+    fn offset(&mut self, start: i64, stated: Option<i64>) -> (i64, f64) {
+        if let Some(began) = stated {
+            let first = *self.first_date.get_or_insert(began);
+            return (start, began.saturating_sub(first) as f64 * 1e-9);
+        }
         if start < DATES {
             return (start, self.end);
         }
@@ -231,7 +247,12 @@ fn read_file(
             align::SHORTEST
         ));
     }
-    let (origin, shift) = clock.offset(pieces.first().map_or(0, |piece| piece.start));
+    let start = pieces.first().map_or(0, |piece| piece.start);
+    let stated = experiment.dates.get(path).copied();
+    if stated.is_none() && start < DATES {
+        clock.undated.push(path.to_owned());
+    }
+    let (origin, shift) = clock.offset(start, stated);
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy();
     let several = pieces.len() > 1;

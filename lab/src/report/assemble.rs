@@ -43,6 +43,8 @@ pub fn assemble(
             beyond.share * 100.0
         )
     }));
+    let cannot_show = diagnosis.not_tested.why_not_tested.iter();
+    notes.extend(cannot_show.map(|line| format!("these recordings cannot show {line}")));
     Ok(Report {
         title: opened.experiment.title.clone(),
         subtitle: format!(

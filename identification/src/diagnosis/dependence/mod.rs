@@ -80,14 +80,15 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
         // with temperature or date only; shared ones cannot, but the variation of
         // all parameters between sessions masks it.
         let mut scores = Vec::new();
-        if chosen.iter().any(|c| c.slow) {
+        let is_of_three = chosen.len() > 2;
+        // Over three what changes with temperature alone would count again, without its names.
+        if chosen.iter().any(|c| c.slow) && !is_of_three {
             scores.push(between(design, &all));
         }
         if chosen.iter().any(|c| !c.slow) {
             scores.push(gain_within(design, &all));
         }
         let motions = |c: &&&Channel| Origin::of(&c.name) == Origin::Motion;
-        let is_of_three = chosen.len() > 2;
         if is_of_three || (chosen.len() > 1 && chosen.iter().any(|c| motions(&c))) {
             scores.push(gain_within(design, &map(KNOTS_PRODUCT, Slow::Times)));
         }
