@@ -17,10 +17,6 @@ use crate::fit::Fit;
 use crate::fit::addition::{Addition, add_to};
 use crate::preparation::Filtered;
 
-/// Largest share of the samples beyond a limit of torque: what is measured there tells
-/// nothing of the model. Of a drive's limit it is less by the limits that are tried.
-const MAX_SHARE_BEYOND: f64 = 0.35;
-
 /// Additions of candidates, by their ids; made once.
 pub struct Acceptance<'a> {
     pub filtered: &'a Filtered<'a>,
@@ -71,23 +67,22 @@ impl Acceptance<'_> {
         let known = self.keeps_shapes || self.would_be_found_again(candidate);
         let shape = known.then_some(candidate.shape.as_slice());
         let (addition, extended) = add_to(self.filtered, self.spec, both, &term, shape).ok()?;
-        let is_no_limit = share_beyond(&extended) > MAX_SHARE_BEYOND;
+        let is_no_limit = has_too_many_beyond(&extended);
         let is_refused = is_no_limit || is_below_noise(&addition, &extended);
         (addition.lowers_error && !is_refused).then_some(addition)
     }
 }
 
-/// Share of the samples at which the measured torque is not the motor's, by an effect
-/// of the model.
-fn share_beyond(extended: &PreparedModel) -> f64 {
-    let (mut beyond, mut all) = (0, 0);
-    for signals in &extended.sessions {
-        all += signals.points.len();
-        for term in &extended.terms {
-            beyond += (term.effect.unjudged_samples(&term.shape, &signals.points)).len();
-        }
-    }
-    beyond as f64 / all.max(1) as f64
+/// Whether too many samples are beyond a limit of torque, by an effect of the model: what is
+/// measured there tells nothing of it.
+fn has_too_many_beyond(extended: &PreparedModel) -> bool {
+    let sessions = &extended.sessions;
+    let all: usize = sessions.iter().map(|own| own.points.len()).sum();
+    extended.terms.iter().any(|term| {
+        let each = sessions.iter();
+        let beyond = each.map(|own| term.effect.unjudged_samples(&term.shape, &own.points).len());
+        beyond.sum::<usize>() as f64 > term.effect.most_unjudged(&term.shape) * all as f64
+    })
 }
 
 /// Whether the error is less than the noise between repeats, as it is where torque

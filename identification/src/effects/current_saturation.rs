@@ -63,14 +63,28 @@ impl Effect for CurrentSaturation {
         samples.map(|(at, _)| at).collect()
     }
 
+    // Beyond a drive's limit the torque that is measured explains itself; beyond a sensor's range
+    // the model has to.
+    fn most_unjudged(&self, shape: &[f64]) -> f64 {
+        if is_of_sensor(shape) { 0.35 } else { 0.25 }
+    }
+
     // Measured torque as a column explains its own noise with a small
     // coefficient; clipping takes off the whole excess. Of a sensor's range the excess is that of
     // a torque by the model, which clipped samples have bent: up to two thirds of it are missed at first.
     fn plausible(&self, shape: &[f64], coefficients: &[f64]) -> bool {
-        let is_of_sensor = shape.get(1).is_some_and(|place| *place > 0.5);
-        let possible = if is_of_sensor { 0.4..3.0 } else { 0.7..1.6 };
+        let possible = if is_of_sensor(shape) {
+            0.4..3.0
+        } else {
+            0.7..1.6
+        };
         coefficients.iter().all(|c| possible.contains(c))
     }
+}
+
+/// Whether it is the range of the sensor, not the drive's.
+fn is_of_sensor(shape: &[f64]) -> bool {
+    shape.get(1).is_some_and(|place| *place > 0.5)
 }
 
 /// Limits tried of each place.

@@ -121,6 +121,12 @@ pub trait Effect: Send + Sync {
         Vec::new()
     }
 
+    /// Largest share of the samples that may be such, for it to be named.
+    fn most_unjudged(&self, shape: &[f64]) -> f64 {
+        let _ = shape;
+        1.0
+    }
+
     /// Takes its influence out of the measured `channels`, sampled every `period`
     /// \[s\], for an effect that acts on these. Returns the number of samples at
     /// the end that are invalid afterwards.
