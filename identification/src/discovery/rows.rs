@@ -8,7 +8,6 @@ use crate::design::{Design, PreparedModel};
 use crate::diagnosis::dependence::Dependence;
 use crate::effects::expression::signal_names;
 use crate::numerics::statistics::quantile_or_zero;
-use crate::preparation::has_dates;
 use crate::signals::{Point, SECONDS_PER_DAY, Signals};
 
 /// Rows that a search works on, at most …
@@ -273,7 +272,7 @@ fn sources(prepared: &PreparedModel, first: &[String]) -> Vec<Source> {
         });
     }
     // The more signals, the more does as well by chance.
-    if has_dates(facts) && first.iter().any(|own| own == "date") {
+    if facts.no_dates().is_none() && first.iter().any(|own| own == "date") {
         all.push(Source {
             signal: Signal {
                 name: names[6].to_owned(),

@@ -23,11 +23,6 @@ fn has_formula_of_load(dataset: &Dataset, spec: &ModelSpec) -> bool {
     })
 }
 
-/// Whether there are dates enough for what changes with them.
-pub(crate) fn has_dates(facts: &Facts) -> bool {
-    facts.days > 0.5 && facts.sessions >= 4
-}
-
 /// Ranges of the signals, which are the same whatever the model.
 pub(super) struct Ranges {
     /// Whether every session has a temperature.

@@ -19,7 +19,6 @@ use crate::effects::BoundTerm;
 use crate::signals::{Filters, Signals};
 
 use facts::Ranges;
-pub(crate) use facts::has_dates;
 
 /// Recordings filtered, to which any model can be bound: filters go by the noise
 /// in the recordings alone.

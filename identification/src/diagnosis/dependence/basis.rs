@@ -7,7 +7,6 @@ use crate::effects::{Direction, LOAD_OF};
 use crate::numerics::filter::Kernel;
 use crate::numerics::gram::Gram;
 use crate::numerics::statistics::quantile_or_zero;
-use crate::preparation::has_dates;
 use crate::signals::{Point, Signals};
 
 /// Knots of a map over one signal, …
@@ -147,7 +146,7 @@ fn channels(prepared: &PreparedModel) -> Vec<Channel> {
             s.points[at].temperature
         }));
     }
-    if has_dates(facts) {
+    if facts.no_dates().is_none() {
         all.push(collect("date", true, &|s, at| s.points[at].days));
     }
     let names: Vec<String> = prepared
