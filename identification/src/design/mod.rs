@@ -193,6 +193,17 @@ impl Design {
         (self.shared, self.covariance) = (shared, covariance);
     }
 
+    /// Mean square of what the model leaves of sessions that are each fitted by themselves \[Nm²\].
+    #[must_use]
+    pub fn own_mean_square(&self) -> f64 {
+        let totals = self.sessions.iter();
+        let totals = totals.map(|own| Gram::sum(&own.grams, self.base));
+        let (squares, rows) = totals.fold((0.0, 0), |(squares, rows), own| {
+            (squares + own.squared_error(&own.solve()), rows + own.rows)
+        });
+        squares / rows.max(1) as f64
+    }
+
     /// Coefficients by which a session's own parameters, drawn to those of all
     /// sessions, explain the extra columns and y of its Gram `own`.
     #[must_use]

@@ -99,7 +99,7 @@ pub(super) fn judge(
         .fold(0.0, |most, map| f64::max(most, map.gain));
     let mut named = 0.0;
     let mut best = first.clone();
-    let mut left = mean_square(design);
+    let mut left = design.own_mean_square();
     let mut prepared = extend(prepared, best.term());
     for step in 0..MAX_NAMED_EFFECTS {
         let design = Design::new(&prepared);
@@ -107,7 +107,7 @@ pub(super) fn judge(
         if own > MAX_SHAPE_REMAINDER * (own + best.score.gain) {
             break;
         }
-        let before = std::mem::replace(&mut left, mean_square(&design));
+        let before = std::mem::replace(&mut left, design.own_mean_square());
         named += match best.effect.row().acts_on_channels {
             // It was tried by a line of what it does, which tells less than all of it.
             true => f64::max(best.score.gain, before - left),
@@ -135,12 +135,4 @@ pub(super) fn judge(
         prepared = extend(&prepared, best.term());
     }
     Verdict::Unexplained
-}
-
-/// Mean square of what the model leaves, with parameters of each session's own \[Nm²\].
-fn mean_square(design: &Design) -> f64 {
-    let sessions = design.sessions.iter();
-    let residuals: Vec<f64> = sessions.flat_map(|own| own.own_residual()).collect();
-    let sum: f64 = residuals.iter().map(|own| own * own).sum();
-    sum / residuals.len().max(1) as f64
 }

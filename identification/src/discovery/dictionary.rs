@@ -250,16 +250,14 @@ impl Dictionary {
             else {
                 continue;
             };
-            for first in plainest(first) {
-                let of_first = rows.factor(first);
-                for second in plainest(second) {
-                    let of_second = rows.factor(second);
-                    for third in plainest(third) {
-                        let of_third = rows.factor(third);
-                        both(
-                            &[*first, *second, *third],
-                            &[&of_first, &of_second, &of_third],
-                        );
+            let [firsts, seconds, thirds] = [first, second, third].map(|own| {
+                let each = plainest(own).map(|factor| (*factor, rows.factor(factor)));
+                each.collect::<Vec<_>>()
+            });
+            for (first, of_first) in &firsts {
+                for (second, of_second) in &seconds {
+                    for (third, of_third) in &thirds {
+                        both(&[*first, *second, *third], &[of_first, of_second, of_third]);
                     }
                 }
             }

@@ -21,14 +21,13 @@ impl Effect for CurrentSaturation {
     row!(methods);
 
     fn evaluate(&self, shape: &[f64], point: &Point, _memory: &mut Memory, columns: &mut [f64]) {
-        let ([c], [limit, place, ..]) = (columns, shape) else {
+        let ([c], [limit, ..]) = (columns, shape) else {
             return;
         };
         let beyond = |torque: f64| sign(torque) * (torque.abs() - limit).max(0.0);
-        *c = if *place < 0.5 {
-            beyond(point.motor_torque)
-        } else {
-            -beyond(point.motor_predicted)
+        *c = match is_of_sensor(shape) {
+            true => -beyond(point.motor_predicted),
+            false => beyond(point.motor_torque),
         };
     }
 
@@ -51,12 +50,12 @@ impl Effect for CurrentSaturation {
     }
 
     fn unjudged_samples(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
-        let [limit, place, ..] = shape else {
+        let [limit, ..] = shape else {
             return Vec::new();
         };
-        let torque = |point: &Point| match *place < 0.5 {
-            true => point.motor_torque,
-            false => point.motor_predicted,
+        let torque = |point: &Point| match is_of_sensor(shape) {
+            true => point.motor_predicted,
+            false => point.motor_torque,
         };
         let beyond = |(_, point): &(usize, &Point)| torque(point).abs() > *limit;
         let samples = points.iter().enumerate().filter(beyond);

@@ -198,14 +198,16 @@ struct Clock {
 }
 
 impl Clock {
-    /// What is taken from the times \[ns\] of a file that begins at `start`, and what is added then
-    /// \[s\], so that times in seconds keep their digits; `stated` is the date that it began at.
-    fn offset(&mut self, start: i64, stated: Option<i64>) -> (i64, f64) {
+    /// What is taken from the times \[ns\] of the file at `path`, which begins at `start`, and what is
+    /// added then \[s\], so that times in seconds keep their digits; `stated` is the date that it
+    /// began at.
+    fn offset(&mut self, path: &Path, start: i64, stated: Option<i64>) -> (i64, f64) {
         if let Some(began) = stated {
             let first = *self.first_date.get_or_insert(began);
             return (start, began.saturating_sub(first) as f64 * 1e-9);
         }
         if start < DATES {
+            self.undated.push(path.to_owned());
             return (start, self.end);
         }
         let origin = *self.first_date.get_or_insert(start);
@@ -249,10 +251,7 @@ fn read_file(
     }
     let start = pieces.first().map_or(0, |piece| piece.start);
     let stated = experiment.dates.get(path).copied();
-    if stated.is_none() && start < DATES {
-        clock.undated.push(path.to_owned());
-    }
-    let (origin, shift) = clock.offset(start, stated);
+    let (origin, shift) = clock.offset(path, start, stated);
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy();
     let several = pieces.len() > 1;

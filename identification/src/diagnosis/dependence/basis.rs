@@ -322,13 +322,12 @@ impl<'a> Ground<'a> {
         });
         let at_row = |s: usize, row: usize, out: &mut Vec<(usize, f64)>| {
             out.clear();
-            let scale = slow.map_or(1.0, |c| c.values[s][row] - mean);
             match hats.as_slice() {
-                [] => out.push((0, scale)),
+                [] => out.push((0, 1.0)),
                 [only] => {
                     for (i, a) in only.rows[s][row].both() {
                         if a != 0.0 {
-                            out.push((i, a * scale));
+                            out.push((i, a));
                         }
                     }
                 }
@@ -337,23 +336,25 @@ impl<'a> Ground<'a> {
                     for (i, a) in first.rows[s][row].both() {
                         for (j, b) in of_second {
                             if a != 0.0 && b != 0.0 {
-                                out.push((i * second.knots + j, a * b * scale));
+                                out.push((i * second.knots + j, a * b));
                             }
                         }
                     }
                 }
             }
-            if slow_enters == Slow::AndWithout && scale != 0.0 {
-                for at in 0..out.len() {
-                    let (function, value) = out[at];
-                    out.push((over_fast + function, value / scale));
+            let scale = slow.map_or(1.0, |c| c.values[s][row] - mean);
+            for at in 0..out.len() {
+                let (function, value) = out[at];
+                out[at].1 = value * scale;
+                if slow_enters == Slow::AndWithout {
+                    out.push((over_fast + function, value));
                 }
             }
         };
         let columns = self.design.base + 1;
         let sessions = self.design.sessions.iter().zip(&self.sessions).enumerate();
         let each = sessions.map(|(s, (session, rows))| {
-            let mut of_row = Vec::with_capacity(4);
+            let mut of_row = Vec::with_capacity(8);
             let blocks = session.blocks.iter().zip(&session.grams);
             let each = blocks.map(|((from, to), gram)| {
                 let mut products = vec![Products::empty(functions, columns); 3];

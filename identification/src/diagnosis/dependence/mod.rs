@@ -81,18 +81,20 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
         // all parameters between sessions masks it.
         let mut scores = Vec::new();
         let is_of_three = chosen.len() > 2;
+        let has_slow = chosen.iter().any(|c| c.slow);
+        let has_fast = chosen.iter().any(|c| !c.slow);
         // Over three what changes with temperature alone would count again, without its names.
-        if chosen.iter().any(|c| c.slow) && !is_of_three {
+        if has_slow && !is_of_three {
             scores.push(between(design, &all));
         }
-        if chosen.iter().any(|c| !c.slow) {
+        if has_fast {
             scores.push(gain_within(design, &all));
         }
         let motions = |c: &&&Channel| Origin::of(&c.name) == Origin::Motion;
         if is_of_three || (chosen.len() > 1 && chosen.iter().any(|c| motions(&c))) {
             scores.push(gain_within(design, &map(KNOTS_PRODUCT, Slow::Times)));
         }
-        if chosen.iter().any(|c| c.slow) && chosen.iter().any(|c| !c.slow) {
+        if has_slow && has_fast {
             let knots = if is_of_three {
                 KNOTS_PRODUCT
             } else {

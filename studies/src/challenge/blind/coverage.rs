@@ -215,6 +215,11 @@ fn values(hidden: Option<&str>, truth: &[(&str, f64)]) -> Vec<(&'static str, f64
             .find(|own| own.0 == name)
             .map_or(f64::NAN, |own| own.1)
     };
+    // A sin(x + φ) as coefficients of sine and cosine.
+    let of_wave = |size: &str| {
+        let (sine, cosine) = of("phase").sin_cos();
+        (of(size) * cosine, of(size) * sine)
+    };
     match hidden.unwrap_or_default() {
         "coulomb" => vec![("b0", of("b0"))],
         "load_coulomb" | "contact_coulomb" => vec![("b0T", of("b0T"))],
@@ -234,24 +239,16 @@ fn values(hidden: Option<&str>, truth: &[(&str, f64)]) -> Vec<(&'static str, f64
             ("wl", of("width")),
         ],
         "load_ripple" => {
-            let (sine, cosine) = of("phase").sin_cos();
-            vec![
-                ("a_sT", of("gain") * cosine),
-                ("a_cT", of("gain") * sine),
-                ("kaT", of("rate")),
-            ]
+            let (sine, cosine) = of_wave("gain");
+            vec![("a_sT", sine), ("a_cT", cosine), ("kaT", of("rate"))]
         }
         "ripple" => {
-            let (sine, cosine) = of("phase").sin_cos();
-            vec![
-                ("a_s", of("amplitude") * cosine),
-                ("a_c", of("amplitude") * sine),
-                ("k", of("rate")),
-            ]
+            let (sine, cosine) = of_wave("amplitude");
+            vec![("a_s", sine), ("a_c", cosine), ("k", of("rate"))]
         }
         "gravity" => {
-            let (sine, cosine) = of("phase").sin_cos();
-            vec![("g_s", of("g") * cosine), ("g_c", of("g") * sine)]
+            let (sine, cosine) = of_wave("g");
+            vec![("g_s", sine), ("g_c", cosine)]
         }
         "cable_spring" => vec![("kc", of("kc")), ("k0", -of("kc") * of("q0"))],
         "temperature_coulomb" => vec![("kT", of("kt"))],
