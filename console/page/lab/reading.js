@@ -117,6 +117,7 @@ function table(signals, columns) {
 
 const REASONS = {
   without_number: "without a number", repeated_time: "with the time of the one before", without_other_signal: "where another signal is missing",
+  repeats: "repeats until the next value is measured", wrong_readings: "wrong readings of the position",
   not_valid: "that do not count", in_short_stretches: "in stretches that are too short", too_much: "not read, since the file is long", bridged: "bridged by a straight line",
 };
 

@@ -40,6 +40,10 @@ pub enum Reason {
     WithoutNumber,
     /// With the time of the sample before.
     RepeatedTime,
+    /// Repeats of a value until the next is measured.
+    Repeats,
+    /// A wrong reading: out of line, or the same as before while the joint moved.
+    WrongReading,
     /// Another signal has a gap there, has not begun or has ended.
     OtherSignalMissing,
     /// `valid` says no.
@@ -64,6 +68,8 @@ impl Reason {
             Self::NotRead => "not read: more than is held at once",
             Self::WithoutNumber => "without a number",
             Self::RepeatedTime => "with the time of the sample before",
+            Self::Repeats => "repeats until the next value is measured",
+            Self::WrongReading => "wrong readings of the position",
             Self::OtherSignalMissing => "where another signal is missing",
             Self::NotValid => "not valid",
             Self::ShortStretch => "in short stretches",

@@ -14,6 +14,8 @@ use crate::signals::{Filters, Signals};
 pub struct PreparedModel {
     /// Properties of the recordings and of the model that the effects depend on.
     pub facts: Facts,
+    /// Whether the temperature varies within sessions by more than the steps that it is read in.
+    pub temperature_is_resolved: bool,
     /// Widths of the filters, the same for all sessions.
     pub filters: Filters,
     /// Sessions that the model is fitted to.

@@ -130,8 +130,10 @@ pub fn score(
             _ => {}
         }
         // A quantity that also changes within a session must have the same
-        // coefficient there.
-        if agreement(design, &grams) < MAX_DISAGREEMENT_P_VALUE {
+        // coefficient there, unless it is read too coarsely to tell.
+        let of_temperature = effect.row().own_signals.names.contains(&"temperature");
+        let tells_within = prepared.temperature_is_resolved || !of_temperature;
+        if tells_within && agreement(design, &grams) < MAX_DISAGREEMENT_P_VALUE {
             score.p_value = 1.0;
         }
         score

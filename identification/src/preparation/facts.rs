@@ -6,6 +6,10 @@ use crate::effects::{self, Facts, Row};
 use crate::numerics::statistics::quantile_or_zero;
 use crate::signals::{Filters, RESOLVED, Signals};
 
+/// Standard deviation of the temperature within sessions, in steps that it is read in, from
+/// which on these tell how the torque changes with it: rounding adds 2 % to its variance.
+const RESOLVED_STEPS: f64 = 2.0;
+
 /// Whether a model has an effect of the catalogue whose row satisfies `is`.
 fn has_row(spec: &ModelSpec, is: impl Fn(&Row) -> bool) -> bool {
     let ids = spec.effects.iter().map(Term::name);
@@ -30,6 +34,8 @@ pub(super) struct Ranges {
     /// Mean temperature \[degC\].
     pub(super) reference_temperature: f64,
     temperature_range: f64,
+    /// Whether it varies within sessions by more than the steps that it is read in.
+    pub(super) temperature_is_resolved: bool,
     days: f64,
     position: [f64; 2],
     speed: [f64; 2],
@@ -67,6 +73,7 @@ impl Ranges {
             reference_temperature: temperatures.iter().sum::<f64>()
                 / temperatures.len().max(1) as f64,
             temperature_range: span(&temperatures),
+            temperature_is_resolved: is_resolved(dataset),
             days: span(&starts),
             position: [
                 quantile_or_zero(&mut positions, 0.02),
@@ -80,6 +87,21 @@ impl Ranges {
             common_torque: quantile_or_zero(&mut torques, 0.75),
         }
     }
+}
+
+/// Whether the temperature varies within sessions by more than the steps that it is read in.
+fn is_resolved(dataset: &Dataset) -> bool {
+    let sessions = dataset.sessions.iter();
+    let (mut step, mut squares, mut count) = (f64::INFINITY, 0.0, 0);
+    for own in sessions.filter_map(|session| session.temperature.as_deref()) {
+        let mean = own.iter().sum::<f64>() / own.len().max(1) as f64;
+        squares += own.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        count += own.len();
+        let steps = own.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        step = steps.filter(|step| *step > 0.0).fold(step, f64::min);
+    }
+    let deviation = (squares / count.max(1) as f64).sqrt();
+    deviation > RESOLVED_STEPS * step
 }
 
 /// Largest less least value; 0 of none.

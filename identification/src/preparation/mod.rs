@@ -152,6 +152,7 @@ impl<'a> Filtered<'a> {
     fn without_terms(&self, spec: &ModelSpec) -> PreparedModel {
         PreparedModel {
             facts: facts::gather(self.dataset, spec, &self.ranges, &self.filters),
+            temperature_is_resolved: self.ranges.temperature_is_resolved,
             filters: self.filters,
             sessions: self.sessions.clone(),
             held_out: self.held_out.clone(),

@@ -92,6 +92,7 @@ impl Kept {
         });
         Self {
             prepared: PreparedModel {
+                temperature_is_resolved: prepared.temperature_is_resolved,
                 facts: prepared.facts.clone(),
                 filters: prepared.filters,
                 sessions: sessions.collect(),

@@ -26,7 +26,7 @@ use crate::unit::{Quantity, Unit};
 /// Gravity in the frame of a base that stands upright \[m/s²\].
 const UPRIGHT: [f64; 3] = [0.0, 0.0, -9.81];
 /// Extra signals that are a joint's position or torque have its name behind these.
-const POSITION: &str = "position@";
+pub(crate) const POSITION: &str = "position@";
 const MOTOR_TORQUE: &str = "motor_torque@";
 
 /// The table `[arm]`.

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::{
     Lineage,
-    reading::{ColumnNames, Join},
+    reading::{ColumnNames, Join, Readings},
 };
 
 #[derive(Debug, Deserialize)]
@@ -18,6 +18,7 @@ pub(super) struct File {
     pub(super) columns: ColumnNames,
     pub(super) rate_hz: Option<f64>,
     pub(super) join: Option<Join>,
+    pub(super) readings: Option<Readings>,
     #[serde(default)]
     pub(super) held_out: Recordings,
     #[serde(default)]

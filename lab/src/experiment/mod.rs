@@ -8,6 +8,7 @@
 //! columns = ["t", "q", "i"]     # tables only, optional: names in place of those in the file
 //! rate_hz = 500                 # tables only, in place of time
 //! join = "time"                 # or "row"; else by time where each file has one
+//! readings = "as_recorded"      # optional: what can hardly have been measured is kept, too
 //! unloaded = ["free.mcap"]      # optional: fitted too, run free of load: shows the torque sensor's zero
 //! held_out = ["other.mcap"]     # optional: never fitted
 //! [joint]
@@ -88,6 +89,7 @@ use ferntast_identification::{CustomEffect, Inertia, JointType, ModelSpec, State
 
 use crate::table::Format;
 
+pub(crate) use arm::POSITION;
 pub use arm::{ArmTable, units_of_joint};
 pub use change::{Change, Changed};
 pub use contact::Contour;
@@ -356,7 +358,13 @@ impl Experiment {
             joined,
             conditions,
             dates,
-            reading: reading::reading(file.columns, file.rate_hz, file.join, &refuse)?,
+            reading: reading::reading(
+                file.columns,
+                file.rate_hz,
+                file.join,
+                file.readings,
+                &refuse,
+            )?,
             held_out,
             unloaded,
             filter: filter(file.filter, &refuse)?,

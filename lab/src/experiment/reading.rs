@@ -14,6 +14,18 @@ pub struct Reading {
     pub rate_hz: Option<f64>,
     /// How files are joined; `None`: by time where each has one, else by row.
     pub join: Option<Join>,
+    /// Whether readings that can hardly be right are kept.
+    pub as_recorded: bool,
+}
+
+/// Which readings are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Readings {
+    /// Those that can be right.
+    Plausible,
+    /// All as they are.
+    AsRecorded,
 }
 
 /// How files that were recorded together are joined.
@@ -48,6 +60,7 @@ pub(super) fn reading(
     columns: ColumnNames,
     rate_hz: Option<f64>,
     join: Option<Join>,
+    readings: Option<Readings>,
     refuse: &impl Fn(&str, String) -> ExperimentError,
 ) -> Result<Reading, ExperimentError> {
     if let Some(rate) = rate_hz
@@ -65,5 +78,6 @@ pub(super) fn reading(
         columns,
         rate_hz,
         join,
+        as_recorded: readings == Some(Readings::AsRecorded),
     })
 }

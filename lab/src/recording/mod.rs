@@ -13,6 +13,8 @@
 //!   `valid` is not above 0.5, and with the file. Stretches that are too short for
 //!   a fit are left out. Samples that are no numbers are as if they were not there;
 //!   a hole of up to ten samples is bridged by a straight line, a longer one is a gap.
+//! * What was not measured, or not then, is left out and told (`readings`): spikes, values sent
+//!   again, times of arrival.
 //! * Unevenly sampled sessions are interpolated onto their mean period.
 //! * Conditions of a recording are those of the experiment file, else of the recordings'
 //!   names (`kp100`, `kp200`); they go with its sessions.
@@ -26,6 +28,7 @@ mod conditions;
 mod error;
 mod plausible;
 mod preview;
+mod readings;
 mod repeated;
 mod series;
 mod tally;
@@ -222,7 +225,7 @@ fn read_file(
     clock: &mut Clock,
     notes: &mut Vec<String>,
 ) -> Result<(Vec<RecordedSession>, Tally), LoadError> {
-    let (series, mut tally) = read_series(experiment, path, wanted, notes)?;
+    let (mut series, mut tally) = read_series(experiment, path, wanted, notes)?;
     for own in &series {
         if own.times.is_empty() {
             return Err(LoadError::NoNumbers {
@@ -237,6 +240,7 @@ fn read_file(
         tally.repeated_time = position.repeated;
     }
     tell_holes(&series, notes);
+    readings::clean(experiment, &mut series, &mut tally, notes);
     plausible::check(experiment, &series, notes);
     let pieces = align::align(path, &series, &mut tally)?;
     drop(series);

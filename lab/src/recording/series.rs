@@ -1,6 +1,9 @@
 //! One signal as it was recorded.
 
-use std::path::{Path, PathBuf};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 use super::LoadError;
 use crate::unit::Unit;
@@ -85,15 +88,76 @@ impl Series {
         }
     }
 
+    /// Takes out these samples, which are ranges in order.
+    pub(super) fn remove(&mut self, runs: &[Range<usize>]) {
+        let keeps = |runs: &[Range<usize>]| {
+            let mut next = runs.to_vec().into_iter().peekable();
+            move |at: usize| {
+                while next.next_if(|run| run.end <= at).is_some() {}
+                next.peek().is_none_or(|run| at < run.start)
+            }
+        };
+        retain_by_place(&mut self.times, keeps(runs));
+        retain_by_place(&mut self.values, keeps(runs));
+    }
+
+    /// Samples between gaps.
+    pub(super) fn stretches(&self) -> Vec<Range<usize>> {
+        let longest = super::align::GAP.saturating_mul(super::align::median_interval(self));
+        let mut from = 0;
+        let is_gap = |at: &usize| self.times[*at].saturating_sub(self.times[at - 1]) > longest;
+        let gaps = (1..self.times.len()).filter(is_gap);
+        let ends = gaps.chain((!self.times.is_empty()).then_some(self.times.len()));
+        ends.map(|end| std::mem::replace(&mut from, end)..end)
+            .collect()
+    }
+
+    /// Times \[s\] since the first sample.
+    pub(super) fn seconds(&self) -> Vec<f64> {
+        (0..self.times.len())
+            .map(|at| self.since_start(at))
+            .collect()
+    }
+
+    /// Time of one sample \[s\] since the first.
+    pub(super) fn since_start(&self, at: usize) -> f64 {
+        let time = |at: usize| self.times.get(at).copied().unwrap_or(0);
+        time(at).saturating_sub(time(0)) as f64 * 1e-9
+    }
+
     /// Median interval \[s\]; 0 without two samples.
     pub(super) fn interval(&self) -> f64 {
         super::align::median_interval(self) as f64 * 1e-9
     }
 }
 
+fn retain_by_place<T>(all: &mut Vec<T>, mut keeps: impl FnMut(usize) -> bool) {
+    let mut at = 0;
+    all.retain(|_| {
+        at += 1;
+        keeps(at - 1)
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn samples_are_taken_out_with_their_times() {
+        let wanted = Wanted {
+            signal: "position".to_owned(),
+            path: String::new(),
+            unit: None,
+            time: None,
+        };
+        let mut series = Series::new(&wanted, Path::new("a"));
+        series.times = (0..8).map(|at| 1_000_000_000 * at).collect();
+        series.values = (0..8).map(f64::from).collect();
+        series.remove(&[1..3, 3..4, 7..8]);
+        assert_eq!(series.values, [0.0, 4.0, 5.0, 6.0]);
+        assert_eq!(series.seconds(), series.values);
+    }
 
     #[test]
     fn what_is_no_number_is_counted_and_what_is_one_converted() {

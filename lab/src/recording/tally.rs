@@ -25,6 +25,10 @@ pub struct Tally {
     pub without_number: usize,
     /// With the time of the sample before.
     pub repeated_time: usize,
+    /// That repeat the position until it is measured again.
+    pub repeats: usize,
+    /// Wrong readings of the position.
+    pub wrong_readings: usize,
     /// Where another signal has a gap, or has not begun, or has ended.
     pub without_other_signal: usize,
     /// Where `valid` says no.
@@ -53,6 +57,8 @@ impl Tally {
             (Reason::NotRead, self.too_much),
             (Reason::WithoutNumber, self.without_number),
             (Reason::RepeatedTime, self.repeated_time),
+            (Reason::Repeats, self.repeats),
+            (Reason::WrongReading, self.wrong_readings),
             (Reason::OtherSignalMissing, self.without_other_signal),
             (Reason::NotValid, self.not_valid),
             (Reason::ShortStretch, self.in_short_stretches),
