@@ -211,6 +211,16 @@ fn times_of_arrival_are_set_right() {
 }
 
 #[test]
+fn times_of_too_few_digits_are_set_right() {
+    let mut rows = clean(1.0);
+    for row in &mut rows {
+        row.time = (row.time * 100.0).round() / 100.0;
+    }
+    let told = "about a clock of 5.000 ms";
+    check("digits", &[told], &rows, [1.3, 0.98]);
+}
+
+#[test]
 fn a_torque_that_is_held_is_read_where_it_is_measured() {
     let mut rows = clean(1.0);
     for at in 0..ROWS {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use crate::effects::{BoundTerm, EffectHandle, Facts, JointCoupling, with_columns};
+use crate::effects::{BoundTerm, EffectHandle, Facts, JointCoupling, Row, with_columns};
 use crate::signals::{Filters, Signals};
 
 /// A model bound to recordings: signals filtered, effects with their shapes, the
@@ -36,6 +36,12 @@ impl PreparedModel {
     #[must_use]
     pub fn has(&self, id: &str) -> bool {
         self.terms.iter().any(|t| t.effect.description().id == id)
+    }
+
+    /// Whether an effect counts here: of a second one of its kind, whether the model has the first.
+    #[must_use]
+    pub fn offers(&self, row: &Row) -> bool {
+        row.another.is_none_or(|first| self.has(first))
     }
 
     /// The model's effect `id`, and the index of its first column.

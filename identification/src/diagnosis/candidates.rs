@@ -101,7 +101,7 @@ pub fn missing(prepared: &PreparedModel) -> Vec<EffectHandle> {
         .filter(|effect| {
             let row = effect.row();
             let there = prepared.has(row.id) || has_whole(row) || has_part(row);
-            !there && effect.unavailable(&prepared.facts).is_none()
+            !there && prepared.offers(row) && effect.unavailable(&prepared.facts).is_none()
         })
         .collect()
 }

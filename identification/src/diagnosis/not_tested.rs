@@ -24,16 +24,24 @@ impl NotTested {
             all.push(vec![COUPLING.to_owned()], why);
         }
         // What else is not available is a matter of the model, or of a sensor that is not there.
-        let reasons = [
+        let mut reasons: Vec<String> = [
             facts.no_temperature(),
+            facts.too_few_temperatures(),
             facts.no_dates(),
             facts.no_load(),
             facts.no_torque_sensor(),
-        ];
-        for why in reasons.into_iter().flatten() {
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        // Without a temperature there are too few of them, too.
+        reasons.dedup();
+        for why in reasons {
             let missing = effects::for_subject(facts.joint.subject()).into_iter();
             let missing = missing.filter(|effect| {
-                !prepared.has(effect.row().id) && effect.unavailable(facts).as_ref() == Some(&why)
+                let row = effect.row();
+                let is_unavailable = effect.unavailable(facts).as_ref() == Some(&why);
+                is_unavailable && prepared.offers(row) && !prepared.has(row.id)
             });
             all.push(missing.map(|own| own.row().id.to_owned()).collect(), &why);
         }

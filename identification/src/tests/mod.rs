@@ -2,6 +2,7 @@
 
 mod acceleration_noise;
 mod acceptance;
+mod another;
 mod compensation;
 mod contact;
 mod formulas;

@@ -239,6 +239,10 @@ fn read_file(
         tally.without_number = position.missing;
         tally.repeated_time = position.repeated;
     }
+    if !experiment.reading.as_recorded {
+        notes.extend(readings::set_clock(&mut series));
+    }
+    series.iter_mut().for_each(Series::drop_repeated);
     tell_holes(&series, notes);
     readings::clean(experiment, &mut series, &mut tally, notes);
     plausible::check(experiment, &series, notes);

@@ -70,6 +70,7 @@ pub fn preview(experiment: &Experiment) -> (Vec<Seen>, Vec<LoadError>) {
                 }
             }
         }
+        all.iter_mut().for_each(Series::drop_repeated);
         let starts = all.iter().filter_map(|own| own.times.first().copied());
         let start = starts.min().unwrap_or(0);
         seen.extend(all.iter().map(|own| {

@@ -25,7 +25,8 @@ pub(super) struct Series {
     pub(super) signal: String,
     pub(super) file: PathBuf,
     unit: Option<Unit>,
-    /// \[ns\], ascending.
+    /// \[ns\], ascending, several samples at one time until
+    /// [`drop_repeated`](Self::drop_repeated).
     pub(super) times: Vec<i64>,
     pub(super) values: Vec<f64>,
     /// Samples without a number.
@@ -56,8 +57,7 @@ impl Series {
         self.first_missing.get_or_insert_with(place);
     }
 
-    /// Takes a sample; `place` names it in errors. A second sample of the same
-    /// time is the first one sent again, and left out.
+    /// Takes a sample; `place` names it in errors.
     pub(super) fn push(
         &mut self,
         time: i64,
@@ -75,16 +75,24 @@ impl Series {
                 place: place(),
                 by: last.saturating_sub(time) as f64 * 1e-9,
             }),
-            Some(&last) if time == last => {
-                self.repeated += 1;
-                Ok(())
-            }
             _ => {
                 self.times.push(time);
                 let value = self.unit.map_or(value, |unit| unit.convert(value));
                 self.values.push(value);
                 Ok(())
             }
+        }
+    }
+
+    /// Leaves out and counts what has the time of the sample before, as if it were that one sent
+    /// again.
+    pub(super) fn drop_repeated(&mut self) {
+        let is_repeated = |at: &usize| self.times[*at] == self.times[at - 1];
+        let repeated: Vec<usize> = (1..self.times.len()).filter(is_repeated).collect();
+        let runs: Vec<Range<usize>> = repeated.iter().map(|at| *at..at + 1).collect();
+        self.repeated = repeated.len();
+        if self.repeated > 0 {
+            self.remove(&runs);
         }
     }
 
@@ -173,6 +181,7 @@ mod tests {
             series.push(at as i64, value, place).unwrap();
         }
         series.push(3, 5.0, String::new).unwrap();
+        series.drop_repeated();
         assert_eq!((series.times.as_slice(), series.repeated), (&[0, 3][..], 1));
         assert!((series.values[1] - 2e-3).abs() < 1e-12);
         assert_eq!(

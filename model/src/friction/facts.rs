@@ -144,6 +144,17 @@ impl Facts {
             .then(|| "the temperature is not measured or varies by less than 2 K".to_owned())
     }
 
+    /// Why nothing can be said of a curve over temperature, if nothing can.
+    #[must_use]
+    pub fn too_few_temperatures(&self) -> Option<String> {
+        let few = (3..5).contains(&self.sessions);
+        let too_few = few.then(|| {
+            "through so few sessions a curve over temperature always fits: five are needed"
+                .to_owned()
+        });
+        self.no_temperature().or(too_few)
+    }
+
     /// Why nothing can be said of a joint torque sensor, if nothing can.
     #[must_use]
     pub fn no_torque_sensor(&self) -> Option<String> {

@@ -42,32 +42,58 @@ fn bounds_of_wave_numbers(facts: &Facts) -> Vec<[f64; 2]> {
     vec![[low, high.max(2.0 * low)]]
 }
 
+const RIPPLE: StaticEffect = StaticEffect {
+    row: Row {
+        id: "ripple",
+        equation: "τ_F = a_s · sin(k q) + a_c · cos(k q)",
+        source: "wave generator of a harmonic drive: k = 2N, also N and 4N, N the gear ratio",
+        coefficients: &[torque("a_s"), torque("a_c")],
+        shape: &[EffectParameter::new("k", WAVE_NUMBER, 1e-3, 1e6)],
+        shows_as: "periodic in q",
+        excited_by: "slow constant speed, so slow that the ripple is not aliased",
+        shown_by: Proposal::WidePosition,
+        contrasts: &[Contrast::WidePosition, Contrast::Accelerations],
+        confusable_with: &["local_friction"],
+        is_periodic: true,
+        ..Row::NONE
+    },
+    reads: &[Signal::Position],
+    columns: |state, shape, columns| {
+        if let ([sine, cosine], [k, ..]) = (columns, shape) {
+            (*sine, *cosine) = (k * state.position).sin_cos();
+        }
+    },
+    shapes: wave_numbers_of_the_gear,
+    bounds: bounds_of_wave_numbers,
+    ..StaticEffect::NONE
+};
+
 /// All of them.
 pub(super) static EFFECTS: &[StaticEffect] = &[
+    RIPPLE,
     StaticEffect {
         row: Row {
-            id: "ripple",
-            equation: "τ_F = a_s · sin(k q) + a_c · cos(k q)",
-            source: "wave generator of a harmonic drive: k = 2N, also N and 4N, N the gear ratio",
-            coefficients: &[torque("a_s"), torque("a_c")],
-            shape: &[EffectParameter::new("k", WAVE_NUMBER, 1e-3, 1e6)],
-            shows_as: "periodic in q",
-            excited_by: "slow constant speed, so slow that the ripple is not aliased",
-            shown_by: Proposal::WidePosition,
-            contrasts: &[Contrast::WidePosition, Contrast::Accelerations],
-            confusable_with: &["local_friction"],
-            is_periodic: true,
-            ..Row::NONE
+            id: "ripple_2",
+            equation: "τ_F = a_s2 · sin(k2 q) + a_c2 · cos(k2 q)",
+            source: "a second period beside the first: another harmonic of the wave generator, the motor's poles, a tooth",
+            coefficients: &[torque("a_s2"), torque("a_c2")],
+            shape: &[EffectParameter::new("k2", WAVE_NUMBER, 1e-3, 1e6)],
+            another: Some("ripple"),
+            ..RIPPLE.row
         },
-        reads: &[Signal::Position],
-        columns: |state, shape, columns| {
-            if let ([sine, cosine], [k, ..]) = (columns, shape) {
-                (*sine, *cosine) = (k * state.position).sin_cos();
-            }
+        ..RIPPLE
+    },
+    StaticEffect {
+        row: Row {
+            id: "ripple_3",
+            equation: "τ_F = a_s3 · sin(k3 q) + a_c3 · cos(k3 q)",
+            source: "a third period beside the first two",
+            coefficients: &[torque("a_s3"), torque("a_c3")],
+            shape: &[EffectParameter::new("k3", WAVE_NUMBER, 1e-3, 1e6)],
+            another: Some("ripple_2"),
+            ..RIPPLE.row
         },
-        shapes: wave_numbers_of_the_gear,
-        bounds: bounds_of_wave_numbers,
-        ..StaticEffect::NONE
+        ..RIPPLE
     },
     StaticEffect {
         row: Row {

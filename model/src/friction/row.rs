@@ -237,6 +237,8 @@ pub struct Row {
     pub corrects_inertia: bool,
     /// Its shape is a period over position, sought in the residual.
     pub is_periodic: bool,
+    /// The effect that it is another one of the same kind as: it counts beside that alone.
+    pub another: Option<&'static str>,
     /// It shows mainly just after reversals, where rows are left out for other
     /// effects: a model that has it is fitted to these rows too.
     pub shows_at_reversals: bool,
@@ -277,6 +279,7 @@ impl Row {
         is_inertia: false,
         corrects_inertia: false,
         is_periodic: false,
+        another: None,
         shows_at_reversals: false,
         needs_prediction: false,
         acts_on_channels: false,

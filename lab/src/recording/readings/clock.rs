@@ -49,7 +49,10 @@ fn regular(seconds: &[f64], values: &[f64]) -> Option<(Vec<f64>, f64, f64)> {
         return None;
     }
     let mut intervals: Vec<f64> = seconds.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let usual = quantile(&mut intervals, 0.5, f64::total_cmp)?;
+    let median = quantile(&mut intervals, 0.5, f64::total_cmp)?;
+    // Times of too few digits are the same of several samples.
+    let mean = intervals.iter().sum::<f64>() / intervals.len() as f64;
+    let usual = if median > 0.5 * mean { median } else { mean };
     // Of a recording with gaps, parts may be of clocks that began anew.
     let longest = intervals.iter().copied().fold(0.0, f64::max);
     if longest > GAP as f64 * usual || usual <= 0.0 {
@@ -183,6 +186,19 @@ mod tests {
         // Measured when it says.
         assert_eq!(found(&said, &said), None);
         assert_eq!(found(&taken, &taken), None);
+    }
+
+    #[test]
+    fn times_of_too_few_digits_are_set_right() {
+        let taken: Vec<f64> = (0..4000).map(|at| at as f64 * PERIOD).collect();
+        for digits in [0.01, 0.02] {
+            let said: Vec<f64> = taken
+                .iter()
+                .map(|t| (t / digits).round() * digits)
+                .collect();
+            let off = found(&taken, &said).expect("several samples have one time");
+            assert!(off < 0.1 * PERIOD, "{off} with {digits}");
+        }
     }
 
     #[test]

@@ -23,6 +23,12 @@ use crate::experiment::{Experiment, POSITION};
 /// What is told of how to have it otherwise.
 const OTHERWISE: &str = " (readings = \"as_recorded\" keeps them)";
 
+/// Gives samples of `series`, the position first, the times of the clock that they were taken
+/// by, where the position tells it; a note says so.
+pub(super) fn set_clock(series: &mut [Series]) -> Option<String> {
+    clock::set_right(series)
+}
+
 /// What a signal is of, as far as it matters here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -68,7 +74,6 @@ pub(super) fn clean(
             notes.extend(turns::turn_on(own));
         }
     }
-    notes.extend(clock::set_right(series));
     for (at, kind) in kinds.iter().enumerate() {
         let Some(kind) = kind else { continue };
         let Some(own) = series.get(at) else { continue };

@@ -1,0 +1,88 @@
+//! Effects of which there is more than one, or that one term does not describe.
+
+use super::recordings::{JointState, model, plain, recording};
+use crate::{Dataset, Verdict, compare, diagnose};
+
+/// What is named step by step, the last verdict, and the error on data held out that is left.
+fn complete(data: &Dataset) -> (Vec<String>, Verdict, f64) {
+    let mut effects = vec!["coulomb".to_owned(), "viscous".to_owned()];
+    loop {
+        let names: Vec<&str> = effects.iter().map(String::as_str).collect();
+        let found = diagnose(data, &model(&names), &mut |_| ()).unwrap();
+        match found.candidates.first() {
+            Some(first) if effects.len() < 8 => effects.push(first.effect.clone()),
+            _ => return (effects.split_off(2), found.verdict, found.rms.held_out),
+        }
+    }
+}
+
+/// The error on data held out with these effects.
+fn left_with(data: &Dataset, effects: &[&str]) -> f64 {
+    compare(data, &model(effects)).unwrap().rms.held_out
+}
+
+/// The error with nothing hidden, which is noise and what differs between sessions.
+fn noise(seed: u64) -> f64 {
+    left_with(&recording(seed, plain), &["coulomb", "viscous"])
+}
+
+fn waves(s: &JointState, all: &[[f64; 2]]) -> f64 {
+    let each = all.iter().map(|[size, k]| size * (k * s.q + size).sin());
+    each.sum()
+}
+
+#[test]
+fn harmonics_of_a_gear_are_found_one_after_the_other() {
+    let one = recording(3, |s| plain(s) + waves(s, &[[0.8, 160.0]]));
+    let (names, verdict, left) = complete(&one);
+    assert_eq!(
+        (names, verdict),
+        (vec!["ripple".to_owned()], Verdict::Complete)
+    );
+    assert!((0.9..1.1).contains(&(left / noise(3))), "{left}");
+    let three = [[0.8, 160.0], [0.6, 320.0], [0.5, 77.0]];
+    let (names, verdict, left) = complete(&recording(3, |s| plain(s) + waves(s, &three)));
+    assert_eq!(names, ["ripple", "ripple_2", "ripple_3"]);
+    assert_eq!(verdict, Verdict::Complete);
+    assert!((0.9..1.15).contains(&(left / noise(3))), "{left}");
+}
+
+/// Over 31 K the viscosity falls to a fifth, exponentially. What orders above the second would
+/// add is as large as the noise.
+#[test]
+fn a_viscosity_that_falls_exponentially_has_a_curve_over_temperature() {
+    let oil = |s: &JointState| 12.0 * ((-(s.temperature - 11.0) / 20.0).exp() - 1.0) * s.qd;
+    let straight = |s: &JointState| -0.6 * (s.temperature - 11.0) * s.qd;
+    let data = recording(12, |s| plain(s) + oil(s));
+    let (names, verdict, left) = complete(&data);
+    assert_eq!(names, ["temperature_viscous", "temperature_viscous_curve"]);
+    assert_eq!(verdict, Verdict::Complete);
+    let before = left_with(&data, &["coulomb", "viscous", "temperature_viscous"]);
+    assert!(left < 0.5 * before, "{left} for {before}");
+    assert!((0.9..2.2).contains(&(left / noise(12))), "{left}");
+    let (names, verdict, _) = complete(&recording(12, |s| plain(s) + straight(s)));
+    assert_eq!(
+        (names, verdict),
+        (vec!["temperature_viscous".to_owned()], Verdict::Complete)
+    );
+}
+
+/// Within a session it changes by less than a degree, and is read in whole ones.
+#[test]
+fn a_temperature_in_whole_degrees_shows_what_changes_with_it() {
+    let mut data = recording(13, |s| {
+        plain(s) + 0.06 * (s.temperature - 11.0) * s.qd.signum()
+    });
+    for session in &mut data.sessions {
+        let all = session.temperature.iter_mut().flatten();
+        for (at, own) in all.enumerate() {
+            // What it is warmed by does nothing to friction.
+            *own = (*own + 0.9 * at as f64 / 4000.0).round();
+        }
+    }
+    let (names, verdict, _) = complete(&data);
+    assert_eq!(
+        (names, verdict),
+        (vec!["temperature_coulomb".to_owned()], Verdict::Complete)
+    );
+}
