@@ -202,12 +202,17 @@ fn print_diagnosis(diagnosis: &ArmDiagnosis, unit: &str) {
     println!("{} variants tried", diagnosis.tried);
     table::varies_together(&diagnosis.varies_together);
     println!();
-    println!("{:<26} {:<12} {:>12}", "joint", "", "held out");
+    println!(
+        "{:<26} {:<12} {:>12} {:>8} {:>12}",
+        "joint", "", "held out", "used", "cut-off"
+    );
     for (name, own) in &diagnosis.joints {
         println!(
-            "{name:<26} {:<12} {:>9} {unit}",
+            "{name:<26} {:<12} {:>9} {unit} {:>6.1} % {:>9} Hz",
             own.verdict.name(),
-            significant(own.rms.held_out)
+            significant(own.rms.held_out),
+            own.used.share * 100.0,
+            significant(own.used.cutoff_hz)
         );
     }
     if !diagnosis.candidates.is_empty() {
@@ -232,7 +237,7 @@ fn print_diagnosis(diagnosis: &ArmDiagnosis, unit: &str) {
         println!(
             "  {:<22} {:<44} {:.1} % of its mean square",
             own.joint,
-            own.dependence.signals.join(" and "),
+            own.dependence.on(),
             own.dependence.strength * 100.0
         );
     }

@@ -327,7 +327,7 @@ pub fn diagnosis(diagnosis: &Diagnosis, unit: &str) {
     for dependence in &diagnosis.residual_depends_on {
         println!(
             "  {:<28} {:.1} % of its mean square",
-            dependence.signals.join(" and "),
+            dependence.on(),
             dependence.strength * 100.0
         );
     }

@@ -3,7 +3,7 @@
 import { fill, make } from "../common/dom.js";
 import { words } from "../common/names.js";
 import { percent, significant } from "../common/numbers.js";
-import { VERDICTS, notTested, ranking } from "./findings.js";
+import { VERDICTS, dependsOn, notTested, ranking } from "./findings.js";
 import { dataOf, figure, headline, tabs } from "./model.js";
 
 let parts = {};
@@ -82,6 +82,6 @@ export function diagnosis(parent, { diagnosis: found, results, view }, actions) 
     found.residual_depends_on.length ? [
       make("h2", { textContent: "Residuals depend on", style: "margin-top:14px" }),
       make("table", {}, make("tbody", {}, found.residual_depends_on.map((own) => make("tr", {},
-        make("td", { textContent: words(own.joint) }), make("td", { textContent: own.signals.map(words).join(" and ") }), make("td", { className: "right number", textContent: percent(own.strength) })))))] : null,
+        make("td", { textContent: words(own.joint) }), make("td", { textContent: dependsOn(own) }), make("td", { className: "right number", textContent: percent(own.strength) })))))] : null,
     notTested(found));
 }

@@ -72,9 +72,12 @@ export function diagnosis(parent, { diagnosis: found, view, joint }, actions) {
       make("h2", { textContent: "The residual depends on", style: "margin-top:14px" }),
       make("p", { className: "quiet small", textContent: "The parts overlap, since signals go together: their sum says nothing." }),
       make("table", {}, make("tbody", {}, found.residual_depends_on.map((dependence) => make("tr", {},
-        make("td", { textContent: dependence.signals.map(words).join(" and ") }), make("td", { className: "right number", textContent: percent(dependence.strength) })))))] : null,
+        make("td", { textContent: dependsOn(dependence) }), make("td", { className: "right number", textContent: percent(dependence.strength) })))))] : null,
     notTested(found));
 }
+
+/** What a residual depends on, in words. */
+export const dependsOn = (own) => own.signals.map(words).join(" and ") + (own.period_s ? `, with a period of ${significant(own.period_s)} s` : "");
 
 /** Every chart of an experiment. */
 export async function charts(parent, state, actions) {

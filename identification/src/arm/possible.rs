@@ -22,6 +22,8 @@ const BARRIER: [f64; 4] = [10.0, 1.0, 0.1, 0.01];
 const MAX_STEPS: usize = 60;
 /// A step that promises less is the last one.
 const MIN_PROMISE: f64 = 1e-9;
+/// Share of what is believed that a body keeps of it, at least.
+const MARGIN: f64 = 1e-6;
 /// What a payload that was taken off leaves of the link, at least, as a share.
 const LEFT: f64 = 1e-3;
 /// Radius of gyration of a link of which nothing possible is believed \[m\].
@@ -92,6 +94,12 @@ pub(super) fn nearest_link(
                 break;
             }
         }
+    }
+    // At the edge of what is possible rounding goes over it.
+    let least = |of: &Ten| pseudo_inertia(of).symmetric_eigenvalues().min();
+    let inside = Ten::from(center.parameters());
+    if least(&own) < MARGIN * least(&inside) {
+        own += (inside - own) * MARGIN;
     }
     DVector::from_fn(LINK_PARAMETERS, |i, _| own[i] - from[i])
 }

@@ -5,3 +5,4 @@ pub mod filter;
 pub mod gram;
 pub mod regression;
 pub mod statistics;
+pub(crate) mod waves;

@@ -86,3 +86,24 @@ fn a_temperature_in_whole_degrees_shows_what_changes_with_it() {
         (vec!["temperature_coulomb".to_owned()], Verdict::Complete)
     );
 }
+
+/// A structure that rings at 3.1 Hz, in no step with the motion, and as loud as the noise.
+#[test]
+fn what_swings_with_time_is_told_with_its_period() {
+    let mut data = recording(14, plain);
+    for (number, session) in data.sessions.iter_mut().enumerate() {
+        for (at, torque) in session.motor_torque.iter_mut().enumerate() {
+            let time = at as f64 * session.period;
+            *torque += 0.3 * (std::f64::consts::TAU * 3.1 * time + number as f64).sin();
+        }
+    }
+    let found = diagnose(&data, &model(&["coulomb", "viscous"]), &mut |_| ()).unwrap();
+    assert_eq!(found.verdict, Verdict::Unexplained);
+    let [own] = found.residual_depends_on.as_slice() else {
+        panic!("{:?}", found.residual_depends_on);
+    };
+    assert_eq!(own.signals, ["time"]);
+    let period = own.period_s.unwrap();
+    assert!((period * 3.1 - 1.0).abs() < 2e-3, "{period}");
+    assert!(own.on().contains("period of 0.322"), "{}", own.on());
+}

@@ -98,15 +98,8 @@ impl Series {
 
     /// Takes out these samples, which are ranges in order.
     pub(super) fn remove(&mut self, runs: &[Range<usize>]) {
-        let keeps = |runs: &[Range<usize>]| {
-            let mut next = runs.to_vec().into_iter().peekable();
-            move |at: usize| {
-                while next.next_if(|run| run.end <= at).is_some() {}
-                next.peek().is_none_or(|run| at < run.start)
-            }
-        };
-        retain_by_place(&mut self.times, keeps(runs));
-        retain_by_place(&mut self.values, keeps(runs));
+        retain_outside(&mut self.times, runs);
+        retain_outside(&mut self.values, runs);
     }
 
     /// Samples between gaps.
@@ -139,11 +132,14 @@ impl Series {
     }
 }
 
-fn retain_by_place<T>(all: &mut Vec<T>, mut keeps: impl FnMut(usize) -> bool) {
+fn retain_outside<T>(all: &mut Vec<T>, runs: &[Range<usize>]) {
+    let mut next = runs.iter().peekable();
     let mut at = 0;
     all.retain(|_| {
+        while next.next_if(|run| run.end <= at).is_some() {}
+        let is_outside = next.peek().is_none_or(|run| at < run.start);
         at += 1;
-        keeps(at - 1)
+        is_outside
     });
 }
 

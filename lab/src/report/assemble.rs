@@ -102,6 +102,7 @@ pub fn assemble(
             .iter()
             .map(|own| Dependence {
                 signals: own.signals.clone(),
+                period_s: own.period_s,
                 strength: own.strength,
             })
             .collect(),

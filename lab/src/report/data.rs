@@ -184,6 +184,8 @@ pub struct Candidate {
 pub struct Dependence {
     /// One signal or a pair.
     pub signals: Vec<String>,
+    /// Of what swings with time: its period \[s\].
+    pub period_s: Option<f64>,
     /// Part of the residual's mean square that they explain \[0 … 1\].
     pub strength: f64,
 }

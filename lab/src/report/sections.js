@@ -131,7 +131,7 @@ function showReport(report) {
   if (report.used.length) showUsed(page, report.used);
   if (report.dependences.length) {
     table(section(page, "What the residual depends on", "The parts overlap, since the signals go together: their sum says nothing."), [["signals"], ["part of the mean square", 1]],
-      report.dependences.map((each) => [each.signals.join(" × "), (100 * each.strength).toFixed(1) + " %"]));
+      report.dependences.map((each) => [each.signals.join(" × ") + (each.period_s ? `, period ${each.period_s.toPrecision(4)} s` : ""), (100 * each.strength).toFixed(1) + " %"]));
   }
   if (report.history.length) showHistory(page, report.history);
   if (report.maps.length) showMaps(page, report.maps);

@@ -6,6 +6,7 @@
 //! and where, but names no effect.
 
 mod basis;
+mod oscillation;
 
 use basis::{Channel, Ground, KNOTS_PAIR, KNOTS_PRODUCT, Slow};
 use serde::Serialize;
@@ -14,6 +15,10 @@ use crate::design::{Design, PreparedModel};
 use crate::effects::{Direction, EffectHandle, LOAD_OF, POSITION_OF, VELOCITY_OF};
 use crate::numerics::statistics::{f_tail, quantile_or_zero};
 use crate::validation::{Score, between, gain_within};
+
+/// Smallest share of the mean square that an oscillation explains: of a motion that repeats
+/// itself, what other maps leave is one, too.
+const MIN_SHARE_OF_OSCILLATION: f64 = 0.1;
 
 /// A dependence of the residual on one signal or two.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,8 +36,23 @@ pub struct Dependence {
     pub p_value: f64,
     /// See [`Score::certainty`].
     pub certainty: f64,
+    /// Of a residual that swings with time, whatever the joint does: its period \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period_s: Option<f64>,
     /// Mean residual over the signals; empty where there are three.
     pub map: Map,
+}
+
+impl Dependence {
+    /// On what, in words.
+    #[must_use]
+    pub fn on(&self) -> String {
+        let signals = self.signals.join(" and ");
+        match self.period_s {
+            Some(period) => format!("{signals}, with a period of {period:.4} s"),
+            None => signals,
+        }
+    }
 }
 
 /// Mean residual in bins of one or two signals.
@@ -116,6 +136,9 @@ pub fn find(prepared: &PreparedModel, design: &Design) -> Vec<Dependence> {
             &slow_variation(prepared, design),
             tried,
         ));
+    }
+    if found.is_empty() {
+        found.extend(oscillating(prepared, design, tried));
     }
     rank(&mut found);
     let residuals: Vec<Vec<f64>> = design.sessions.iter().map(|s| s.own_residual()).collect();
@@ -213,7 +236,19 @@ fn dependence(names: &[String], score: &Score, tried: f64) -> Option<Dependence>
         gain: score.gain,
         p_value,
         certainty: score.certainty,
+        period_s: None,
         map: Map::default(),
+    })
+}
+
+/// A residual that swings with time.
+fn oscillating(prepared: &PreparedModel, design: &Design, tried: f64) -> Option<Dependence> {
+    let found = oscillation::find(prepared, design)?;
+    let tried = tried + found.tried as f64;
+    let own = dependence(&["time".to_owned()], &found.score, tried)?;
+    (own.strength > MIN_SHARE_OF_OSCILLATION).then_some(Dependence {
+        period_s: Some(found.period),
+        ..own
     })
 }
 

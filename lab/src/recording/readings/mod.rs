@@ -145,9 +145,9 @@ fn ordinal(number: usize) -> String {
 /// Runs of samples that have the value of the one before, with that one.
 fn runs_of_equal(values: &[f64]) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut start = 0;
-    (1..=values.len()).filter_map(move |end| {
-        (values.get(end) != values.get(start)).then(|| std::mem::replace(&mut start, end)..end)
-    })
+    let is_end = move |end: &usize| values.get(*end) != values.get(*end - 1);
+    let ends = (1..=values.len()).filter(is_end);
+    ends.map(move |end| std::mem::replace(&mut start, end)..end)
 }
 
 #[cfg(test)]
@@ -158,7 +158,7 @@ mod tests {
     fn runs_cover_everything_once() {
         let runs = |values: &[f64]| runs_of_equal(values).collect::<Vec<_>>();
         assert_eq!(runs(&[1.0, 1.0, 2.0, 3.0, 3.0, 3.0]), [0..2, 2..3, 3..6]);
-        assert_eq!(runs(&[1.0]), [0..1]);
+        assert_eq!(runs(&[1.0, 2.0]), [0..1, 1..2]);
         assert!(runs(&[]).is_empty());
     }
 }

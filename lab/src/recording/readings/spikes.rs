@@ -59,7 +59,7 @@ pub(super) fn find(values: &[f64], stretches: &[Range<usize>], kind: Kind) -> Sp
         threshold,
         usual: steps.usual,
     };
-    if !(threshold > 0.0) {
+    if threshold == 0.0 {
         return found;
     }
     let may_be = possible(values, threshold);
@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     fn find(values: &[f64], kind: Kind) -> Spikes {
-        super::find(values, &[0..values.len()], kind)
+        super::find(values, std::slice::from_ref(&(0..values.len())), kind)
     }
 
     fn noise(at: usize) -> f64 {
@@ -223,7 +223,10 @@ mod tests {
             (random >> 11) as f64 / (1_u64 << 53) as f64
         };
         let normal: Vec<f64> = (0..200_000)
-            .map(|_| (-2.0 * uniform().max(1e-12).ln()).sqrt() * (6.283 * uniform()).cos())
+            .map(|_| {
+                (-2.0 * uniform().max(1e-12).ln()).sqrt()
+                    * (std::f64::consts::TAU * uniform()).cos()
+            })
             .collect();
         for kind in [Kind::Position, Kind::Force] {
             assert!(find(&normal, kind).runs.is_empty());

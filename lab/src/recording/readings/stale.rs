@@ -106,7 +106,7 @@ mod tests {
     }
 
     fn of_position(values: &[f64]) -> Vec<Range<usize>> {
-        super::of_position(values, &[0..values.len()])
+        super::of_position(values, std::slice::from_ref(&(0..values.len())))
     }
 
     fn motion(at: usize) -> f64 {
@@ -145,7 +145,8 @@ mod tests {
         assert!(find(plain.clone()).is_empty());
         let mut stale = plain.clone();
         stale[600..700].fill(plain[600]);
-        assert_eq!(find(stale), [601..700]);
+        stale[2700..2800].fill(plain[2700]);
+        assert_eq!(find(stale), [601..700, 2701..2800]);
         let limited = plain.iter().map(|own| own.clamp(-4.0, 4.0)).collect();
         assert!(find(limited).is_empty());
         let mut off = plain.clone();
