@@ -1,5 +1,7 @@
 //! Samples that were taken regularly and have the time of their arrival.
 
+use std::ops::Range;
+
 use ferntast_identification::numerics::statistics::quantile;
 
 use super::{OTHERWISE, steps::Steps};
@@ -17,56 +19,106 @@ const FOLLOW: f64 = 0.1;
 const FEWEST: usize = 100;
 
 /// Gives samples the times of a regular clock where the position is at least twice as smooth
-/// on that: the noise of the times was none of the motion. All series with the position's
-/// times get the new ones; a note tells it.
+/// on that, between gaps each its own: the noise of the times was none of the motion. All series
+/// with the position's times get the new ones; a note tells it.
 pub(super) fn set_right(all: &mut [Series]) -> Option<String> {
     let position = all.first()?;
     let seconds = position.seconds();
-    let (times, jitter, period) = regular(&seconds, &position.values)?;
+    let start = position.times.first().copied()?;
+    let mut times = position.times.clone();
+    let mut told: Option<(f64, f64)> = None;
+    for stretch in stretches(&seconds) {
+        let own = seconds.get(stretch.clone()).unwrap_or_default();
+        let values = position.values.get(stretch.clone()).unwrap_or_default();
+        let Some(clock) = regular(own, values) else {
+            continue;
+        };
+        let (scatter, _) = told.unwrap_or_default();
+        told = Some((f64::max(scatter, clock.scatter), clock.period));
+        let both = times.iter_mut().skip(stretch.start).zip(&clock.times);
+        both.for_each(|(time, own)| *time = start + (own * 1e9).round() as i64);
+    }
+    let (scatter, period) = told?;
+    // Clocks of neighbouring stretches may overlap by what their times scatter.
+    let is_in_order = times.windows(2).all(|pair| pair[0] < pair[1]);
     let note = format!(
-        "{}: the times of signals.{} scatter by {:.3} ms (rms) about a clock of {:.3} ms, on which the motion is smooth: samples get its times{OTHERWISE}",
+        "{}: the times of signals.{} scatter by up to {:.3} ms (rms) about a clock of {:.3} ms, on which the motion is smooth: samples get its times{OTHERWISE}",
         position.file.display(),
         position.signal,
-        jitter * 1e3,
+        scatter * 1e3,
         period * 1e3,
     );
-    let start = position.times.first().copied().unwrap_or(0);
-    let times: Vec<i64> = times
-        .iter()
-        .map(|time| start + (time * 1e9).round() as i64)
-        .collect();
     let old = position.times.clone();
-    for own in all.iter_mut().filter(|own| own.times == old) {
+    for own in all.iter_mut().filter(|own| is_in_order && own.times == old) {
         own.times.clone_from(&times);
     }
-    Some(note)
+    is_in_order.then_some(note)
 }
 
-/// Times \[s\] of a regular clock on which `values` are smooth, how far the given ones scatter
-/// about them, and its period; `None` where the given ones are better, or regular.
-fn regular(seconds: &[f64], values: &[f64]) -> Option<(Vec<f64>, f64, f64)> {
+/// Samples between gaps; times of too few digits are the same of several samples.
+fn stretches(seconds: &[f64]) -> Vec<Range<usize>> {
+    let mut intervals: Vec<f64> = seconds.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let longest = GAP as f64 * usual(&mut intervals);
+    let mut from = 0;
+    let is_gap = |at: &usize| seconds[*at] - seconds[at - 1] > longest;
+    let ends = (1..seconds.len()).filter(is_gap);
+    let ends = ends.chain([seconds.len()]);
+    ends.map(|end| std::mem::replace(&mut from, end)..end)
+        .collect()
+}
+
+/// The usual one of `intervals`: the median, unless most are far shorter.
+fn usual(intervals: &mut [f64]) -> f64 {
+    let mean = intervals.iter().sum::<f64>() / intervals.len().max(1) as f64;
+    let median = quantile(intervals, 0.5, f64::total_cmp).unwrap_or(0.0);
+    if median > 0.0 { median } else { mean }
+}
+
+/// A regular clock beside the times that samples have.
+struct Clock {
+    /// Of each sample \[s\].
+    times: Vec<f64>,
+    /// How far the samples' own times are from these, rms and at most \[s\].
+    scatter: f64,
+    most: f64,
+    /// \[s\].
+    period: f64,
+}
+
+impl Clock {
+    /// Whether the samples have its times.
+    fn is_regular(&self) -> bool {
+        self.most <= REGULAR * self.period
+    }
+
+    /// Whether no sample's time is further from its own than a gap is long, and some are off.
+    fn is_off_by_no_gap(&self) -> bool {
+        self.period > 0.0 && !self.is_regular() && self.most < GAP as f64 * self.period
+    }
+}
+
+/// The regular clock on which `values` are smooth; `None` where the times that there are are
+/// better, or regular.
+fn regular(seconds: &[f64], values: &[f64]) -> Option<Clock> {
     if seconds.len() < FEWEST {
         return None;
     }
     let mut intervals: Vec<f64> = seconds.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let median = quantile(&mut intervals, 0.5, f64::total_cmp)?;
-    // Times of too few digits are the same of several samples.
-    let mean = intervals.iter().sum::<f64>() / intervals.len() as f64;
-    let usual = if median > 0.5 * mean { median } else { mean };
-    // Of a recording with gaps, parts may be of clocks that began anew.
-    let longest = intervals.iter().copied().fold(0.0, f64::max);
-    if longest > GAP as f64 * usual || usual <= 0.0 {
+    let usual = usual(&mut intervals);
+    if usual <= 0.0 {
+        return None;
+    }
+    let all_there: Vec<usize> = (0..seconds.len()).collect();
+    let without_losses = on_line(&all_there, seconds);
+    if without_losses.is_regular() {
         return None;
     }
     // The period of the first time follows the better the second time.
     let (_, period) = line(&followed(seconds, usual), seconds);
-    let with_losses = followed(seconds, period);
-    let all_there = (0..seconds.len()).collect();
-    let clocks = [all_there, with_losses].into_iter();
-    let found = clocks.filter_map(|steps| {
-        let clock = on_line(&steps, seconds)?;
-        Some((Roughness::of(&clock.0, values), clock))
-    });
+    let with_losses = on_line(&followed(seconds, period), seconds);
+    let clocks = [without_losses, with_losses].into_iter();
+    let found = clocks.filter(Clock::is_off_by_no_gap);
+    let found = found.map(|clock| (Roughness::of(&clock.times, values), clock));
     // A sample that was lost shows in few places.
     let (rough, clock) = found.min_by(|a, b| a.0.mean.total_cmp(&b.0.mean))?;
     let said = Roughness::of(seconds, values).median;
@@ -107,9 +159,8 @@ fn line(steps: &[usize], seconds: &[f64]) -> (f64, f64) {
     (mean_time - slope * mean_step, slope)
 }
 
-/// Times of that line, the rms about it and its slope; `None` where they are on it, or one is
-/// further than a gap is long.
-fn on_line(steps: &[usize], seconds: &[f64]) -> Option<(Vec<f64>, f64, f64)> {
+/// The clock of that line.
+fn on_line(steps: &[usize], seconds: &[f64]) -> Clock {
     let (height, period) = line(steps, seconds);
     let times: Vec<f64> = (steps.iter())
         .map(|step| height + period * *step as f64)
@@ -120,8 +171,12 @@ fn on_line(steps: &[usize], seconds: &[f64]) -> Option<(Vec<f64>, f64, f64)> {
         most = f64::max(most, off);
         sum += off * off;
     }
-    let is_off = most > REGULAR * period && most < GAP as f64 * period;
-    (period > 0.0 && is_off).then(|| (times, (sum / seconds.len() as f64).sqrt(), period))
+    Clock {
+        times,
+        scatter: (sum / seconds.len() as f64).sqrt(),
+        most,
+        period,
+    }
 }
 
 /// Distances of values from the lines between their neighbours.
@@ -167,7 +222,7 @@ mod tests {
     /// Whether a clock is found, and how far its times are from the true ones at most.
     fn found(taken: &[f64], said: &[f64]) -> Option<f64> {
         let values: Vec<f64> = taken.iter().map(|time| motion(*time)).collect();
-        let (times, ..) = regular(said, &values)?;
+        let times = regular(said, &values)?.times;
         let apart = |at: usize| (times[at] - times[0]) - (taken[at] - taken[0]);
         Some(
             (0..times.len())

@@ -1,6 +1,9 @@
 //! Readings that stand alone: away, and back again.
 
-use std::ops::Range;
+use std::{
+    cell::OnceCell,
+    ops::{Range, RangeInclusive},
+};
 
 use ferntast_identification::numerics::statistics::quantile;
 
@@ -62,14 +65,18 @@ pub(super) fn find(values: &[f64], stretches: &[Range<usize>], kind: Kind) -> Sp
     if threshold == 0.0 {
         return found;
     }
-    let may_be = possible(values, threshold);
+    let may_be = OnceCell::new();
     for stretch in stretches {
         let own = values.get(stretch.clone()).unwrap_or_default();
         let mut runs = within(own, &found, longest);
         match kind {
             Kind::Position => at_ends(own, &found, &mut runs),
             Kind::Force | Kind::Slow => {
-                runs.retain(|run| own[run.clone()].iter().all(|value| !may_be(*value)));
+                let may_be = |value: &f64| {
+                    let range = may_be.get_or_init(|| possible(values, threshold));
+                    *value != 0.0 && range.contains(value)
+                };
+                runs.retain(|run| !own[run.clone()].iter().any(may_be));
             }
         }
         let shifted = runs
@@ -80,13 +87,11 @@ pub(super) fn find(values: &[f64], stretches: &[Range<usize>], kind: Kind) -> Sp
     found
 }
 
-/// Tells what a signal may have been, for all that `values` show: what lies among most of
-/// them, within the `threshold`; blows are such.
-fn possible(values: &[f64], threshold: f64) -> impl Fn(f64) -> bool {
+/// The range of most of the `values`, and the `threshold` beyond: blows are within it.
+fn possible(values: &[f64], threshold: f64) -> RangeInclusive<f64> {
     let mut sorted = values.to_vec();
     let mut at = |share| quantile(&mut sorted, share, f64::total_cmp).unwrap_or(0.0);
-    let range = at(TAILS) - threshold..=at(1.0 - TAILS) + threshold;
-    move |value| value != 0.0 && range.contains(&value)
+    at(TAILS) - threshold..=at(1.0 - TAILS) + threshold
 }
 
 /// Spikes of one stretch, in order.
