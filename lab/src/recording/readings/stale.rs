@@ -66,10 +66,15 @@ pub(super) fn of_force(force: &Series, position: Option<&Series>) -> Vec<Range<u
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let of = |run: &Range<usize>| values[run.start];
-    let is_level = |value: f64| {
+    let least_jump = TIMES_USUAL * Steps::of(values).usual;
+    let is_level = |run: &Range<usize>| {
+        let value = of(run);
         let times = long.iter().filter(|other| of(other) == value).count();
-        let is_limited = value >= LIMITED * greatest || value <= LIMITED * least;
-        value == 0.0 || is_limited || times > 1
+        let is_high = value >= LIMITED * greatest || value <= LIMITED * least;
+        // A limit is left as it was come to.
+        let after = values.get(run.end);
+        let goes_on = after.is_none_or(|after| (after - value).abs() <= least_jump);
+        value == 0.0 || (is_high && goes_on) || times > 1
     };
     let path = |samples: &[f64]| -> f64 {
         let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -81,7 +86,7 @@ pub(super) fn of_force(force: &Series, position: Option<&Series>) -> Vec<Range<u
         let own = &position.values[at(run.start)..at(run.end - 1)];
         own.len() > 1 && path(own) > MIN_SPEED * mean_speed
     };
-    let stale = long.iter().filter(|run| !is_level(of(run)) && moves(run));
+    let stale = long.iter().filter(|run| !is_level(run) && moves(run));
     stale.map(|run| run.start + 1..run.end).collect()
 }
 
@@ -145,8 +150,9 @@ mod tests {
         assert!(find(plain.clone()).is_empty());
         let mut stale = plain.clone();
         stale[600..700].fill(plain[600]);
-        stale[2700..2800].fill(plain[2700]);
-        assert_eq!(find(stale), [601..700, 2701..2800]);
+        // One where torques may be limited.
+        stale[900..1100].fill(plain[900]);
+        assert_eq!(find(stale), [601..700, 901..1100]);
         let limited = plain.iter().map(|own| own.clamp(-4.0, 4.0)).collect();
         assert!(find(limited).is_empty());
         let mut off = plain.clone();
