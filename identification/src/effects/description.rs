@@ -34,6 +34,9 @@ pub struct EffectDescription {
     pub excited_by: String,
     /// The recording that shows it best.
     pub shown_by: Proposal,
+    /// Id of the effect that it is another one of the same kind as: it counts beside that alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub another: Option<String>,
     /// Ids of effects that are easily mistaken for it: their signatures in the
     /// residual are similar.
     #[serde(rename = "taken_for")]
@@ -61,6 +64,7 @@ impl EffectDescription {
             shows_as: row.shows_as.to_owned(),
             excited_by: row.excited_by.to_owned(),
             shown_by: row.shown_by,
+            another: row.another.map(str::to_owned),
             confusable_with: row
                 .confusable_with
                 .iter()

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use ferntast_identification::{data::check::MIN_SAMPLES, numerics::statistics::quantile};
 
-use super::{LoadError, Series, VALID, tally::Tally};
-
-/// An interval more than that many periods long is a gap.
-pub(super) const GAP: i64 = 10;
+use super::{
+    LoadError, Series,
+    series::{GAP, VALID},
+    tally::Tally,
+};
 
 /// Shorter stretches than this are left out \[samples\]: a fit takes none.
 pub(super) const SHORTEST: usize = MIN_SAMPLES;
@@ -52,7 +53,7 @@ pub(super) fn align(
     let Some(position) = all.first() else {
         return Ok(Vec::new());
     };
-    let period = median_interval(position).max(1);
+    let period = position.median_interval().max(1);
     if period > SLOWEST {
         return Err(LoadError::TooSlow {
             signal: position.signal.clone(),
@@ -104,18 +105,9 @@ pub(super) fn align(
     Ok(cut.pieces)
 }
 
-pub(super) fn median_interval(series: &Series) -> i64 {
-    let mut intervals: Vec<i64> = series
-        .times
-        .windows(2)
-        .map(|pair| pair[1].saturating_sub(pair[0]))
-        .collect();
-    quantile(&mut intervals, 0.5, i64::cmp).unwrap_or(0)
-}
-
 impl<'a> Timed<'a> {
     fn new(series: &'a Series, position_period: i64) -> Timed<'a> {
-        let period = median_interval(series).max(1);
+        let period = series.median_interval().max(1);
         Timed {
             series,
             period,

@@ -42,15 +42,8 @@ use crate::{experiment::Experiment, table::Format};
 
 pub use error::LoadError;
 pub use preview::{Seen, preview};
-use series::{Series, Wanted};
+use series::{Series, TIP_X, TIP_Y, VALID, Wanted};
 pub use tally::Tally;
-
-/// The signal that says which samples count.
-const VALID: &str = "valid";
-
-/// The tip's coordinates as signals.
-const TIP_X: &str = "tip[0]";
-const TIP_Y: &str = "tip[1]";
 
 /// Times above this are dates: 1973 \[ns\] since 1970.
 const DATES: i64 = 100_000_000_000_000_000;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{LoadError, Series, align::GAP, read_series, wanted};
+use super::{LoadError, Series, read_series, series::GAP, wanted};
 use crate::experiment::Experiment;
 
 /// Points of a curve at most; a chart has fewer columns.
@@ -88,7 +88,7 @@ pub fn preview(experiment: &Experiment) -> (Vec<Seen>, Vec<LoadError>) {
 }
 
 fn of_series(series: &Series, start: i64) -> Seen {
-    let period = super::align::median_interval(series);
+    let period = series.median_interval();
     let longest = GAP.saturating_mul(period.max(1));
     let intervals = series.times.windows(2);
     let gaps = intervals.map(|pair| pair[1].saturating_sub(pair[0]));

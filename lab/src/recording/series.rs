@@ -5,8 +5,20 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::LoadError;
+use ferntast_identification::numerics::statistics::quantile;
+
+use super::error::LoadError;
 use crate::unit::Unit;
+
+/// The signal that says which samples count.
+pub(super) const VALID: &str = "valid";
+
+/// The tip's coordinates as signals.
+pub(super) const TIP_X: &str = "tip[0]";
+pub(super) const TIP_Y: &str = "tip[1]";
+
+/// An interval more than that many periods long is a gap.
+pub(super) const GAP: i64 = 10;
 
 /// A signal to be read.
 pub(super) struct Wanted {
@@ -104,7 +116,7 @@ impl Series {
 
     /// Samples between gaps.
     pub(super) fn stretches(&self) -> Vec<Range<usize>> {
-        let longest = super::align::GAP.saturating_mul(super::align::median_interval(self));
+        let longest = GAP.saturating_mul(self.median_interval());
         let mut from = 0;
         let is_gap = |at: &usize| self.times[*at].saturating_sub(self.times[at - 1]) > longest;
         let gaps = (1..self.times.len()).filter(is_gap);
@@ -128,7 +140,14 @@ impl Series {
 
     /// Median interval \[s\]; 0 without two samples.
     pub(super) fn interval(&self) -> f64 {
-        super::align::median_interval(self) as f64 * 1e-9
+        self.median_interval() as f64 * 1e-9
+    }
+
+    /// The same \[ns\].
+    pub(super) fn median_interval(&self) -> i64 {
+        let pairs = self.times.windows(2);
+        let mut intervals: Vec<i64> = pairs.map(|pair| pair[1].saturating_sub(pair[0])).collect();
+        quantile(&mut intervals, 0.5, i64::cmp).unwrap_or(0)
     }
 }
 

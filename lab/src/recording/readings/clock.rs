@@ -5,7 +5,7 @@ use std::ops::Range;
 use ferntast_identification::numerics::statistics::quantile;
 
 use super::{OTHERWISE, steps::Steps};
-use crate::recording::{Series, align::GAP};
+use crate::recording::series::{GAP, Series};
 
 /// Times off a regular clock by less than this part of a period are regular.
 const REGULAR: f64 = 0.1;

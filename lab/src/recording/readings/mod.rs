@@ -17,7 +17,10 @@ use std::ops::Range;
 use ferntast_identification::JointType;
 use ferntast_msgs::counted;
 
-use super::{Series, VALID, tally::Tally};
+use super::{
+    series::{Series, TIP_X, TIP_Y, VALID},
+    tally::Tally,
+};
 use crate::experiment::{Experiment, POSITION};
 
 /// What is told of how to have it otherwise.
@@ -45,7 +48,7 @@ fn kind_of(signal: &str, experiment: &Experiment) -> Option<Kind> {
     let is_of_joint = experiment.arm.is_some();
     match signal {
         VALID => None,
-        "position" | super::TIP_X | super::TIP_Y => Some(Kind::Position),
+        "position" | TIP_X | TIP_Y => Some(Kind::Position),
         own if is_of_joint && own.starts_with(POSITION) => Some(Kind::Position),
         "temperature" => Some(Kind::Slow),
         own if own.starts_with("extra.") && !is_of_joint => None,
@@ -64,74 +67,83 @@ pub(super) fn clean(
     if experiment.reading.as_recorded {
         return;
     }
-    let kinds: Vec<Option<Kind>> = series
-        .iter()
-        .map(|own| kind_of(&own.signal, experiment))
-        .collect();
-    if experiment.joint == JointType::Revolute {
-        let positions = series.iter_mut().zip(&kinds);
-        for (own, _) in positions.filter(|(_, kind)| **kind == Some(Kind::Position)) {
-            notes.extend(turns::turn_on(own));
-        }
-    }
-    for (at, kind) in kinds.iter().enumerate() {
-        let Some(kind) = kind else { continue };
-        let Some(own) = series.get(at) else { continue };
-        let held = match kind {
-            Kind::Slow => None,
-            Kind::Position | Kind::Force => held::repeats(&own.values),
+    for at in 0..series.len() {
+        let Some(kind) = kind_of(&series[at].signal, experiment) else {
+            continue;
         };
-        let held_samples = held.as_ref().map_or(0, |held| count(&held.repeats));
-        if let Some(held) = held {
-            notes.push(format!(
-                "{}: signals.{} has a new value with every {} sample only: the others left out{OTHERWISE}",
-                own.file.display(),
-                own.signal,
-                ordinal(held.every),
-            ));
-            series[at].remove(&held.repeats);
+        if kind == Kind::Position && experiment.joint == JointType::Revolute {
+            notes.extend(turns::turn_on(&mut series[at]));
         }
-        let position = (at > 0).then(|| &series[0]);
-        let own = &series[at];
-        let stale = match kind {
-            Kind::Position => stale::of_position(&own.values, &own.stretches()),
-            Kind::Force => stale::of_force(own, position),
-            Kind::Slow => Vec::new(),
-        };
-        let stale_samples = count(&stale);
-        if let Some(first) = stale.first() {
-            notes.push(format!(
-                "{}: signals.{} stands still while the joint moves, {}, the first at {:.3} s: {stale_samples} samples left out{OTHERWISE}",
-                own.file.display(),
-                own.signal,
-                counted(stale.len(), "time"),
-                own.since_start(first.start),
-            ));
-            series[at].remove(&stale);
-        }
-        let own = &series[at];
-        let found = spikes::find(&own.values, &own.stretches(), *kind);
-        let spike_samples = count(&found.runs);
-        if let Some(first) = found.runs.first() {
-            notes.push(format!(
-                "{}: signals.{} jumps away and back {}, by more than {:.4}, the first at {:.3} s: {spike_samples} samples left out as wrong readings{OTHERWISE}",
-                own.file.display(),
-                own.signal,
-                counted(found.runs.len(), "time"),
-                found.threshold,
-                own.since_start(first.start),
-            ));
-            series[at].remove(&found.runs);
-        }
+        let held = held(&series[at], kind);
+        let repeats = leave_out(&mut series[at], held, notes);
+        let stale = stale(&series[at], kind, series.first().filter(|_| at > 0));
+        let stale = leave_out(&mut series[at], stale, notes);
+        let spikes = spikes(&series[at], kind);
+        let spikes = leave_out(&mut series[at], spikes, notes);
         if at == 0 {
-            tally.repeats = held_samples;
-            tally.wrong_readings = stale_samples + spike_samples;
+            tally.repeats = repeats;
+            tally.wrong_readings = stale + spikes;
         }
     }
 }
 
-fn count(runs: &[Range<usize>]) -> usize {
-    runs.iter().map(ExactSizeIterator::len).sum()
+/// Samples to be left out, and what they are in words.
+struct Found {
+    runs: Vec<Range<usize>>,
+    what: String,
+}
+
+/// Leaves them out of `own`, tells it, and returns how many they are.
+fn leave_out(own: &mut Series, found: Option<Found>, notes: &mut Vec<String>) -> usize {
+    let Some(Found { runs, what }) = found else {
+        return 0;
+    };
+    let count = runs.iter().map(ExactSizeIterator::len).sum();
+    notes.push(format!(
+        "{}: signals.{} {what}: {} left out{OTHERWISE}",
+        own.file.display(),
+        own.signal,
+        counted(count, "sample"),
+    ));
+    own.remove(&runs);
+    count
+}
+
+fn held(own: &Series, kind: Kind) -> Option<Found> {
+    let held = (kind != Kind::Slow).then(|| held::repeats(&own.values));
+    let held::Held { every, repeats } = held.flatten()?;
+    Some(Found {
+        runs: repeats,
+        what: format!("has a new value with every {} sample only", ordinal(every)),
+    })
+}
+
+fn stale(own: &Series, kind: Kind, position: Option<&Series>) -> Option<Found> {
+    let runs = match kind {
+        Kind::Position => stale::of_position(&own.values, &own.stretches()),
+        Kind::Force => stale::of_force(own, position),
+        Kind::Slow => Vec::new(),
+    };
+    let first = own.since_start(runs.first()?.start);
+    let times = counted(runs.len(), "time");
+    Some(Found {
+        runs,
+        what: format!("stands still while the joint moves, {times}, the first at {first:.3} s"),
+    })
+}
+
+fn spikes(own: &Series, kind: Kind) -> Option<Found> {
+    let spikes::Spikes {
+        runs, threshold, ..
+    } = spikes::find(&own.values, &own.stretches(), kind);
+    let first = own.since_start(runs.first()?.start);
+    let times = counted(runs.len(), "time");
+    Some(Found {
+        runs,
+        what: format!(
+            "jumps away and back {times}, by more than {threshold:.4}, the first at {first:.3} s"
+        ),
+    })
 }
 
 fn ordinal(number: usize) -> String {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use ferntast_identification::numerics::statistics::quantile;
 
 use super::{runs_of_equal, steps::Steps};
-use crate::recording::Series;
+use crate::recording::series::Series;
 
 /// Fewest samples with the same value, of a position …
 const SHORTEST: usize = 3;

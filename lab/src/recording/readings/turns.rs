@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use ferntast_msgs::counted;
 
 use super::{OTHERWISE, steps::Steps};
-use crate::recording::Series;
+use crate::recording::series::Series;
 
 /// A step of one turn, give or take so much of it.
 const SLACK: f64 = 0.05;

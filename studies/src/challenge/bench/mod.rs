@@ -152,7 +152,7 @@ pub fn hidden_by<H: TestBench>(seed: u64) -> Option<H> {
 #[cfg(test)]
 mod tests {
     use ferntast_benches::{contact_bench, joint_bench};
-    use ferntast_identification::{Subject, catalogue};
+    use ferntast_identification::{EffectDescription, Subject, catalogue};
 
     use super::*;
 
@@ -168,7 +168,9 @@ mod tests {
             (Subject::Joint, truths::<joint_bench::HiddenEffect>()),
             (Subject::Contact, truths::<contact_bench::HiddenEffect>()),
         ] {
-            let own = catalogue().into_iter().filter(|own| own.of == subject);
+            // A second one of a kind is hidden where the first is known: in tests of the lab.
+            let first = |own: &EffectDescription| own.of == subject && own.another.is_none();
+            let own = catalogue().into_iter().filter(first);
             let mut own: Vec<String> = own.map(|own| own.id).collect();
             let mut truths = truths.clone();
             own.sort_unstable();

@@ -26,7 +26,9 @@ fn hidden(session: &Session, subject: &str) -> f64 {
         .success()
         .json();
     let rows = catalogue.as_array().into_iter().flatten();
-    rows.filter(|row| row["of"] == subject).count() as f64
+    // A second one of a kind counts beside the first alone.
+    let first = |row: &&Value| row["of"] == subject && row["another"].is_null();
+    rows.filter(first).count() as f64
 }
 
 #[test]
