@@ -243,7 +243,7 @@ fn dependence(names: &[String], score: &Score, tried: f64) -> Option<Dependence>
 
 /// A residual that swings with time.
 fn oscillating(prepared: &PreparedModel, design: &Design, tried: f64) -> Option<Dependence> {
-    let found = oscillation::find(prepared, design)?;
+    let found = oscillation::find(prepared, design, MIN_SHARE_OF_OSCILLATION)?;
     let tried = tried + found.tried as f64;
     let own = dependence(&["time".to_owned()], &found.score, tried)?;
     (own.strength > MIN_SHARE_OF_OSCILLATION).then_some(Dependence {

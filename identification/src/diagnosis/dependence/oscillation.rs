@@ -16,7 +16,7 @@ const LEAST_PERIODS: f64 = 10.0;
 /// Samples of a period, at least.
 const LEAST_SAMPLES: f64 = 4.0;
 /// Frequencies looked at in a period of the stretch.
-const FINENESS: f64 = 4.0;
+const FINENESS: f64 = 2.0;
 /// Frequencies looked at together.
 const LANES: usize = 4;
 
@@ -39,8 +39,9 @@ struct Stretch {
 
 /// The strongest oscillation of the residual, each session with parameters of its own: of one
 /// frequency in all stretches, of any size and phase in each. Each tenth of a stretch is
-/// predicted by the others. `None` where sessions are too short for one.
-pub(super) fn find(prepared: &PreparedModel, design: &Design) -> Option<Oscillation> {
+/// predicted by the others. `None` where sessions are too short for one, or where it explains
+/// less than the share `least` of the rows that it is fitted to.
+pub(super) fn find(prepared: &PreparedModel, design: &Design, least: f64) -> Option<Oscillation> {
     let stride = prepared.filters.stride.max(1);
     let period = prepared.sessions.first()?.period;
     let step = period * stride as f64;
@@ -69,23 +70,28 @@ pub(super) fn find(prepared: &PreparedModel, design: &Design) -> Option<Oscillat
         })
     };
     let best_of = |candidates: &mut dyn Iterator<Item = f64>| {
-        let mut best = (0.0, None);
+        let mut best = None;
         while let Some(first) = candidates.next() {
             let lanes = std::array::from_fn(|lane| match lane {
                 0 => first,
                 _ => candidates.next().unwrap_or(first),
             });
             for (at, gain) in lanes.into_iter().zip(explained(lanes)) {
-                if gain > best.0 {
-                    best = (gain, Some(at));
+                if best.is_none_or(|(most, _)| gain > most) {
+                    best = Some((gain, at));
                 }
             }
         }
-        best.1
+        best
     };
-    let coarse = best_of(&mut (0..tried).map(|at| at as f64))?;
-    let finer = (-10..=10).map(|part| coarse + 0.1 * f64::from(part));
-    let frequency = frequency(best_of(&mut finer.into_iter())?);
+    let (_, coarse) = best_of(&mut (0..tried).map(|at| at as f64))?;
+    let mut finer = (-10..=10).map(|part| coarse + 0.1 * f64::from(part));
+    let (explained, best) = best_of(&mut finer)?;
+    let all: f64 = residuals.iter().flatten().map(|r| r * r).sum();
+    if explained < least * all {
+        return None;
+    }
+    let frequency = frequency(best);
     let columns: Vec<Vec<Vec<f64>>> = stretches
         .iter()
         .zip(&prepared.sessions)
