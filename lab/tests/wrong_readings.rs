@@ -166,6 +166,22 @@ fn torques_that_jump_and_positions_that_read_zero_are_left_out() {
     check("zeros", &[&told], &rows, [3.0, 0.98]);
 }
 
+#[test]
+fn rows_that_were_logged_twice_count_once() {
+    let rows = clean(1.0);
+    let mut twice = rows.clone();
+    for at in (50..ROWS).step_by(50).rev() {
+        twice.insert(at, twice[at]);
+    }
+    let (once, twice) = (opened(&rows, false), opened(&twice, false));
+    assert_eq!(once.dataset, twice.dataset);
+    let [tally] = twice.tallies.as_slice() else {
+        panic!("{:?}", twice.tallies);
+    };
+    assert_eq!((tally.samples, tally.repeated_time), (ROWS + 319, 319));
+    assert_eq!(twice.notes.len(), 3, "{:#?}", twice.notes);
+}
+
 /// Repeats the row before `run` all along it.
 fn stale(rows: &mut [Row], run: Range<usize>, what: fn(&mut Row, &Row)) {
     let last = rows[run.start - 1];

@@ -228,14 +228,14 @@ fn read_file(
             });
         }
     }
-    if let Some(position) = series.first() {
-        tally.without_number = position.missing;
-        tally.repeated_time = position.repeated;
-    }
     if !experiment.reading.as_recorded {
         notes.extend(readings::set_clock(&mut series));
     }
     series.iter_mut().for_each(Series::drop_repeated);
+    if let Some(position) = series.first() {
+        tally.without_number = position.missing;
+        tally.repeated_time = position.repeated;
+    }
     tell_holes(&series, notes);
     readings::clean(experiment, &mut series, &mut tally, notes);
     plausible::check(experiment, &series, notes);
