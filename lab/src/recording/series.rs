@@ -117,12 +117,8 @@ impl Series {
     /// Samples between gaps.
     pub(super) fn stretches(&self) -> Vec<Range<usize>> {
         let longest = GAP.saturating_mul(self.median_interval());
-        let mut from = 0;
         let is_gap = |at: &usize| self.times[*at].saturating_sub(self.times[at - 1]) > longest;
-        let gaps = (1..self.times.len()).filter(is_gap);
-        let ends = gaps.chain((!self.times.is_empty()).then_some(self.times.len()));
-        ends.map(|end| std::mem::replace(&mut from, end)..end)
-            .collect()
+        split(self.times.len(), is_gap).collect()
     }
 
     /// Times \[s\] since the first sample.
@@ -149,6 +145,17 @@ impl Series {
         let mut intervals: Vec<i64> = pairs.map(|pair| pair[1].saturating_sub(pair[0])).collect();
         quantile(&mut intervals, 0.5, i64::cmp).unwrap_or(0)
     }
+}
+
+/// Places 0 … `count` − 1 in ranges, of which each but the first begins where `begins` says.
+pub(super) fn split(
+    count: usize,
+    begins: impl FnMut(&usize) -> bool,
+) -> impl Iterator<Item = Range<usize>> {
+    let ends = (1..count).filter(begins);
+    let mut from = 0;
+    ends.chain((count > 0).then_some(count))
+        .map(move |end| std::mem::replace(&mut from, end)..end)
 }
 
 fn retain_outside<T>(all: &mut Vec<T>, runs: &[Range<usize>]) {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use ferntast_identification::numerics::statistics::quantile;
 
 use super::{OTHERWISE, steps::Steps};
-use crate::recording::series::{GAP, Series};
+use crate::recording::series::{GAP, Series, split};
 
 /// Times off a regular clock by less than this part of a period are regular.
 const REGULAR: f64 = 0.1;
@@ -59,12 +59,8 @@ pub(super) fn set_right(all: &mut [Series]) -> Option<String> {
 fn stretches(seconds: &[f64]) -> Vec<Range<usize>> {
     let mut intervals: Vec<f64> = seconds.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let longest = GAP as f64 * usual(&mut intervals);
-    let mut from = 0;
     let is_gap = |at: &usize| seconds[*at] - seconds[at - 1] > longest;
-    let ends = (1..seconds.len()).filter(is_gap);
-    let ends = ends.chain([seconds.len()]);
-    ends.map(|end| std::mem::replace(&mut from, end)..end)
-        .collect()
+    split(seconds.len(), is_gap).collect()
 }
 
 /// The usual one of `intervals`: the median, unless most are far shorter.

@@ -18,7 +18,7 @@ use ferntast_identification::JointType;
 use ferntast_msgs::counted;
 
 use super::{
-    series::{Series, TIP_X, TIP_Y, VALID},
+    series::{Series, TIP_X, TIP_Y, VALID, split},
     tally::Tally,
 };
 use crate::experiment::{Experiment, POSITION};
@@ -156,10 +156,20 @@ fn ordinal(number: usize) -> String {
 
 /// Runs of samples that have the value of the one before, with that one.
 fn runs_of_equal(values: &[f64]) -> impl Iterator<Item = Range<usize>> + '_ {
-    let mut start = 0;
-    let is_end = move |end: &usize| values.get(*end) != values.get(*end - 1);
-    let ends = (1..=values.len()).filter(is_end);
-    ends.map(move |end| std::mem::replace(&mut start, end)..end)
+    split(values.len(), |at| values[*at] != values[at - 1])
+}
+
+/// What `find` finds within each of the `stretches` of `values`, by the places in all of them.
+fn in_each(
+    values: &[f64],
+    stretches: &[Range<usize>],
+    mut find: impl FnMut(&[f64]) -> Vec<Range<usize>>,
+) -> Vec<Range<usize>> {
+    let each = stretches.iter().flat_map(|stretch| {
+        let own = find(values.get(stretch.clone()).unwrap_or_default()).into_iter();
+        own.map(|run| run.start + stretch.start..run.end + stretch.start)
+    });
+    each.collect()
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::{
 
 use ferntast_identification::numerics::statistics::quantile;
 
-use super::{Kind, steps::Steps};
+use super::{Kind, in_each, steps::Steps};
 
 /// Longest spike of a torque \[samples\]: a blow may last longer.
 const LONGEST: usize = 2;
@@ -65,25 +65,21 @@ pub(super) fn find(values: &[f64], stretches: &[Range<usize>], kind: Kind) -> Sp
     if threshold == 0.0 {
         return found;
     }
-    let may_be = OnceCell::new();
-    for stretch in stretches {
-        let own = values.get(stretch.clone()).unwrap_or_default();
+    let range = OnceCell::new();
+    found.runs = in_each(values, stretches, |own| {
         let mut runs = within(own, &found, longest);
         match kind {
             Kind::Position => at_ends(own, &found, &mut runs),
             Kind::Force | Kind::Slow => {
                 let may_be = |value: &f64| {
-                    let range = may_be.get_or_init(|| possible(values, threshold));
+                    let range = range.get_or_init(|| possible(values, threshold));
                     *value != 0.0 && range.contains(value)
                 };
                 runs.retain(|run| !own[run.clone()].iter().any(may_be));
             }
         }
-        let shifted = runs
-            .into_iter()
-            .map(|run| run.start + stretch.start..run.end + stretch.start);
-        found.runs.extend(shifted);
-    }
+        runs
+    });
     found
 }
 

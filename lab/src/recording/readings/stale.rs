@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use ferntast_identification::numerics::statistics::quantile;
 
-use super::{runs_of_equal, steps::Steps};
+use super::{in_each, runs_of_equal, steps::Steps};
 use crate::recording::series::Series;
 
 /// Fewest samples with the same value, of a position …
@@ -26,25 +26,17 @@ const MIN_SPEED: f64 = 0.2;
 /// meanwhile: the repeats, without the sample that is repeated.
 pub(super) fn of_position(values: &[f64], stretches: &[Range<usize>]) -> Vec<Range<usize>> {
     let steps = Steps::of(values);
-    let mut found = Vec::new();
-    for stretch in stretches {
-        let own = values.get(stretch.clone()).unwrap_or_default();
-        let shifted = |run: Range<usize>| run.start + stretch.start..run.end + stretch.start;
-        found.extend(within(own, steps).map(shifted));
-    }
-    found
-}
-
-/// The same within one stretch without a gap.
-fn within(values: &[f64], steps: Steps) -> impl Iterator<Item = Range<usize>> + '_ {
     let least = (TIMES_USUAL * steps.usual).max(TIMES_LEAST * steps.least);
-    let jumps = move |run: &Range<usize>| {
-        let after = values.get(run.end);
-        after.is_some_and(|after| (after - values[run.start]).abs() > least)
-    };
-    runs_of_equal(values)
-        .filter(move |run| run.len() >= SHORTEST && jumps(run))
-        .map(|run| run.start + 1..run.end)
+    in_each(values, stretches, |own| {
+        let jumps = |run: &Range<usize>| {
+            let after = own.get(run.end);
+            after.is_some_and(|after| (after - own[run.start]).abs() > least)
+        };
+        runs_of_equal(own)
+            .filter(|run| run.len() >= SHORTEST && jumps(run))
+            .map(|run| run.start + 1..run.end)
+            .collect()
+    })
 }
 
 /// Finds where a torque stands still for far longer than it does otherwise while the joint
