@@ -4,12 +4,14 @@ use std::{process::ExitCode, sync::atomic::Ordering, thread, time::Duration};
 
 use clap::ValueEnum;
 use ferntast_bus::{Bus, Depth};
+use ferntast_control::operating::Reason;
 use ferntast_msgs::sample::{
     OperatingState, OperatingStateSample, StateCommand, StateCommandSample,
 };
 use ferntast_msgs::topics::{self, Topic};
 use ferntast_nodes::{
     events::Event,
+    node::{is_because, to_law},
     process::{Clock, stop_on_signals},
     session::Visit,
 };
@@ -73,6 +75,20 @@ enum StateChange {
     Engage,
 }
 
+impl StateChange {
+    fn wish(self) -> Wish {
+        let (command, state) = match self {
+            StateChange::Enable => (StateCommand::ENABLE, OperatingState::ENABLED),
+            StateChange::Disable => (StateCommand::DISABLE, OperatingState::DISABLED),
+            StateChange::Pause => (StateCommand::PAUSE, OperatingState::PAUSED),
+            StateChange::Resume => (StateCommand::RESUME, OperatingState::ENABLED),
+            StateChange::Clutch => (StateCommand::CLUTCH, OperatingState::ENABLED),
+            StateChange::Engage => (StateCommand::ENGAGE, OperatingState::ENABLED),
+        };
+        Wish { command, state }
+    }
+}
+
 /// How long an answer is waited for.
 const PATIENCE: Duration = Duration::from_millis(1500);
 
@@ -102,32 +118,25 @@ pub fn run(arguments: Arguments, json: bool) -> Result<ExitCode, Failure> {
         ),
         Device::Leader => (topics::LEADER_STATE_COMMAND, topics::LEADER_OPERATING_STATE),
     };
-    let wish = arguments.command.map(|word| match word {
-        StateChange::Enable => (StateCommand::ENABLE, OperatingState::ENABLED),
-        StateChange::Disable => (StateCommand::DISABLE, OperatingState::DISABLED),
-        StateChange::Pause => (StateCommand::PAUSE, OperatingState::PAUSED),
-        StateChange::Resume => (StateCommand::RESUME, OperatingState::ENABLED),
-        StateChange::Clutch => (StateCommand::CLUTCH, OperatingState::ENABLED),
-        StateChange::Engage => (StateCommand::ENGAGE, OperatingState::ENABLED),
-    });
-    let state = match visit.as_ref().and_then(Visit::bus) {
+    let wish = arguments.command.map(StateChange::wish);
+    let told = match visit.as_ref().and_then(Visit::bus) {
         Some(bus) => ask(bus, command_topic, state_topic, wish)?,
         None => None,
     };
     drop(visit);
-    let Some((state, reason)) = state else {
+    let Some(told) = told else {
         return Err(Failure::failed(format!(
             "nobody answered in session {:?}: is it running? (ferntast session, or --session NAME)",
             arguments.session
         )));
     };
-    let name = state.name().unwrap_or("UNKNOWN");
+    let (name, reason) = (told.state.name().unwrap_or("UNKNOWN"), told.reason);
     if json {
-        print_json(&json!({"state": name, "reason": reason}))?;
+        print_json(&json!({"state": name, "reason": reason.as_str()}))?;
     } else {
         println!("{name}: {reason}");
     }
-    if wish.is_none_or(|(_, wanted)| state == wanted) {
+    if wish.is_none_or(|wish| wish.is_met_by(&told)) {
         Ok(ExitCode::SUCCESS)
     } else {
         Err(Failure::failed(format!(
@@ -197,39 +206,85 @@ fn tell(event: &Event, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Gives the command, if there is one, and waits for the state that it leads
-/// to, at most for [`PATIENCE`]. Gives the last state that was heard of, if any.
+/// For so long a stop has to last \[s\]: a word that arms the arm may cross it, and a session
+/// that is starting looks around every 0.02 s.
+const HOLD: f64 = 0.1;
+
+/// A word that is heard at once, and not told from a state that was there before, takes so
+/// long \[s\].
+const REACTION: f64 = 0.02;
+
+/// A word, and the state that it leads to.
+#[derive(Clone, Copy)]
+struct Wish {
+    command: StateCommand,
+    state: OperatingState,
+}
+
+impl Wish {
+    fn stops(self) -> bool {
+        [StateCommand::PAUSE, StateCommand::DISABLE].contains(&self.command)
+    }
+
+    /// Whether `told` is what follows from the word. A device that stood already tells by the
+    /// reason that it has heard it.
+    fn is_met_by(self, told: &OperatingStateSample) -> bool {
+        let heard = match to_law(self.command).filter(|_| self.stops()) {
+            Some(command) => is_because(told, Reason::Commanded(command)),
+            None => true,
+        };
+        told.state == self.state && heard
+    }
+
+    /// For how long it is met until that is believed \[s\].
+    fn lasting(self) -> f64 {
+        if self.stops() { HOLD } else { REACTION }
+    }
+}
+
+/// Gives the command, if there is one, and waits for the state that it leads to, at most for
+/// [`PATIENCE`]; a stop that does not last is said again. Gives the last state that was heard of,
+/// if any.
 fn ask(
     bus: &Bus,
     command_topic: Topic<StateCommandSample>,
     state_topic: Topic<OperatingStateSample>,
-    wish: Option<(StateCommand, OperatingState)>,
-) -> Result<Option<(OperatingState, String)>, Failure> {
+    wish: Option<Wish>,
+) -> Result<Option<OperatingStateSample>, Failure> {
     let clock = Clock::start();
     let mut publisher = bus.publisher(command_topic).map_err(Failure::failed)?;
     let mut states = bus
         .subscriber(state_topic, Depth::Newest)
         .map_err(Failure::failed)?;
-    if let Some((command, _)) = wish {
-        // It waits in shared memory until its reader, the servo or the master, has
-        // found this publisher, with one of its next steps.
+    // It waits in shared memory until its reader, the servo or the master, has
+    // found this publisher, with one of its next steps.
+    let mut say = |command| {
         let now = clock.now();
-        publisher
-            .publish(now, &StateCommandSample::new(now, command))
-            .map_err(Failure::failed)?;
-    }
+        let sample = StateCommandSample::new(now, command);
+        publisher.publish(now, &sample).map_err(Failure::failed)
+    };
     let begun = clock.now();
+    if let Some(wish) = wish {
+        say(wish.command)?;
+    }
     let mut last = None;
+    let mut met_since = None;
     while clock.now().seconds_since(begun) < PATIENCE.as_secs_f64() {
-        if let Some(received) = states.newest(clock.now()) {
-            let message = received.message;
-            last = Some((message.state, message.reason.to_string()));
-            let after = clock.now().seconds_since(begun) > 0.02;
-            match wish {
-                Some((_, wanted)) if message.state == wanted && after => break,
-                None => break,
-                _ => {}
+        let now = clock.now();
+        if let Some(received) = states.newest(now) {
+            let told = received.message;
+            last = Some(told);
+            let Some(wish) = wish else { break };
+            if wish.is_met_by(&told) {
+                met_since = met_since.or(Some(now));
+            } else if met_since.take().is_some() && wish.stops() {
+                say(wish.command)?;
             }
+        }
+        let lasted =
+            |wish: Wish| met_since.is_some_and(|since| now.seconds_since(since) >= wish.lasting());
+        if wish.is_some_and(lasted) {
+            break;
         }
         thread::sleep(Duration::from_millis(5));
     }

@@ -247,9 +247,9 @@ impl StateMachine {
     /// Carries out `command`. `ready` says whether there is a valid
     /// measurement to start from; `enable` and `resume` need one.
     ///
-    /// Asking for the state that already is changes it not and is no error; but an arm that
-    /// stands since commands fell silent stands from a `pause` on because that was asked for,
-    /// and the end of the silence is no reason to go on.
+    /// Asking for the state that already is changes it not and is no error; but from a `pause` or
+    /// `disable` on the arm stands because that was asked for: the end of a silence is no reason
+    /// to go on, and that it has only just been started none to arm it.
     /// Returns whether the state changed.
     ///
     /// # Errors
@@ -277,8 +277,12 @@ impl StateMachine {
             (command, state) => return Err(StateRefusal::NotAllowed { command, state }),
         };
         if next == self.state {
-            let obeys = !self.planted.lacks(Rule::PauseObeyed);
-            if command == StateCommand::Pause && next == Paused && obeys {
+            let obeys = match (command, next) {
+                (StateCommand::Pause, Paused) => !self.planted.lacks(Rule::PauseObeyed),
+                (StateCommand::Disable, Disabled) => !self.planted.lacks(Rule::DisableObeyed),
+                _ => false,
+            };
+            if obeys {
                 self.reason = Reason::Commanded(command);
             }
             return Ok(false);
@@ -348,6 +352,16 @@ mod tests {
         );
         assert!(machine.command(StateCommand::ResumeAfterGap, true).is_err());
         assert_eq!(machine.command(StateCommand::Resume, true), Ok(true));
+    }
+
+    #[test]
+    fn who_stops_an_arm_before_it_was_armed_has_stopped_it() {
+        let mut machine = StateMachine::default();
+        assert_eq!(machine.reason(), Reason::Started);
+        assert!(machine.command(StateCommand::Pause, true).is_err());
+        assert_eq!(machine.reason(), Reason::Started);
+        assert_eq!(machine.command(StateCommand::Disable, false), Ok(false));
+        assert_eq!(machine.reason(), Reason::Commanded(StateCommand::Disable));
     }
 
     #[test]

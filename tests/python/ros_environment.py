@@ -13,6 +13,8 @@ What they need, found by trying:
 """
 
 import fcntl
+import functools
+import itertools
 import os
 import socket
 import sys
@@ -92,8 +94,45 @@ class Domain:
         self._handle.close()
 
 
+class Ports:
+    """A block of TCP ports that no other test holds, until this process ends.
+
+    Below those that Linux hands out by itself: any connection that a process of this machine
+    opens could take one of these before it is used. The Rust tests lock the same files.
+    """
+
+    def __init__(self) -> None:
+        for block, first in enumerate(range(1400, 7400, 200)):
+            path = Path(tempfile.gettempdir()) / f"ferntast-tests-ports-{block}.lock"
+            handle = path.open("w")
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                handle.close()
+                continue
+            self._ports = itertools.cycle(range(first, first + 200))
+            self._handle = handle
+            return
+        raise RuntimeError("all blocks of TCP ports are taken by other tests")
+
+    def next(self) -> int:
+        """The next one that nobody listens at."""
+        for port in itertools.islice(self._ports, 200):
+            with socket.socket() as listener:
+                try:
+                    listener.bind(("127.0.0.1", port))
+                except OSError:
+                    continue
+                return port
+        raise RuntimeError("no free TCP port")
+
+
+@functools.cache
+def _ports() -> Ports:
+    return Ports()
+
+
 def free_tcp_port() -> int:
-    """A TCP port on the loopback interface that is free at this moment."""
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
+    """A TCP port on the loopback interface that is free, and that no other test gets."""
+    return _ports().next()
+

@@ -14,7 +14,7 @@ use tempfile::TempDir;
 use tokio::runtime::Runtime;
 use url::{ParseError, Url};
 
-use crate::{Process, session::free_tcp_port, wait_for};
+use crate::{Process, free_tcp_port, wait_for};
 
 /// How long the driver may take to come up, and a page to show something.
 const PATIENCE: Duration = Duration::from_secs(40);

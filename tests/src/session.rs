@@ -2,7 +2,6 @@
 
 use std::{
     fs, io,
-    net::TcpListener,
     path::{Path, PathBuf},
     process::{self, Command},
     sync::atomic::{AtomicU32, Ordering},
@@ -16,6 +15,7 @@ use crate::{
     deadline::wait_until,
     domain::Domain,
     places::{ferntast, peer, python},
+    ports::free_tcp_port,
     room::Room,
 };
 
@@ -244,18 +244,6 @@ impl Drop for Session {
             );
         }
     }
-}
-
-/// A TCP port on the loopback interface that is free at this moment.
-///
-/// # Panics
-///
-/// None is free.
-pub fn free_tcp_port() -> u16 {
-    TcpListener::bind(("127.0.0.1", 0))
-        .and_then(|listener| listener.local_addr())
-        .unwrap_or_else(|error| panic!("no free TCP port: {error}"))
-        .port()
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ pub(crate) use health::HEALTH_PERIOD_NANOS;
 pub use health::{HealthMeter, NodeHealth};
 pub use input::{BATCH, Batch, Newest};
 pub use input_watch::InputWatch;
-pub use operating_state::{StatePublisher, to_law};
+pub use operating_state::{StatePublisher, is_because, to_law};
 pub use per_joint::PerJoint;
 pub use ports::Ports;
 pub use runner::{Runner, Ticking};

@@ -14,6 +14,11 @@ pub fn to_law(command: StateCommand) -> Option<operating::StateCommand> {
     operating::StateCommand::from_name(command.name()?)
 }
 
+/// Whether `told` says that its device is in its state for that reason.
+pub fn is_because(told: &OperatingStateSample, reason: operating::Reason) -> bool {
+    told.reason == Text::<96>::display(reason)
+}
+
 /// Publishes an operating state when it changes, and every 0.1 s.
 #[derive(Debug, Default)]
 pub struct StatePublisher {

@@ -6,9 +6,12 @@ use std::{
 };
 
 use ferntast_bus::{Bus, Publisher, SharedMemoryBus, SharedMemoryConfig};
+use ferntast_control::operating::{self, Reason};
 use ferntast_msgs::{
     Time,
-    sample::{HealthSample, Level, OperatingState, StateCommand, StateCommandSample},
+    sample::{
+        HealthSample, Level, OperatingState, OperatingStateSample, StateCommand, StateCommandSample,
+    },
     topics,
 };
 
@@ -25,6 +28,7 @@ use crate::{
     events::{Event, EventWatch, name_of},
     graph::Graph,
     master::THIS_HOST,
+    node::is_because,
     process::{Clock, End, Priority, SessionContext},
 };
 
@@ -336,7 +340,7 @@ impl Running {
         arming: &mut Arming,
         options: &SessionOptions,
     ) {
-        if options.enable && !self.is_stopped && self.others_stop(monitor) {
+        if options.enable && !self.is_stopped && self.is_stopped_by_others(monitor) {
             self.is_stopped = true;
             if let Some(operator) = &mut self.operator {
                 operator.leave();
@@ -389,6 +393,15 @@ impl Running {
         self.context.end == Some(End::Operator)
             && !monitor.is_connected()
             && nodes.all(|(node, _, _)| monitor.is_alive(node, now))
+    }
+
+    /// Whether somebody else said that the arm is to stop, since the last round, or at any time
+    /// since it was started: it knows why it stands, whatever of what is said was missed here.
+    fn is_stopped_by_others(&self, monitor: &mut Monitor) -> bool {
+        let asked_for = Reason::Commanded(operating::StateCommand::Disable);
+        let stands = |told: OperatingStateSample| is_because(&told, asked_for);
+        let knows = monitor.state_of(self.device()).is_some_and(stands);
+        self.others_stop(monitor) || (knows && self.own_stop.is_none())
     }
 
     /// Whether somebody else said since the last round that the arm is to stop.

@@ -11,6 +11,8 @@ use ferntast_msgs::{
     sample::{OperatingState, OperatingStateSample, StateCommand},
 };
 
+use crate::node::is_because;
+
 /// For so long all has to be well again before a word is given \[s\].
 const REACTION: f64 = 1.0;
 
@@ -25,7 +27,7 @@ pub struct Seen {
 
 /// Whether nothing but silence stopped the arm.
 pub fn is_silence(arm: &OperatingStateSample) -> bool {
-    let because = |event| arm.reason.as_str() == Reason::Event(event).to_string();
+    let because = |event| is_because(arm, Reason::Event(event));
     match arm.state {
         OperatingState::PAUSED => because(Event::CommandSilent),
         OperatingState::FAULT => because(Event::MeasurementSilent),

@@ -5,7 +5,7 @@ use std::{fs, time::Duration};
 use ferntast_msgs::{sample::OperatingState, topics};
 use ferntast_tests::{
     PATIENCE, Process, Session, await_enabled, messages, node, recording, refused, run, signal,
-    start, state, state_of_follower, wait_for, wait_until,
+    start, state, state_of_follower, wait_for,
 };
 
 #[test]
@@ -61,8 +61,13 @@ fn others_open_the_recording_without_help() {
 fn a_stop_while_the_nodes_come_up_stays() {
     let session = Session::new();
     let process = start(&session, &[]);
-    let disabled = || state(&session, "follower", "disable").status.success();
-    assert!(wait_until(PATIENCE, disabled));
+    let disabled = || {
+        let told = state(&session, "follower", "disable");
+        told.status.success().then(|| told.json())
+    };
+    let told = wait_for(PATIENCE, disabled).expect("somebody answers");
+    // It stood before: that it stands does not say that the word was heard.
+    assert_eq!(told["reason"], "disable was asked for");
     std::thread::sleep(Duration::from_secs(4));
     assert_eq!(state_of_follower(&session), "DISABLED");
     process.interrupt();
