@@ -191,6 +191,7 @@ fn compressed_or_not_the_same_is_read() {
 fn sessions_end_at_gaps_and_files_and_keep_their_dates() {
     let bench = Bench::new();
     let mut samples = swing(DATE + 2 * DAY, 500);
+    samples.extend(swing(DATE + 2 * DAY + 20, 200));
     samples.extend(swing(DATE + 5 * DAY, 20));
     samples.extend(swing(DATE + 6 * DAY, 300));
     fs::create_dir(bench.path("bag")).unwrap();
@@ -203,15 +204,17 @@ fn sessions_end_at_gaps_and_files_and_keep_their_dates() {
         .dataset
         .sessions
         .iter()
-        .map(|s| (s.name.as_str(), s.len(), s.start))
+        .map(|s| (s.name.as_str(), s.len(), s.start, s.into_recording))
         .collect();
     let day = DAY as f64;
+    // What goes on after a gap of some seconds has the clocks of what was before.
     assert_eq!(
         found,
         [
-            ("one.mcap", 100, 0.0),
-            ("bag, session 1", 500, 2.0 * day),
-            ("bag, session 2", 300, 6.0 * day),
+            ("one.mcap", 100, 0.0, 0.0),
+            ("bag, session 1", 500, 2.0 * day, 0.0),
+            ("bag, session 2", 200, 2.0 * day + 20.0, 20.0),
+            ("bag, session 3", 300, 6.0 * day, 0.0),
         ]
     );
     assert_eq!(loaded.dataset.held_out[0].start, day);

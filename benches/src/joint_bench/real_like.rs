@@ -182,8 +182,8 @@ fn hidden(kind: RealLike, random: &mut Random) -> Option<HiddenEffect> {
     let catalogue: Vec<HiddenEffect> = all
         .filter(|own| own.in_catalogue() && !brings(*own))
         .filter(|own| {
-            use HiddenEffect::{LoadRipple, TorqueSensorCalibration};
-            !matches!(own, TorqueSensorCalibration | LoadRipple)
+            use HiddenEffect::{ClockDrift, LoadRipple, TorqueSensorCalibration};
+            !matches!(own, TorqueSensorCalibration | LoadRipple | ClockDrift)
         })
         .collect();
     let hides = random.chance(0.5);

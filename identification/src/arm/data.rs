@@ -11,6 +11,8 @@ pub struct ArmSession {
     pub name: String,
     /// Start \[s\] since the first session's start.
     pub start: f64,
+    /// Time \[s\] from the start of the recording that it is a piece of.
+    pub into_recording: f64,
     /// Sampling period \[s\].
     pub period: f64,
     /// q of each joint \[rad\] or \[m\].

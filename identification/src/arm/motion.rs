@@ -49,6 +49,7 @@ impl Motion {
             ArmSession {
                 name: session.name.clone(),
                 start: session.start,
+                into_recording: session.into_recording,
                 conditions: session.conditions.clone(),
                 period: session.period * by as f64,
                 position: all(&session.position),

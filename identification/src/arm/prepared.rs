@@ -144,6 +144,7 @@ impl<'a> PreparedArm<'a> {
             RecordedSession {
                 name: session.name.clone(),
                 start: session.start,
+                into_recording: session.into_recording,
                 period: session.period,
                 position: session.position[joint].clone(),
                 motor_torque: session.motor_torque[joint].clone(),

@@ -23,6 +23,9 @@ pub struct RecordedSession {
     pub name: String,
     /// Start \[s\] since the first session's start; days between sessions are kept.
     pub start: f64,
+    /// Time \[s\] from the start of the recording that it is a piece of: its clocks went on.
+    #[serde(default)]
+    pub into_recording: f64,
     /// Sampling period \[s\].
     pub period: f64,
     /// q \[rad\]; of a contact the place of the tip along the contour \[m\].

@@ -81,9 +81,11 @@ impl Effect for Elasticity {
         shape: &[f64],
         coefficients: &[f64],
         channels: &mut Channels,
-        period: f64,
+        points: &[Point],
     ) -> usize {
-        if let ([stiff, ..], [inverse, ..]) = (shape, coefficients) {
+        let first = points.first();
+        if let ([stiff, ..], [inverse, ..], Some(first)) = (shape, coefficients, first) {
+            let period = first.period;
             let recorded = std::slice::from_ref(&channels.joint_torque);
             let width = least_width(recorded, 2, period);
             let smooth = Kernel::sharp(width, 0, period);

@@ -12,6 +12,7 @@
 
 mod backlash;
 mod channel_delay;
+mod clock_drift;
 mod contact_compliance;
 mod current_saturation;
 mod description;
@@ -20,6 +21,7 @@ mod exact;
 pub mod expression;
 mod inertia;
 mod joint_coupling;
+mod late_channel;
 mod motor_constant;
 mod presliding_hysteresis;
 mod static_law;
@@ -39,6 +41,7 @@ use crate::data::Subject;
 use crate::signals::Channels;
 pub use crate::signals::Point;
 pub use channel_delay::CHANNEL_DELAY;
+pub use clock_drift::CLOCK_DRIFT;
 pub(crate) use description::row;
 pub use description::{EffectDescription, Quantity};
 pub use exact::ExactSignal;
@@ -127,18 +130,25 @@ pub trait Effect: Send + Sync {
         1.0
     }
 
-    /// Takes its influence out of the measured `channels`, sampled every `period`
-    /// \[s\], for an effect that acts on these. Returns the number of samples at
+    /// Takes its influence out of the measured `channels`, sampled at the times of
+    /// `points`, for an effect that acts on these. Returns the number of samples at
     /// the end that are invalid afterwards.
     fn compensate(
         &self,
         shape: &[f64],
         coefficients: &[f64],
         channels: &mut Channels,
-        period: f64,
+        points: &[Point],
     ) -> usize {
-        let _ = (shape, coefficients, channels, period);
+        let _ = (shape, coefficients, channels, points);
         0
+    }
+
+    /// Other shapes than this, of an effect that acts on channels, which its columns do not tell
+    /// from it for certain: only the whole of what it does tells them apart.
+    fn alternatives(&self, shape: &[f64], facts: &Facts) -> Vec<Vec<f64>> {
+        let _ = (shape, facts);
+        Vec::new()
     }
 
     /// Whether sign and size of the fitted `coefficients` are physically possible
@@ -212,6 +222,7 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(torque_sensor_offset::TorqueSensorOffset::default()),
         Arc::new(torque_sensor_calibration::TorqueSensorCalibration::default()),
         Arc::new(channel_delay::ChannelDelay::default()),
+        Arc::new(clock_drift::ClockDrift::default()),
         Arc::new(current_saturation::CurrentSaturation::default()),
         Arc::new(contact_compliance::ContactCompliance::default()),
     ]);

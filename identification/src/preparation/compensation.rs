@@ -30,12 +30,32 @@ const NUDGE: f64 = 1e-3;
 
 impl PreparedModel {
     /// Compensates the channels for the model's effects that act on them, if that
-    /// leaves a smaller error than their columns do. Load and prediction are made anew where
-    /// they are read.
+    /// leaves a smaller error than their columns do, each at that of its alternative shapes
+    /// that leaves the least. Load and prediction are made anew where they are read.
     pub(super) fn compensate(&mut self, is_read: bool) {
         if !self.terms.iter().any(|t| t.effect.row().acts_on_channels) {
             return;
         }
+        let mut others = Vec::new();
+        for (at, term) in self.terms.iter().enumerate() {
+            for shape in term.effect.alternatives(&term.shape, &self.facts) {
+                let mut other = self.clone();
+                other.terms[at].shape = shape;
+                others.push(other);
+            }
+        }
+        self.compensate_at_these_shapes(is_read);
+        let mut least = remainder(&Design::new(self)).0;
+        for mut other in others {
+            other.compensate_at_these_shapes(is_read);
+            let (left, _) = remainder(&Design::new(&other));
+            if left < least {
+                (*self, least) = (other, left);
+            }
+        }
+    }
+
+    fn compensate_at_these_shapes(&mut self, is_read: bool) {
         let mut design = Design::new(self);
         let (mut error, rows) = remainder(&design);
         let mut share = 1.0;
@@ -166,8 +186,8 @@ fn compensated(terms: &[BoundTerm], signals: &Signals) -> (Channels, usize) {
     let mut channels = Channels::clone(&signals.recorded);
     let mut lost = 0;
     for term in terms.iter().filter(|t| !t.compensated.is_empty()) {
-        let period = signals.period;
-        lost += (term.effect).compensate(&term.shape, &term.compensated, &mut channels, period);
+        let points = &signals.points;
+        lost += (term.effect).compensate(&term.shape, &term.compensated, &mut channels, points);
     }
     (channels, lost)
 }

@@ -100,6 +100,7 @@ impl Signals {
             .map(|at| Point {
                 period,
                 temperature: temperature.as_ref().map_or(0.0, |t| smooth.at(t, at)),
+                time: session.into_recording + at as f64 * period,
                 days: days + at as f64 * period / SECONDS_PER_DAY,
                 ..Point::default()
             })

@@ -26,6 +26,8 @@ pub struct Point {
     pub load_jerk: f64,
     /// T − T₀ \[K\], T₀ the mean over the recordings; 0 without a sensor.
     pub temperature: f64,
+    /// Time \[s\] since the recording's start.
+    pub time: f64,
     /// Time \[days\] since the first session's start.
     pub days: f64,
     /// τ_m that the model predicts \[Nm\].

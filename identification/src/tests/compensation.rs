@@ -1,7 +1,7 @@
 //! Effects that act on channels, large enough that their columns alone do not suffice.
 
 use super::recordings::{JointState, model, plain, recording};
-use crate::{Addition, Dataset, Term, add, compare};
+use crate::{Addition, Dataset, RecordedSession, Term, Verdict, add, compare, diagnose};
 
 const BELIEVED: [&str; 2] = ["coulomb", "viscous"];
 
@@ -36,6 +36,69 @@ fn a_channel_that_is_far_too_late_is_taken_back_as_a_whole() {
     assert!(found.held_out_before > 3.0 * found.held_out_after);
     let over = over_plain(&found, &data);
     assert!((0.98..1.02).contains(&over), "{over}");
+}
+
+/// The motor torque by a clock of its own: what it says at t was true at t (1 − `drift`).
+fn with_drifting_torque(mut data: Dataset, drift: f64) -> Dataset {
+    for session in &mut data.sessions {
+        let torque = &session.motor_torque;
+        let last = torque.len() - 2;
+        let read = (0..torque.len()).map(|at| {
+            let place = at as f64 * (1.0 - drift);
+            let before = (place as usize).min(last);
+            torque[before] + (place - before as f64) * (torque[before + 1] - torque[before])
+        });
+        session.motor_torque = read.collect();
+    }
+    data
+}
+
+#[test]
+fn a_channel_of_another_clock_is_named_and_taken_back() {
+    let data = recording(9, plain);
+    // 50 ms at the end of a session, either way.
+    for drift in [-0.00125, 0.00125] {
+        let drifting = with_drifting_torque(data.clone(), drift);
+        let diagnosis = diagnose(&drifting, &model(&BELIEVED), &mut |_| ()).unwrap();
+        assert_eq!(diagnosis.verdict, Verdict::Missing);
+        assert_eq!(diagnosis.candidates[0].effect, "clock_drift", "{drift}");
+        let found = added(&drifting, "clock_drift");
+        let (fitted, channel) = (&found.parameters["drift"], &found.parameters["channel"]);
+        let off = (fitted.value / drift - 1.0).abs();
+        assert!(off < 0.02 && channel.value == 0.0, "{fitted:?} {channel:?}");
+        let over = over_plain(&found, &data);
+        assert!((0.97..1.03).contains(&over), "{over}");
+    }
+    // One that is late by the same all the time is that.
+    let late = with_late_position(data, 5);
+    let diagnosis = diagnose(&late, &model(&BELIEVED), &mut |_| ()).unwrap();
+    assert_eq!(diagnosis.candidates[0].effect, "channel_delay");
+}
+
+/// Clocks go on where nothing is recorded.
+#[test]
+fn a_clock_drifts_through_the_pieces_of_a_recording() {
+    let drifting = with_drifting_torque(recording(9, plain), 0.00125);
+    let pieces = |session: &RecordedSession| {
+        let half = session.len() / 2;
+        [0..half, half..session.len()].map(|own| {
+            let before = own.start as f64 * session.period;
+            let of = |channel: &Vec<f64>| channel[own.clone()].to_vec();
+            RecordedSession {
+                start: session.start + before,
+                into_recording: before,
+                position: of(&session.position),
+                motor_torque: of(&session.motor_torque),
+                joint_torque: session.joint_torque.as_ref().map(of),
+                temperature: session.temperature.as_ref().map(of),
+                ..session.clone()
+            }
+        })
+    };
+    let mut cut = drifting.clone();
+    cut.sessions = drifting.sessions.iter().flat_map(pieces).collect();
+    let drift = added(&cut, "clock_drift").parameters["drift"].value;
+    assert!((0.98..1.02).contains(&(drift / 0.00125)), "{drift}");
 }
 
 /// δ \[rad\] of K δ + K₃ δ³ = τ, halved into.

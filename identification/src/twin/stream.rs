@@ -182,6 +182,7 @@ impl Stream {
             load_rate: joint_torque.filtered(slope, at),
             load_jerk: joint_torque.filtered(curvature, at),
             temperature: temperature.filtered(smooth, at) - self.reference_temperature,
+            time: at as f64 * self.working_period(),
             days: (self.state.start + at as f64 * self.working_period()) / 86_400.0,
             ..Point::default()
         };

@@ -30,6 +30,14 @@ pub(super) struct Piece {
     pub(super) channels: Vec<Vec<f64>>,
 }
 
+impl Piece {
+    /// When the sample after the last one would be \[ns\].
+    pub(super) fn end(&self) -> i64 {
+        let samples = self.channels.first().map_or(0, Vec::len);
+        self.start + (samples as f64 * self.period * 1e9) as i64
+    }
+}
+
 /// A series with its own period.
 struct Timed<'a> {
     series: &'a Series,

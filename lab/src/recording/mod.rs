@@ -48,6 +48,10 @@ pub use tally::Tally;
 /// Times above this are dates: 1973 \[ns\] since 1970.
 const DATES: i64 = 100_000_000_000_000_000;
 
+/// A piece that begins later than that after the one before is a recording of its own, whose
+/// clocks may have been set anew \[ns\].
+const SAME_CLOCKS: i64 = 60_000_000_000;
+
 /// Data, and what should be known of how they were read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
@@ -257,7 +261,12 @@ fn read_file(
     let name = name.to_string_lossy();
     let several = pieces.len() > 1;
     let mut sessions = Vec::new();
+    let (mut began, mut before) = (start, start);
     for (number, piece) in pieces.into_iter().enumerate() {
+        if piece.start.saturating_sub(before) > SAME_CLOCKS {
+            began = piece.start;
+        }
+        before = piece.end();
         let start = piece.start.saturating_sub(origin) as f64 * 1e-9 + shift;
         let mut session = RecordedSession {
             name: match several {
@@ -265,6 +274,7 @@ fn read_file(
                 false => name.to_string(),
             },
             start,
+            into_recording: piece.start.saturating_sub(began) as f64 * 1e-9,
             period: piece.period,
             ..RecordedSession::default()
         };

@@ -255,6 +255,7 @@ fn dataset(experiment: &Experiment, arm: &ArmTable, read: &Dataset) -> ArmDatase
         Some(ArmSession {
             name: own.name.clone(),
             start: own.start,
+            into_recording: own.into_recording,
             period: own.period,
             position,
             motor_torque,

@@ -13,6 +13,7 @@ mod asymmetric_viscous;
 mod backlash;
 mod cable_spring;
 mod channel_delay;
+mod clock_drift;
 mod current_saturation;
 mod elasticity;
 mod equation_4;
@@ -223,5 +224,7 @@ truths! {
         TorqueSensorCalibration = "torque_sensor_calibration" => torque_sensor_calibration::draw(strength, random),
         /// A gain that is periodic in the wave generator's turn.
         LoadRipple = "load_ripple" => load_ripple::draw(strength, joint.gear_ratio, random),
+        /// One channel by a clock that runs fast.
+        ClockDrift = "clock_drift" => clock_drift::draw(strength, random),
     }
 }

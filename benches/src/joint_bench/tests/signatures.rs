@@ -290,6 +290,47 @@ fn a_late_channel_goes_with_its_rate() {
 }
 
 #[test]
+fn a_channel_of_another_clock_is_the_later_the_longer_it_runs() {
+    let mut seen = [false; 3];
+    for seed in 0..24 {
+        let config = BenchConfig {
+            seed,
+            hidden: vec![HiddenEffect::ClockDrift],
+            ..BenchConfig::default()
+        };
+        let parameters = Bench::new(&config).unwrap().parameters();
+        let name = parameters.last().unwrap().name;
+        let names = ["motor_torque_drift", "joint_torque_drift", "position_drift"];
+        let channel = names.iter().position(|&other| other == name).unwrap();
+        if std::mem::replace(&mut seen[channel], true) {
+            continue;
+        }
+        let mut c = case(HiddenEffect::ClockDrift, seed, Motion::Standard);
+        let drift = c.get(name);
+        println!("{name} {drift:.5} s/s");
+        // Away from reversals, where friction jumps, and from the end, where the log does not
+        // say yet what is true.
+        c.rows.retain(|row| row.v.abs() > 0.1 && row.time < 45.0);
+        match channel {
+            // What a channel says later is what was true now.
+            0 => c.is(0.3, |row| {
+                let says = &c.recording.sessions[row.session].motor_torque;
+                row.tau_m - later(says, row.index, drift * row.time)
+            }),
+            1 => c.is(0.3, |row| {
+                let says = &c.recording.sessions[row.session].joint_torque;
+                later(says, row.index, drift * row.time) - row.tau
+            }),
+            _ => c.is(0.4, |row| {
+                let friction = c.equation_4(row.v_true, row.tau) - c.equation_4(row.v, row.tau);
+                friction + c.recording.believed.inertia * (row.a_true - row.a)
+            }),
+        }
+    }
+    assert_eq!(seen, [true; 3]);
+}
+
+#[test]
 fn saturation_shows_only_at_the_limit() {
     let mut seen = [false; 2];
     for seed in 0..8 {

@@ -1,0 +1,69 @@
+//! One channel comes from a recorder of its own, whose clock runs fast: what it says at time t of
+//! the session was true at t (1 − d). Proportional to the channel's rate of change, and to the time.
+
+use ferntast_emulation::random::Random;
+
+use super::{Effect, Reading, about};
+
+#[derive(Clone, Copy)]
+enum Channel {
+    MotorTorque,
+    JointTorque,
+    Position,
+}
+
+#[derive(Clone)]
+struct ClockDrift {
+    channel: Channel,
+    /// d \[s/s\].
+    drift: f64,
+    /// The channel since the session's start, one reading a millisecond.
+    read: Vec<f64>,
+}
+
+pub(super) fn draw(strength: f64, random: &mut Random) -> Box<dyn Effect> {
+    // After a minute as late as the channels of `channel_delay` always are. Load and position are
+    // smooth: their drift has to be larger to show.
+    let (channel, largest) = match random.uniform() {
+        which if which < 0.4 => (Channel::MotorTorque, 0.0006),
+        which if which < 0.7 => (Channel::JointTorque, 0.0017),
+        _ => (Channel::Position, 0.0016),
+    };
+    Box::new(ClockDrift {
+        channel,
+        drift: strength * about(largest, random),
+        read: Vec::new(),
+    })
+}
+
+impl Effect for ClockDrift {
+    fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
+        let name = match self.channel {
+            Channel::MotorTorque => "motor_torque_drift",
+            Channel::JointTorque => "joint_torque_drift",
+            Channel::Position => "position_drift",
+        };
+        vec![(name, self.drift, "s/s")]
+    }
+
+    fn reset(&mut self) {
+        self.read.clear();
+    }
+
+    fn read(&mut self, _command: f64, reading: &mut Reading) {
+        let value = match self.channel {
+            Channel::MotorTorque => &mut reading.motor_torque,
+            Channel::JointTorque => &mut reading.joint_torque,
+            Channel::Position => &mut reading.position,
+        };
+        self.read.push(*value);
+        let place = (self.read.len() - 1) as f64 * (1.0 - self.drift);
+        let before = place as usize;
+        let at = |place: usize| self.read[place.min(self.read.len() - 1)];
+        *value = at(before) + (place - before as f64) * (at(before + 1) - at(before));
+    }
+
+    fn boxed(&self) -> Box<dyn Effect> {
+        Box::new(self.clone())
+    }
+}
