@@ -3,6 +3,7 @@
 import { byId, write } from "../common/dom.js";
 import { apart } from "../common/mapping.js";
 import { fixed } from "../common/numbers.js";
+import { ownLink } from "./connection.js";
 
 const NAMES = { follower: "The arm", leader: "The master" };
 /** What a device may be in beside ENABLED, what has to be left first first. */
@@ -22,6 +23,7 @@ const REASONS = [
   ["started", "It has just been started."],
   ["disable was asked for", "It was told to stop."],
   ["pause was asked for", "It was told to hold."],
+  ["told over the link", "Its host says so, and knows why."],
   ["commands fell silent", "No commands came: the hand, the link or this computer stood still."],
   ["measurements fell silent", "No measurements came: the arm's driver, or this computer, stood still."],
 ];
@@ -55,7 +57,10 @@ function crash(events, device, state) {
 
 function distance(snapshot, about, state) {
   const way = apart(about, snapshot);
-  if (way === null) return state === "FAULT" ? "" : "The hand begins where the tip is.";
+  if (way === null && state === "FAULT") return "";
+  if (about.end === "operator") return "How far it is from the hand is not known here: it comes to the hand slowly.";
+  if (about.end === "arm") return "It goes on when the operator, on the other host, arms it again.";
+  if (way === null) return "The hand begins where the tip is.";
   if (way < TOGETHER) return "Hand and tip are together.";
   const far = `Hand and tip are ${fixed(way * 1e3, 0)} mm apart`;
   return state === "FAULT" ? `${far}.` : `${far}: the arm comes to the hand slowly.`;
@@ -84,7 +89,8 @@ export function advice(snapshot, about, page) {
     why: [crash(page.events, device, state), (state === "PAUSED" && reason.startsWith("commands") && LET_GO[snapshot.seat.let_go]) || sentence(reason)],
     word: STATES[state].word,
   };
-  if (state !== "FAULT" && snapshot.link && !snapshot.link.connected) {
+  const link = ownLink(snapshot);
+  if (state !== "FAULT" && link && !link.connected) {
     told.why.push("The link is down: it has to come back first.");
     told.word = null;
   } else {

@@ -2,7 +2,7 @@
 
 import { make, write } from "../common/dom.js";
 import { fixed } from "../common/numbers.js";
-import { send, session } from "./connection.js";
+import { ownLink, send, session } from "./connection.js";
 
 const parts = {};
 /** The elements that only who operates may use. */
@@ -92,8 +92,9 @@ export function build(about) {
 }
 
 /** Shows what the session tells of its channel and law. */
-export function show({ channel, link }) {
-  follow(channel);
+export function show(snapshot) {
+  const link = ownLink(snapshot);
+  follow(snapshot.channel);
   // A change takes a round trip; until then the choice stands.
   if (link?.law && link.law !== parts.law.value && Date.now() - lawAsked > HEARD_WITHIN) parts.law.value = link.law;
 }

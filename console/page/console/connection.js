@@ -32,6 +32,11 @@ function tell(event, value) {
   listeners[event].forEach((listener) => listener(value));
 }
 
+/** The end of the link on this host, as measured there; the operator's where both are. */
+export function ownLink(snapshot) {
+  return snapshot.link ?? snapshot.follower_link;
+}
+
 /** Whether this page operates. */
 export function operates() {
   return session.connected && session.now?.seat.operator === session.page;

@@ -66,15 +66,23 @@ function frame(time) {
 
 let counted = 0;
 
+/** What of the session is on another host, where its ends are apart. */
+const ELSEWHERE = {
+  operator: "The arm is on the other host: its picture is on the page there.",
+  arm: "The hand is on the other host.",
+};
+
 function hint() {
   const mine = operates();
   const canvas = byId("scene");
   canvas.classList.toggle("hold", mine && !hand.wanted());
   canvas.classList.toggle("holding", Boolean(hand.wanted()));
   canvas.dataset.drawn = counted;
-  const text = (!mine ? "Take the controls to move the hand." : hand.wanted()
+  const elsewhere = ELSEWHERE[session.about?.end];
+  const own = !mine ? "Take the controls to move the hand." : hand.wanted()
     ? "Release, or Space, lets the hand go." : gamepad.present() ? "Drag, arrow keys or the gamepad's trigger take the hand."
-      : "Drag, or arrow keys, to take the hand.") + picture.hint();
+      : "Drag, or arrow keys, to take the hand.";
+  const text = session.about?.end === "arm" ? elsewhere : own + picture.hint() + (elsewhere ? ` ${elsewhere}` : "");
   if (byId("scene-hint").textContent !== text) byId("scene-hint").textContent = text;
 }
 

@@ -30,7 +30,7 @@ function begin() {
 
 /** Takes the hand where the tip is, if nobody else's is on the master: an arm that nobody moves pauses again at once. */
 export function takeHere() {
-  const { holder } = session.now.authority;
+  const holder = session.now.authority?.holder ?? "nobody";
   if (!target && (holder === "nobody" || holder === "page")) move(begin());
 }
 

@@ -4,7 +4,7 @@ import { byId, fill, make, toast, write } from "../common/dom.js";
 import { fixed, percent } from "../common/numbers.js";
 import * as banner from "./banner.js";
 import * as channel from "./channel.js";
-import { operates, send, session } from "./connection.js";
+import { operates, ownLink, send, session } from "./connection.js";
 import * as feel from "./feel.js";
 import { letGo, takeHere } from "./hand.js";
 import * as log from "./log.js";
@@ -108,6 +108,7 @@ function toggle(id, change) {
 }
 
 function holder({ authority }) {
+  if (!authority) return "?";
   if (authority.holder === "own") return session.about.hand;
   if (authority.holder === "page") return Number(authority.identity) === session.page ? "this page" : `page ${authority.identity}`;
   if (authority.holder === "client") return `ROS 2 client ${authority.identity.slice(0, 8)}…`;
@@ -159,26 +160,27 @@ export function slow(snapshot) {
   banner.show(banner.advice(snapshot, session.about, { connected: session.connected, mine, events: session.events }), (own) => ACTS[own]());
   write(parts.holder, holder(snapshot));
   write(parts.pages, String(snapshot.seat.pages));
-  const { link } = snapshot;
+  const link = ownLink(snapshot);
   write(byId("measured"), link
     ? `measured: ${fixed(link.round_trip && link.round_trip * 1e3, 1)} ms, ±${fixed(link.jitter * 1e3, 1)} ms, ${percent(link.loss)} lost`
     : "measured: –");
   write(byId("told"), words());
   channel.show(snapshot);
-  const { recorder } = snapshot;
+  const { recorder, contact } = snapshot;
+  const { end } = session.about;
   parts.record.disabled = recorder.on && !mine && !begun;
   write(parts.record, recorder.on ? "End the recording" : "Record");
   parts.record.setAttribute("aria-pressed", String(recorder.on));
   write(byId("recording"), recorder.on ? `${recorder.messages} messages in ${recorder.folder}` : recorder.folder ? `last: ${recorder.folder}` : "Nothing is being recorded.");
-  const chips = JSON.stringify([state, leader, link?.connected, session.connected, holder(snapshot), snapshot.contact.on, snapshot.contact.edge, recorder.on]);
+  const chips = JSON.stringify([state, leader, link?.connected, session.connected, holder(snapshot), contact?.on, contact?.edge, recorder.on]);
   if (chips !== chipsShown) {
     chipsShown = chips;
     // What was so when the connection was lost may be otherwise now.
     fill(byId("status"), ...(session.connected ? [
-      chip(TONE[state], "arm", state), chip(TONE[leader], "master", leader),
+      chip(TONE[state], "arm", state), end === "arm" ? null : chip(TONE[leader], "master", leader),
       chip(link?.connected ? "good" : "bad", "link", link?.connected ? "up" : "down"),
-      chip(snapshot.contact.on ? "warn" : "", "contact", snapshot.contact.on ? snapshot.contact.edge : "free"),
-      chip("", "hand", holder(snapshot)),
+      end === "operator" ? null : chip(contact?.on ? "warn" : "", "contact", contact ? contact.on ? contact.edge : "free" : "?"),
+      end === "arm" ? null : chip("", "hand", holder(snapshot)),
       recorder.on ? chip("bad", "rec", "on") : null,
     ] : [chip("bad", "page", "no connection")]));
   }
@@ -196,9 +198,9 @@ export function slow(snapshot) {
 
 /** Shows what is quick: the force; it is felt, too, where asked for, or where a gamepad holds the hand. */
 export function quick(snapshot, held) {
-  const newton = Math.hypot(...snapshot.hand_force);
+  const newton = Math.hypot(...(snapshot.hand_force || [0]));
   const limit = session.about.force_limit;
   parts.meter.style.width = `${Math.min(100, (newton / limit) * 100).toFixed(1)}%`;
-  write(parts.force, `${fixed(newton, 1)} N`);
+  write(parts.force, snapshot.hand_force ? `${fixed(newton, 1)} N` : "–");
   feel.feel(newton, limit, rumble || held);
 }

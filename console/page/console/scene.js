@@ -169,11 +169,11 @@ export function draw(canvas, about, snapshot, delayed, target) {
       disc(c, b, 4, colours.hand);
     }
     disc(c, v.at(hand), 10, null, colours.hand, 2.5);
-    force(v, hand, snapshot.hand_force, about.hand_arrow, colours.hand);
+    force(v, hand, snapshot.hand_force || [0, 0, 0], about.hand_arrow, colours.hand);
   }
   if (tip) {
     disc(c, v.at(tip), 6.5, colours.model, colours.panel, 1.5);
-    if (snapshot.contact.on) force(v, tip, snapshot.force, 1, colours.force, true);
+    if (snapshot.contact?.on) force(v, tip, snapshot.force, 1, colours.force, true);
   }
   inset(v, flat, snapshot);
 }

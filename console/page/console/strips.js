@@ -4,7 +4,7 @@
 import { fill, make, write } from "../common/dom.js";
 import { fixed } from "../common/numbers.js";
 import { drawChart, frame } from "./chart.js";
-import { session } from "./connection.js";
+import { ownLink, session } from "./connection.js";
 
 /** Seconds shown. */
 const SPAN = 20;
@@ -33,15 +33,15 @@ const shown = (axes) => [
   {
     id: "force", title: "Force", unit: "N", least: 5, leastRight: 1, zero: true, decimals: 1,
     curves: [
-      { name: "contact", colour: "force", value: (s) => (s.contact.on ? length(s.force) : 0) },
-      { name: "hand", colour: "hand", axis: "right", value: (s) => length(s.hand_force) },
+      { name: "contact", colour: "force", value: (s) => s.contact && (s.contact.on ? length(s.force) : 0) },
+      { name: "hand", colour: "hand", axis: "right", value: (s) => s.hand_force && length(s.hand_force) },
     ],
   },
   {
     id: "delay", title: "Delay", unit: "ms", least: 10, zero: true, decimals: 1,
     curves: [
-      { name: "round trip", colour: "measured", value: (s) => milli(s.link?.round_trip) },
-      { name: "jitter", colour: "second", value: (s) => milli(s.link?.jitter) },
+      { name: "round trip", colour: "measured", value: (s) => milli(ownLink(s)?.round_trip) },
+      { name: "jitter", colour: "second", value: (s) => milli(ownLink(s)?.jitter) },
     ],
   },
   {

@@ -115,12 +115,12 @@ function acting(context, eye, about, snapshot, tip, target) {
       disc(context, wanted, 4, colours.hand);
     }
     disc(context, at, 10, null, colours.hand, 2.5);
-    force(context, eye, hand, snapshot.hand_force, about.hand_arrow, colours.hand);
+    force(context, eye, hand, snapshot.hand_force || [0, 0, 0], about.hand_arrow, colours.hand);
   }
   const here = eye.at(tip);
   if (!here) return;
   disc(context, here, 6.5, colours.model, colours.panel, 1.5);
-  if (snapshot.contact.on) force(context, eye, tip, snapshot.force, 1, colours.force, true);
+  if (snapshot.contact?.on) force(context, eye, tip, snapshot.force, 1, colours.force, true);
 }
 
 /** The directions of the base frame. */

@@ -137,14 +137,14 @@ pub struct Snapshot {
     pub wanted: Option<[f32; 3]>,
     /// Contact force on the tip, base frame.
     pub force: [f32; 3],
-    /// The contact.
-    pub contact: ContactView,
+    /// The contact; `None` where nobody tells of it.
+    pub contact: Option<ContactView>,
     /// The hand that is there, accepted or not, leader base frame.
     pub hand: Option<[f32; 3]>,
     /// Where a page's hand would begin, leader base frame.
     pub begin: [f32; 3],
-    /// The force on the hand.
-    pub hand_force: [f32; 3],
+    /// The force on the hand; `None` where nobody tells of it.
+    pub hand_force: Option<[f32; 3]>,
     /// The operator's end of the link.
     pub link: Option<LinkView>,
     /// The arm's end of the link.
@@ -153,8 +153,8 @@ pub struct Snapshot {
     pub channel: Option<ChannelView>,
     /// Operating states by device.
     pub states: BTreeMap<&'static str, StateView>,
-    /// Who holds the authority.
-    pub authority: AuthorityView,
+    /// Who holds the authority; `None` where nobody tells.
+    pub authority: Option<AuthorityView>,
     /// Who operates.
     pub seat: OperatorView,
     /// Temperatures, joint by joint \[degC\].

@@ -324,13 +324,10 @@ impl SessionPorts {
                 .force
                 .take(now)
                 .map_or([0.0; 3], |wrench| short(wrench.force)),
-            contact: self.contact.take(now).map(contact).unwrap_or_default(),
+            contact: self.contact.take(now).map(contact),
             hand: self.held.or_else(|| self.other_hand(now)).map(short),
             begin: short(self.begin(now)),
-            hand_force: self
-                .hand_force
-                .take(now)
-                .map_or([0.0; 3], |wrench| short(wrench.force)),
+            hand_force: self.hand_force.take(now).map(|wrench| short(wrench.force)),
             link: self.links[0].take(now).map(|status| link(&status)),
             follower_link: self.links[1].take(now).map(|status| link(&status)),
             channel: self.channel(now),
@@ -347,7 +344,7 @@ impl SessionPorts {
                     Some((*device, view))
                 })
                 .collect(),
-            authority: self.authority.take(now).map(authority).unwrap_or_default(),
+            authority: self.authority.take(now).map(authority),
             seat: OperatorView {
                 operator: lock.operator(),
                 target: lock.target().map(short),

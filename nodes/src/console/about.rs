@@ -1,15 +1,17 @@
 //! What the page has to know of a session before anything moves.
 
-use ferntast_config::{HandSource, Loaded, known_links};
+use ferntast_config::{HandSource, known_links};
 use ferntast_control::{delay::Law, frame::WIRE_LENGTH};
 use ferntast_emulation::channel::LinkConfig;
 use serde_json::{Value, json};
 
 use super::spatial::spatial;
+use crate::process::SessionContext;
 
-/// Of the session of that name; its hand goes as far as `reach` from the middle. Lengths
-/// \[m\], times \[s\], forces \[N\].
-pub fn about(session: &str, loaded: &Loaded, reach: [f64; 3]) -> Value {
+/// Of `session`; its hand goes as far as `reach` from the middle. Lengths \[m\], times \[s\],
+/// forces \[N\].
+pub fn about(session: &SessionContext, reach: [f64; 3]) -> Value {
+    let loaded = &session.loaded;
     let scenario = &loaded.scenario;
     let json = |value: Result<Value, serde_json::Error>| value.unwrap_or_default();
     let mapping = scenario.law.mapping();
@@ -31,7 +33,9 @@ pub fn about(session: &str, loaded: &Loaded, reach: [f64; 3]) -> Value {
         .map(|(name, link)| preset(name, link))
         .collect();
     json!({
-        "session": session,
+        "session": session.session,
+        // The end of the link on this host, where that is only one.
+        "end": session.end,
         "scenario": scenario.name,
         "hand": match scenario.hand.source {
             HandSource::Scripted => "the script",

@@ -418,3 +418,38 @@ fn beyond_loopback_a_token_is_needed() {
         ferntast_tests::refused(&session, arguments, &["--token"]);
     }
 }
+
+/// Where the ends are on two hosts, each page tells what is known on its own, and not that
+/// the rest is free, at zero or nobody's.
+#[test]
+fn a_page_of_one_end_tells_what_is_known_there() {
+    let known = |end: &str, link: &str| {
+        let session = Session::alone();
+        let address = format!("127.0.0.1:{}", free_tcp_port());
+        let mut process = start(&session, &["--end", end, "--listen", &address]);
+        process.await_stderr("console: http://", PATIENCE);
+        let browser = Browser::start(1300, 900);
+        browser.open(&format!("http://{address}/"));
+        let text = |selector: &str| {
+            let script = format!("return document.querySelector('{selector}')?.textContent");
+            let told = browser.run(&script, Vec::new());
+            told.as_str().unwrap_or_default().to_owned()
+        };
+        let shown = wait_for(PATIENCE, || text("#status").contains(link).then_some(()));
+        assert!(shown.is_some(), "{end}: {}", text("#status"));
+        let told = [text("#status"), text("#scene-hint")];
+        drop(browser);
+        process.interrupt();
+        process.wait(PATIENCE);
+        told
+    };
+    // Nobody is at the other end: neither is up.
+    let [arm, beside] = known("arm", "link down");
+    assert!(arm.contains("arm ") && arm.contains("contact "), "{arm}");
+    assert!(!arm.contains("master") && !arm.contains("hand"), "{arm}");
+    assert_eq!(beside, "The hand is on the other host.");
+    let [operator, beside] = known("operator", "master DISABLED");
+    assert!(operator.contains("hand "), "{operator}");
+    assert!(!operator.contains("contact"), "{operator}");
+    assert!(beside.contains("The arm is on the other host"), "{beside}");
+}
