@@ -6,6 +6,7 @@ use super::dependence::{self, Dependence};
 use super::equivalents;
 use super::results::{Verdict, WhyNot};
 use crate::design::{Design, PreparedModel};
+use crate::effects::{self, Row};
 use crate::preparation::extend;
 
 /// Smallest certainty of its prediction of rows left out, in standard errors.
@@ -76,8 +77,8 @@ pub(super) fn maps(prepared: &PreparedModel, design: &Design) -> Vec<Dependence>
 }
 
 /// Whether the best candidate is the answer: its shape must be right over its
-/// own signals, and it (with others named on top of it) must explain more than
-/// free maps explain of the rest.
+/// own signals, alone or together with another one of its kind, and it (with others named on
+/// top of it) must explain more than free maps explain of the rest.
 pub(super) fn judge(
     prepared: &PreparedModel,
     design: &Design,
@@ -104,7 +105,10 @@ pub(super) fn judge(
     for step in 0..MAX_NAMED_EFFECTS {
         let design = Design::new(&prepared);
         let own = dependence::on_own_signals(&prepared, &design, &best.effect);
-        if own > MAX_SHAPE_REMAINDER * (own + best.score.gain) {
+        let id = best.id().to_owned();
+        let lacks_shape = own > MAX_SHAPE_REMAINDER * (own + best.score.gain);
+        let is_another = |row: &Row| row.another == Some(&id);
+        if lacks_shape && effects::find_by_row(is_another).is_none() {
             break;
         }
         let before = std::mem::replace(&mut left, design.own_mean_square());
@@ -121,12 +125,15 @@ pub(super) fn judge(
         progress((step as f64 + 1.0) / MAX_NAMED_EFFECTS as f64);
         let notable = share > NOTABLE_UNNAMED_SHARE && of_rest > NOTABLE_SHARE_OF_REST;
         let has_shape = named >= MIN_SHARE_OF_MAP * most_by_one;
-        if share <= MAX_UNNAMED_SHARE && !notable && has_shape {
+        if !lacks_shape && share <= MAX_UNNAMED_SHARE && !notable && has_shape {
             return Verdict::Missing;
         }
         let trial = try_all(&prepared, &design, &mut |_| ());
         let mut next = passing(&trial);
         next.retain(|own| confirmation.has(own));
+        if lacks_shape {
+            next.retain(|own| is_another(own.effect.row()));
+        }
         equivalents::order(&design, &mut next);
         let Some(candidate) = next.into_iter().next() else {
             break;

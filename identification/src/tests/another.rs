@@ -47,6 +47,23 @@ fn harmonics_of_a_gear_are_found_one_after_the_other() {
     assert!((0.9..1.15).contains(&(left / noise(3))), "{left}");
 }
 
+/// One of them leaves what has not its shape, so that it is no explanation alone.
+#[test]
+fn two_dents_are_found_one_after_the_other() {
+    let dent = |s: &JointState, size: f64, place: f64| {
+        size * (-((s.q - place) / 0.02).powi(2)).exp() * s.qd.signum()
+    };
+    let data = recording(15, |s| plain(s) + dent(s, 2.0, 0.3) + dent(s, 1.5, 0.1));
+    let (names, verdict, left) = complete(&data);
+    assert_eq!(names, ["local_friction", "local_friction_2"]);
+    assert_eq!(verdict, Verdict::Complete);
+    assert!((0.9..1.15).contains(&(left / noise(15))), "{left}");
+    // A step of friction is not made of dents.
+    let step = recording(15, |s| plain(s) + f64::from(s.q > 0.2) * s.qd.signum());
+    let (names, verdict, _) = complete(&step);
+    assert_eq!((names, verdict), (Vec::new(), Verdict::Unexplained));
+}
+
 /// Over 31 K the viscosity falls to a fifth, exponentially. What orders above the second would
 /// add is as large as the noise.
 #[test]

@@ -68,6 +68,38 @@ const RIPPLE: StaticEffect = StaticEffect {
     ..StaticEffect::NONE
 };
 
+const LOCAL_FRICTION: StaticEffect = StaticEffect {
+    row: Row {
+        id: "local_friction",
+        equation: "τ_F = bl · exp(−((q − ql)/wl)²) · sign(q̇)",
+        source: "a dent or a dry spot",
+        coefficients: &[torque("bl")],
+        shape: &[
+            EffectParameter::new("ql", ANGLE, -1e3, 1e3),
+            EffectParameter::new("wl", ANGLE, 1e-6, 1e3),
+        ],
+        shows_as: "bump at one q, sign by direction",
+        excited_by: "slow motion in both directions past the spot",
+        shown_by: Proposal::WidePosition,
+        contrasts: &[Contrast::WidePosition],
+        confusable_with: &["ripple"],
+        own_signals: OwnSignals::new(&["position"], Direction::Opposite),
+        ..Row::NONE
+    },
+    reads: &[Signal::Velocity, Signal::Position],
+    columns: |state, shape, columns| {
+        if let ([c], [spot, width, ..]) = (columns, shape) {
+            *c = (-((state.position - spot) / width).powi(2)).exp() * state.sign();
+        }
+    },
+    shapes: |facts| spots(facts, &[(0.03, 24), (0.06, 16), (0.12, 9)]).collect(),
+    bounds: |facts| {
+        let travel = facts.travel();
+        vec![facts.position, [0.01 * travel, 0.25 * travel]]
+    },
+    ..StaticEffect::NONE
+};
+
 /// All of them.
 pub(super) static EFFECTS: &[StaticEffect] = &[
     RIPPLE,
@@ -123,36 +155,21 @@ pub(super) static EFFECTS: &[StaticEffect] = &[
         bounds: bounds_of_wave_numbers,
         ..StaticEffect::NONE
     },
+    LOCAL_FRICTION,
     StaticEffect {
         row: Row {
-            id: "local_friction",
-            equation: "τ_F = bl · exp(−((q − ql)/wl)²) · sign(q̇)",
-            source: "a dent or a dry spot",
-            coefficients: &[torque("bl")],
+            id: "local_friction_2",
+            equation: "τ_F = bl2 · exp(−((q − ql2)/wl2)²) · sign(q̇)",
+            source: "a second dent or dry spot beside the first",
+            coefficients: &[torque("bl2")],
             shape: &[
-                EffectParameter::new("ql", ANGLE, -1e3, 1e3),
-                EffectParameter::new("wl", ANGLE, 1e-6, 1e3),
+                EffectParameter::new("ql2", ANGLE, -1e3, 1e3),
+                EffectParameter::new("wl2", ANGLE, 1e-6, 1e3),
             ],
-            shows_as: "bump at one q, sign by direction",
-            excited_by: "slow motion in both directions past the spot",
-            shown_by: Proposal::WidePosition,
-            contrasts: &[Contrast::WidePosition],
-            confusable_with: &["ripple"],
-            own_signals: OwnSignals::new(&["position"], Direction::Opposite),
-            ..Row::NONE
+            another: Some("local_friction"),
+            ..LOCAL_FRICTION.row
         },
-        reads: &[Signal::Velocity, Signal::Position],
-        columns: |state, shape, columns| {
-            if let ([c], [spot, width, ..]) = (columns, shape) {
-                *c = (-((state.position - spot) / width).powi(2)).exp() * state.sign();
-            }
-        },
-        shapes: |facts| spots(facts, &[(0.03, 24), (0.06, 16), (0.12, 9)]).collect(),
-        bounds: |facts| {
-            let travel = facts.travel();
-            vec![facts.position, [0.01 * travel, 0.25 * travel]]
-        },
-        ..StaticEffect::NONE
+        ..LOCAL_FRICTION
     },
     StaticEffect {
         row: Row {
