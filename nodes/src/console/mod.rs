@@ -66,7 +66,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
         Believed::Planar(_) => [REACH, REACH, 0.0],
         Believed::Serial(_) => [REACH; 3],
     };
-    let about = about::about(&process.session, reach);
+    let about = about::about(process.session, reach);
     let shared = Arc::new(SharedSession::new(about, Box::new(move || clock.now())));
     let grip = Grip(HandImpedance::new(IMPEDANCE, [0.0; 3]));
     let hand = PageHand::new(Box::new(grip), reach, LEASH);
