@@ -210,8 +210,8 @@ fn tell(event: &Event, json: bool) -> Result<(), Failure> {
 /// that is starting looks around every 0.02 s.
 const HOLD: f64 = 0.1;
 
-/// A word that is heard at once, and not told from a state that was there before, takes so
-/// long \[s\].
+/// For so long the state of another word has to last \[s\]: it may have been there before, and the
+/// word is heard within that time.
 const REACTION: f64 = 0.02;
 
 /// A word, and the state that it leads to.

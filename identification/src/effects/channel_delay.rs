@@ -3,7 +3,7 @@
 use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
 
 use super::{Effect, Facts, Memory, Point, free, late_channel, row};
-use crate::signals::Channels;
+use crate::signals::{Channels, InvalidSamples};
 
 /// Its id.
 pub const CHANNEL_DELAY: &str = "channel_delay";
@@ -70,14 +70,14 @@ impl Effect for ChannelDelay {
         coefficients: &[f64],
         channels: &mut Channels,
         points: &[Point],
-    ) -> usize {
+    ) -> InvalidSamples {
         let first = points.first();
         let ([channel, ..], [delay, ..], Some(first)) = (shape, coefficients, first) else {
-            return 0;
+            return InvalidSamples::default();
         };
         let samples = delay / first.period;
         late_channel::take_back(*channel, channels, |at| at + samples);
-        samples.abs().ceil() as usize + 1
+        InvalidSamples::read_late_by([samples; 2])
     }
 
     // A stamp is late, not early. How far apart the difference is taken (the shift) tells little of

@@ -3,7 +3,7 @@
 use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
 
 use super::{Effect, Facts, Memory, Point, free, late_channel, row};
-use crate::signals::Channels;
+use crate::signals::{Channels, InvalidSamples};
 
 /// Its id.
 pub const CLOCK_DRIFT: &str = "clock_drift";
@@ -81,16 +81,16 @@ impl Effect for ClockDrift {
         coefficients: &[f64],
         channels: &mut Channels,
         points: &[Point],
-    ) -> usize {
+    ) -> InvalidSamples {
         let ([channel, ..], [drift, ..]) = (shape, coefficients) else {
-            return 0;
+            return InvalidSamples::default();
         };
         let (Some(first), Some(last)) = (points.first(), points.last()) else {
-            return 0;
+            return InvalidSamples::default();
         };
         let since = first.time / first.period;
         late_channel::take_back(*channel, channels, |at| at + drift * (since + at));
-        (drift * last.time / last.period).max(0.0).ceil() as usize + 1
+        InvalidSamples::read_late_by([first, last].map(|own| drift * own.time / own.period))
     }
 
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {

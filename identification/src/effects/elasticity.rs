@@ -4,7 +4,7 @@ use ferntast_model::friction::{Contrast, Proposal, TORQUE, Unit};
 
 use super::{Effect, Facts, Memory, Point, free, logarithmic, row};
 use crate::numerics::filter::{Kernel, least_width};
-use crate::signals::Channels;
+use crate::signals::{Channels, InvalidSamples};
 
 row!(
     Elasticity,
@@ -82,7 +82,7 @@ impl Effect for Elasticity {
         coefficients: &[f64],
         channels: &mut Channels,
         points: &[Point],
-    ) -> usize {
+    ) -> InvalidSamples {
         let first = points.first();
         if let ([stiff, ..], [inverse, ..], Some(first)) = (shape, coefficients, first) {
             let period = first.period;
@@ -94,7 +94,7 @@ impl Effect for Elasticity {
                 *position += inverse * stiff * wound_up(torque / stiff);
             }
         }
-        0
+        InvalidSamples::default()
     }
 
     // The motor is ahead of the measured position in the direction of the torque.

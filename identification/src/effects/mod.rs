@@ -38,8 +38,8 @@ pub use ferntast_model::friction::{
 use ferntast_model::friction::{EffectParameter, FrictionState};
 
 use crate::data::Subject;
-use crate::signals::Channels;
 pub use crate::signals::Point;
+use crate::signals::{Channels, InvalidSamples};
 pub use channel_delay::CHANNEL_DELAY;
 pub use clock_drift::CLOCK_DRIFT;
 pub(crate) use description::row;
@@ -131,17 +131,17 @@ pub trait Effect: Send + Sync {
     }
 
     /// Takes its influence out of the measured `channels`, sampled at the times of
-    /// `points`, for an effect that acts on these. Returns the number of samples at
-    /// the end that are invalid afterwards.
+    /// `points`, for an effect that acts on these. Returns how many samples are invalid
+    /// afterwards.
     fn compensate(
         &self,
         shape: &[f64],
         coefficients: &[f64],
         channels: &mut Channels,
         points: &[Point],
-    ) -> usize {
+    ) -> InvalidSamples {
         let _ = (shape, coefficients, channels, points);
-        0
+        InvalidSamples::default()
     }
 
     /// Other shapes than this, of an effect that acts on channels, which its columns do not tell

@@ -12,7 +12,7 @@ use nalgebra::DVector;
 
 use crate::design::{Design, PreparedModel};
 use crate::effects::{BoundTerm, with_columns};
-use crate::signals::{Channels, Signals};
+use crate::signals::{Channels, InvalidSamples, Signals};
 
 use super::prediction::working;
 
@@ -180,11 +180,10 @@ impl PreparedModel {
     }
 }
 
-/// The channels of a session compensated for `terms`, and the number of samples at
-/// the end that are invalid then.
-fn compensated(terms: &[BoundTerm], signals: &Signals) -> (Channels, usize) {
+/// The channels of a session compensated for `terms`, and the samples that are invalid then.
+fn compensated(terms: &[BoundTerm], signals: &Signals) -> (Channels, InvalidSamples) {
     let mut channels = Channels::clone(&signals.recorded);
-    let mut lost = 0;
+    let mut lost = InvalidSamples::default();
     for term in terms.iter().filter(|t| !t.compensated.is_empty()) {
         let points = &signals.points;
         lost += (term.effect).compensate(&term.shape, &term.compensated, &mut channels, points);

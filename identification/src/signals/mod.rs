@@ -7,6 +7,7 @@ mod point;
 mod sliding;
 
 use std::collections::BTreeMap;
+use std::ops::AddAssign;
 use std::sync::Arc;
 
 use crate::data::RecordedSession;
@@ -77,6 +78,38 @@ pub struct Channels {
     pub joint_torque: Vec<f64>,
 }
 
+/// Samples at both ends of a session that are invalid, since what they should be was not recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InvalidSamples {
+    /// At the start.
+    pub first: usize,
+    /// At the end.
+    pub last: usize,
+}
+
+impl InvalidSamples {
+    /// Where the first sample is read so many samples later than it is, and the last one.
+    #[must_use]
+    pub fn read_late_by([first, last]: [f64; 2]) -> Self {
+        // Interpolation reads one more.
+        let beyond = |samples: f64| match samples > 0.0 {
+            true => samples.ceil() as usize + 1,
+            false => 0,
+        };
+        Self {
+            first: beyond(-first),
+            last: beyond(last),
+        }
+    }
+}
+
+impl AddAssign for InvalidSamples {
+    fn add_assign(&mut self, other: Self) {
+        self.first += other.first;
+        self.last += other.last;
+    }
+}
+
 impl Signals {
     /// Thins and smooths a session, and finds its rows.
     #[must_use]
@@ -126,15 +159,20 @@ impl Signals {
             all_rows: Vec::new(),
         };
         match session.normal_force.as_ref() {
-            Some(force) => signals.derive(filters, &thin(force), 0),
-            None => signals.derive(filters, &raw.joint_torque, 0),
+            Some(force) => signals.derive(filters, &thin(force), InvalidSamples::default()),
+            None => signals.derive(filters, &raw.joint_torque, InvalidSamples::default()),
         }
         signals
     }
 
-    /// Replaces the channels, and derives states and rows again; the last `lost`
-    /// samples of the channels are invalid.
-    pub(crate) fn replace_channels(&mut self, channels: Channels, lost: usize, filters: &Filters) {
+    /// Replaces the channels, and derives states and rows again; `lost` samples of the channels
+    /// are invalid.
+    pub(crate) fn replace_channels(
+        &mut self,
+        channels: Channels,
+        lost: InvalidSamples,
+        filters: &Filters,
+    ) {
         let channels = Arc::new(channels);
         self.kept = Arc::default();
         self.raw = channels.clone();
@@ -142,7 +180,7 @@ impl Signals {
     }
 
     /// States and rows from the channels.
-    fn derive(&mut self, filters: &Filters, load: &[f64], lost: usize) {
+    fn derive(&mut self, filters: &Filters, load: &[f64], lost: InvalidSamples) {
         let raw = &self.raw;
         let [smooth, slope, curvature] = filters.state_kernels(filters.state, self.period);
         let [_, load_rate, load_jerk] = filters.state_kernels(filters.load, self.period);
@@ -165,7 +203,7 @@ impl Signals {
         };
         self.points = Arc::new(self.points.iter().enumerate().map(derived).collect());
         let points = &self.points;
-        let samples = points.len().saturating_sub(lost);
+        let samples = points.len().saturating_sub(lost.last);
         let reach = match &filters.stated {
             // Derived twice, the acceleration looks furthest.
             Some(_) => StatedFilter::reach(&curvature, &self.column),
@@ -177,6 +215,7 @@ impl Signals {
                 .step_by(filters.stride.max(1))
                 .collect(),
         };
+        self.all_rows.retain(|row| *row >= lost.first + reach);
         let mut sliding = Sliding::default();
         let slides: Vec<bool> = points
             .iter()

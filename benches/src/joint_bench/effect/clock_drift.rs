@@ -22,12 +22,12 @@ struct ClockDrift {
 }
 
 pub(super) fn draw(strength: f64, random: &mut Random) -> Box<dyn Effect> {
-    // After a minute as late as the channels of `channel_delay` always are. Load and position are
-    // smooth: their drift has to be larger to show.
+    // Over a minute as late in the mean square as the channels of `channel_delay`. Load and
+    // position are smooth: their drift has to be larger to show.
     let (channel, largest) = match random.uniform() {
-        which if which < 0.4 => (Channel::MotorTorque, 0.0006),
-        which if which < 0.7 => (Channel::JointTorque, 0.0017),
-        _ => (Channel::Position, 0.0016),
+        which if which < 0.4 => (Channel::MotorTorque, 0.001),
+        which if which < 0.7 => (Channel::JointTorque, 0.0027),
+        _ => (Channel::Position, 0.0025),
     };
     Box::new(ClockDrift {
         channel,
