@@ -20,8 +20,10 @@ const STALE: Duration = Duration::from_millis(50);
 /// Motors that did not answer, and were heard for so long ago, are held: who is told of no
 /// measurement gives no torque after twice that, and these arms have no brakes.
 const HELD: Duration = Duration::from_millis(10);
-/// A motor that was not heard for so long is lost.
+/// A motor that was not heard for so long is lost, …
 const LOST: Duration = Duration::from_millis(150);
+/// … if it was asked so often meanwhile: a computer that stood still has not listened.
+const ASKED: u32 = 3;
 
 /// Starts the thread.
 pub fn start<F: Family>(
@@ -37,7 +39,7 @@ pub fn start<F: Family>(
         states,
         shared,
         heard: Instant::now(),
-        answered: true,
+        unanswered: 0,
         command: (0, Instant::now()),
     };
     let thread = thread::Builder::new().name("motors".to_owned());
@@ -52,8 +54,8 @@ struct Talk<F> {
     states: States,
     shared: Arc<Shared>,
     heard: Instant,
-    /// Whether all did in the last cycle.
-    answered: bool,
+    /// Cycles since then, in which one or more did not answer.
+    unanswered: u32,
     /// The newest command's version, and since when it is there.
     command: (u64, Instant),
 }
@@ -64,11 +66,12 @@ impl<F: Family> Talk<F> {
             let begin = Instant::now();
             let drive = self.drive(begin);
             let answers = self.family.step(&drive, &mut self.states);
-            self.answered = answers.is_ok();
             if let Err(missed) = answers {
+                self.unanswered = self.unanswered.saturating_add(1);
                 self.shared.missed.fetch_add(1, Ordering::Relaxed);
                 self.missed(missed);
             } else {
+                self.unanswered = 0;
                 self.heard = begin;
                 self.shared.put_states(&self.states);
             }
@@ -87,7 +90,7 @@ impl<F: Family> Talk<F> {
             self.command = (version, now);
         }
         let stale = now - self.command.1 > STALE;
-        let silent = !self.answered && now - self.heard > HELD;
+        let silent = self.unanswered > 0 && now - self.heard > HELD;
         match drive {
             Drive::Currents(_) if stale || silent || self.shared.failure.get().is_some() => {
                 Drive::Hold
@@ -107,7 +110,7 @@ impl<F: Family> Talk<F> {
                 port: self.section.port.clone(),
                 source,
             },
-            Missed::Motor(..) if silence < LOST => return,
+            Missed::Motor(..) if silence < LOST || self.unanswered < ASKED => return,
             Missed::Motor(place, _) => self.lost(place, silence),
         };
         eprintln!("{error}");
