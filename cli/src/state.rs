@@ -222,14 +222,10 @@ struct Wish {
 }
 
 impl Wish {
-    fn stops(self) -> bool {
-        [StateCommand::PAUSE, StateCommand::DISABLE].contains(&self.command)
-    }
-
     /// Whether `told` is what follows from the word. A device that stood already tells by the
     /// reason that it has heard it.
     fn is_met_by(self, told: &OperatingStateSample) -> bool {
-        let heard = match to_law(self.command).filter(|_| self.stops()) {
+        let heard = match to_law(self.command).filter(|_| self.command.is_stop()) {
             Some(command) => is_because(told, Reason::Commanded(command)),
             None => true,
         };
@@ -238,7 +234,11 @@ impl Wish {
 
     /// For how long it is met until that is believed \[s\].
     fn lasting(self) -> f64 {
-        if self.stops() { HOLD } else { REACTION }
+        if self.command.is_stop() {
+            HOLD
+        } else {
+            REACTION
+        }
     }
 }
 
@@ -277,7 +277,7 @@ fn ask(
             let Some(wish) = wish else { break };
             if wish.is_met_by(&told) {
                 met_since = met_since.or(Some(now));
-            } else if met_since.take().is_some() && wish.stops() {
+            } else if met_since.take().is_some() && wish.command.is_stop() {
                 say(wish.command)?;
             }
         }

@@ -20,6 +20,7 @@ import socket
 import sys
 import tempfile
 from pathlib import Path
+from typing import TextIO
 
 # The environment of a sourced ROS installation, and the mark of the bootstrapper.
 FOREIGN = (
@@ -67,22 +68,27 @@ def ros_environment(domain: int) -> dict[str, str]:
     return environment
 
 
-class Domain:
-    """A ROS domain that no other test holds, given back by `release`.
-
-    A lock on a file keeps it, which the system drops if the process dies. The
-    Rust tests lock the same files.
+def try_lock(name: str) -> TextIO | None:
+    """The file of that name, locked until it is closed or the process dies; None where another
+    test holds it. The Rust tests lock the same files.
     """
+    handle = (Path(tempfile.gettempdir()) / name).open("w")
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        handle.close()
+        return None
+    return handle
+
+
+class Domain:
+    """A ROS domain that no other test holds, given back by `release`."""
 
     def __init__(self) -> None:
         for offset in range(len(DOMAINS)):
             number = DOMAINS[(os.getpid() + offset) % len(DOMAINS)]
-            path = Path(tempfile.gettempdir()) / f"ferntast-tests-domain-{number}.lock"
-            handle = path.open("w")
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                handle.close()
+            handle = try_lock(f"ferntast-tests-domain-{number}.lock")
+            if handle is None:
                 continue
             self.number = number
             self._handle = handle
@@ -98,17 +104,13 @@ class Ports:
     """A block of TCP ports that no other test holds, until this process ends.
 
     Below those that Linux hands out by itself: any connection that a process of this machine
-    opens could take one of these before it is used. The Rust tests lock the same files.
+    opens could take one of these before it is used.
     """
 
     def __init__(self) -> None:
         for block, first in enumerate(range(1400, 7400, 200)):
-            path = Path(tempfile.gettempdir()) / f"ferntast-tests-ports-{block}.lock"
-            handle = path.open("w")
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                handle.close()
+            handle = try_lock(f"ferntast-tests-ports-{block}.lock")
+            if handle is None:
                 continue
             self._ports = itertools.cycle(range(first, first + 200))
             self._handle = handle

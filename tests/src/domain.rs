@@ -1,10 +1,8 @@
 //! ROS domains, one a test.
 
-use std::{
-    env,
-    fs::{File, TryLockError},
-    process,
-};
+use std::{fs::File, process};
+
+use crate::lock_file::try_lock;
 
 /// Above domain 100 the ports of DDS (7400 + 250 a domain) reach the range from
 /// which Linux hands out ephemeral ports (32768 and up). Zero is everybody's.
@@ -12,9 +10,6 @@ const FIRST: u32 = 1;
 const COUNT: u32 = 100;
 
 /// A ROS domain that no other test holds.
-///
-/// A lock on a file keeps it, which the system drops if the process dies. The
-/// Python tests lock the same files.
 #[derive(Debug)]
 pub struct Domain {
     number: u32,
@@ -30,20 +25,11 @@ impl Domain {
     pub fn take() -> Domain {
         for offset in 0..COUNT {
             let number = FIRST + (process::id() + offset) % COUNT;
-            let path = env::temp_dir().join(format!("ferntast-tests-domain-{number}.lock"));
-            let lock = File::create(&path)
-                .unwrap_or_else(|error| panic!("cannot write {}: {error}", path.display()));
-            match lock.try_lock() {
-                Ok(()) => {
-                    return Domain {
-                        number,
-                        _lock: lock,
-                    };
-                }
-                Err(TryLockError::WouldBlock) => {}
-                Err(TryLockError::Error(error)) => {
-                    panic!("cannot lock {}: {error}", path.display())
-                }
+            if let Some(lock) = try_lock(&format!("ferntast-tests-domain-{number}.lock")) {
+                return Domain {
+                    number,
+                    _lock: lock,
+                };
             }
         }
         panic!("all {COUNT} ROS domains are taken by other tests");

@@ -15,6 +15,7 @@ mod domain;
 mod hosts;
 mod laws;
 mod live;
+mod lock_file;
 mod machine;
 mod memory;
 mod pair;

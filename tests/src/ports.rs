@@ -4,11 +4,12 @@
 //! that a process of this machine opens takes one from there.
 
 use std::{
-    env,
-    fs::{File, TryLockError},
+    fs::File,
     net::{TcpListener, UdpSocket},
     sync::{Mutex, PoisonError},
 };
+
+use crate::lock_file::try_lock;
 
 /// Below the ports of DDS in the domains of tests (7650 and up) and of Zenoh (7446 and 7447).
 const FIRST: u16 = 1400;
@@ -16,9 +17,6 @@ const BLOCKS: u16 = 30;
 const BLOCK: u16 = 200;
 
 /// The ports of this process: a block of them that no other test holds.
-///
-/// A lock on a file keeps it, which the system drops with the process. The Python tests lock
-/// the same files.
 struct Ports {
     first: u16,
     handed_out: u16,
@@ -28,21 +26,12 @@ struct Ports {
 impl Ports {
     fn take() -> Ports {
         for block in 0..BLOCKS {
-            let path = env::temp_dir().join(format!("ferntast-tests-ports-{block}.lock"));
-            let lock = File::create(&path)
-                .unwrap_or_else(|error| panic!("cannot write {}: {error}", path.display()));
-            match lock.try_lock() {
-                Ok(()) => {
-                    return Ports {
-                        first: FIRST + block * BLOCK,
-                        handed_out: 0,
-                        _lock: lock,
-                    };
-                }
-                Err(TryLockError::WouldBlock) => {}
-                Err(TryLockError::Error(error)) => {
-                    panic!("cannot lock {}: {error}", path.display())
-                }
+            if let Some(lock) = try_lock(&format!("ferntast-tests-ports-{block}.lock")) {
+                return Ports {
+                    first: FIRST + block * BLOCK,
+                    handed_out: 0,
+                    _lock: lock,
+                };
             }
         }
         panic!("all {BLOCKS} blocks of TCP ports are taken by other tests");

@@ -169,7 +169,7 @@ export function draw(canvas, about, snapshot, delayed, target) {
       disc(c, b, 4, colours.hand);
     }
     disc(c, v.at(hand), 10, null, colours.hand, 2.5);
-    force(v, hand, snapshot.hand_force || [0, 0, 0], about.hand_arrow, colours.hand);
+    if (snapshot.hand_force) force(v, hand, snapshot.hand_force, about.hand_arrow, colours.hand);
   }
   if (tip) {
     disc(c, v.at(tip), 6.5, colours.model, colours.panel, 1.5);

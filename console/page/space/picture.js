@@ -115,7 +115,7 @@ function acting(context, eye, about, snapshot, tip, target) {
       disc(context, wanted, 4, colours.hand);
     }
     disc(context, at, 10, null, colours.hand, 2.5);
-    force(context, eye, hand, snapshot.hand_force || [0, 0, 0], about.hand_arrow, colours.hand);
+    if (snapshot.hand_force) force(context, eye, hand, snapshot.hand_force, about.hand_arrow, colours.hand);
   }
   const here = eye.at(tip);
   if (!here) return;

@@ -14,7 +14,6 @@ use super::dependence::Dependence;
 use super::examination::{Examination, examine};
 use crate::data::ModelSpec;
 use crate::design::PreparedModel;
-use crate::effects::{CHANNEL_DELAY, CLOCK_DRIFT};
 use crate::preparation::Filtered;
 
 /// The cut-off of the slower filter, as a ratio to that of the other.
@@ -109,7 +108,7 @@ pub(crate) fn noisy_signals(prepared: &PreparedModel) -> Vec<String> {
 }
 
 fn is_doubtful(candidate: &Candidate) -> bool {
-    [CHANNEL_DELAY, CLOCK_DRIFT].contains(&candidate.id())
+    candidate.effect.row().is_lateness
 }
 
 /// Whether what is found `again` is the same, of about the same size. How much it helps is told

@@ -5,12 +5,9 @@ use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
 use super::{Effect, Facts, Memory, Point, free, late_channel, row};
 use crate::signals::{Channels, InvalidSamples};
 
-/// Its id.
-pub const CHANNEL_DELAY: &str = "channel_delay";
-
 row!(
     ChannelDelay,
-    id: CHANNEL_DELAY,
+    id: "channel_delay",
     equation: "x_measured(t) = x(t − d) for one channel: 0 motor torque, 1 joint torque, 2 position (3 where τ is modelled)",
     source: "time stamps",
     coefficients: &[free("delay", Unit::new("s", "s"))],
@@ -24,6 +21,7 @@ row!(
     freedom: Some(1),
     needs_prediction: true,
     acts_on_channels: true,
+    is_lateness: true,
 );
 
 /// Delays that are looked for \[s\].

@@ -5,12 +5,9 @@ use ferntast_model::friction::{Contrast, ONE, Proposal, Unit};
 use super::{Effect, Facts, Memory, Point, free, late_channel, row};
 use crate::signals::{Channels, InvalidSamples};
 
-/// Its id.
-pub const CLOCK_DRIFT: &str = "clock_drift";
-
 row!(
     ClockDrift,
-    id: CLOCK_DRIFT,
+    id: "clock_drift",
     equation: "x_measured(t) = x(t − d t), t from the recording's start, for one channel: 0 motor torque, 1 joint torque, 2 position",
     source: "clocks of two recorders",
     coefficients: &[free("drift", Unit::new("s/s", "s/s"))],
@@ -24,6 +21,7 @@ row!(
     freedom: Some(1),
     needs_prediction: true,
     acts_on_channels: true,
+    is_lateness: true,
 );
 
 /// Drifts that are believed \[s/s\]: from less than that of a bad quartz to more than that of

@@ -40,8 +40,6 @@ use ferntast_model::friction::{EffectParameter, FrictionState};
 use crate::data::Subject;
 pub use crate::signals::Point;
 use crate::signals::{Channels, InvalidSamples};
-pub use channel_delay::CHANNEL_DELAY;
-pub use clock_drift::CLOCK_DRIFT;
 pub(crate) use description::row;
 pub use description::{EffectDescription, Quantity};
 pub use exact::ExactSignal;

@@ -45,6 +45,9 @@ impl PreparedModel {
             }
         }
         self.compensate_at_these_shapes(is_read);
+        if others.is_empty() {
+            return;
+        }
         let mut least = remainder(&Design::new(self)).0;
         for mut other in others {
             other.compensate_at_these_shapes(is_read);

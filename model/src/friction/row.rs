@@ -247,6 +247,9 @@ pub struct Row {
     /// It acts on what is measured rather than on torque: its columns are right
     /// for a small effect, and a large one has to be taken out of the channels.
     pub acts_on_channels: bool,
+    /// It is a channel whose time stamps are late, which smooths as a filter does: noise may look
+    /// like it.
+    pub is_lateness: bool,
     /// Numbers that it is free to choose, where these are not its coefficients
     /// and its shape. The fewer, the simpler.
     pub freedom: Option<usize>,
@@ -283,6 +286,7 @@ impl Row {
         shows_at_reversals: false,
         needs_prediction: false,
         acts_on_channels: false,
+        is_lateness: false,
         freedom: None,
     };
 

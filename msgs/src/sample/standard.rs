@@ -88,9 +88,16 @@ impl StateCommandSample {
         }
     }
 
-    /// Whether it holds the device or turns its drives off.
+    /// Whether its command is one.
     fn is_a_stop(&self) -> bool {
-        matches!(self.command, StateCommand::PAUSE | StateCommand::DISABLE)
+        self.command.is_stop()
+    }
+}
+
+impl StateCommand {
+    /// Whether it holds the device or turns its drives off.
+    pub const fn is_stop(self) -> bool {
+        matches!(self, StateCommand::PAUSE | StateCommand::DISABLE)
     }
 }
 

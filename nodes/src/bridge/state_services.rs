@@ -32,11 +32,6 @@ const STOP: &str = "/stop";
 /// Those that take words.
 const DEVICES: [&str; 2] = ["follower", "leader"];
 
-/// Whether everybody may say a word.
-fn is_stop(word: StateCommand) -> bool {
-    matches!(word, StateCommand::DISABLE | StateCommand::PAUSE)
-}
-
 fn name_of(device: &str, word: StateCommand) -> String {
     format!("/{device}/{}", word.name().unwrap_or_default())
 }
@@ -44,7 +39,7 @@ fn name_of(device: &str, word: StateCommand) -> String {
 /// Names of the services, and whether everybody may call them.
 pub fn offered() -> Vec<(String, bool)> {
     let of_devices = DEVICES.into_iter().flat_map(|device| {
-        let words = WORDS.map(|(word, _)| (name_of(device, word), is_stop(word)));
+        let words = WORDS.map(|(word, _)| (name_of(device, word), word.is_stop()));
         let (open, others): (Vec<_>, Vec<_>) = words.into_iter().partition(|(_, open)| *open);
         open.into_iter().chain(others)
     });
@@ -188,7 +183,7 @@ impl Offer {
     fn round(&mut self, now: Time, devices: &mut [Device], commands: bool) {
         let devices = devices.get_mut(self.devices.clone()).unwrap_or_default();
         while let Some(call) = self.service.call() {
-            if !commands && !is_stop(self.word) {
+            if !commands && !self.word.is_stop() {
                 let why = "peers on ROS 2 may pause, disable and stop only; begin the session with --ros-commands, \
                      or say it on the page or by ferntast state";
                 self.service.answer(call, false, why);

@@ -89,10 +89,6 @@ fn contact_force(now: Time, input: &FollowerLinkInput) -> Option<[f64; 3]> {
     FollowerReadings::force_of(valid, state.touches == 1, wrench.force)
 }
 
-fn stops(command: StateCommand) -> bool {
-    [StateCommand::PAUSE, StateCommand::DISABLE].contains(&command)
-}
-
 impl Node for FollowerLinkNode {
     type Input = FollowerLinkInput;
     type Output = FollowerLinkOutput;
@@ -109,7 +105,7 @@ impl Node for FollowerLinkNode {
             tip: position(now, &input.measured_cp),
             contact_force: contact_force(now, input),
             state: operating_state(now, &input.operating_state),
-            told_to_stop: input.told.iter().any(|own| stops(own.command)),
+            told_to_stop: input.told.iter().any(|own| own.command.is_stop()),
         };
         let step = self.link.step(now.nanos(), &readings);
         let command = match (step.word, step.resume_after_gap) {

@@ -13,7 +13,7 @@ use ferntast_msgs::{
     sample::{
         AuthoritySample, ContactStateSample, Edge, FrictionStatusSample, HealthSample, JointNames,
         LinkStatusSample, OperatingState, OperatingStateSample, RecorderCommandSample,
-        RecorderStatusSample, StateCommand, StateCommandSample, WrenchSample,
+        RecorderStatusSample, StateCommandSample, WrenchSample,
     },
     topics::{self, Topic},
 };
@@ -246,7 +246,7 @@ impl Monitor {
         for commands in &mut self.state_commands {
             while let Some(received) = commands.next(now) {
                 let told = received.message;
-                if [StateCommand::PAUSE, StateCommand::DISABLE].contains(&told.command) {
+                if told.command.is_stop() {
                     self.stops.push(told.stamp);
                 }
             }

@@ -3,17 +3,10 @@
 
 use ferntast_emulation::random::Random;
 
-use super::{Effect, Reading, about};
+use super::{Effect, Reading, about, channel::Channel};
 
 /// Readings kept, one a millisecond: more than the longest delay.
 const KEPT: usize = 512;
-
-#[derive(Clone, Copy)]
-enum Channel {
-    MotorTorque,
-    JointTorque,
-    Position,
-}
 
 #[derive(Clone)]
 struct ChannelDelay {
@@ -28,11 +21,7 @@ struct ChannelDelay {
 
 pub(super) fn draw(strength: f64, random: &mut Random) -> Box<dyn Effect> {
     // Load and position are smooth: their delay has to be longer to show.
-    let (channel, longest) = match random.uniform() {
-        which if which < 0.4 => (Channel::MotorTorque, 0.04),
-        which if which < 0.7 => (Channel::JointTorque, 0.11),
-        _ => (Channel::Position, 0.1),
-    };
+    let (channel, longest) = Channel::draw([0.04, 0.11, 0.1], random);
     Box::new(ChannelDelay {
         channel,
         delay: strength * about(longest, random),
@@ -44,11 +33,8 @@ pub(super) fn draw(strength: f64, random: &mut Random) -> Box<dyn Effect> {
 
 impl Effect for ChannelDelay {
     fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
-        let name = match self.channel {
-            Channel::MotorTorque => "motor_torque_delay",
-            Channel::JointTorque => "joint_torque_delay",
-            Channel::Position => "position_delay",
-        };
+        let names = ["motor_torque_delay", "joint_torque_delay", "position_delay"];
+        let name = self.channel.of(names);
         vec![(name, self.delay, "s")]
     }
 
@@ -57,11 +43,7 @@ impl Effect for ChannelDelay {
     }
 
     fn read(&mut self, _command: f64, reading: &mut Reading) {
-        let value = match self.channel {
-            Channel::MotorTorque => &mut reading.motor_torque,
-            Channel::JointTorque => &mut reading.joint_torque,
-            Channel::Position => &mut reading.position,
-        };
+        let value = self.channel.read(reading);
         if !self.started {
             self.kept = [*value; KEPT];
             self.started = true;

@@ -3,14 +3,7 @@
 
 use ferntast_emulation::random::Random;
 
-use super::{Effect, Reading, about};
-
-#[derive(Clone, Copy)]
-enum Channel {
-    MotorTorque,
-    JointTorque,
-    Position,
-}
+use super::{Effect, Reading, about, channel::Channel};
 
 #[derive(Clone)]
 struct ClockDrift {
@@ -24,11 +17,7 @@ struct ClockDrift {
 pub(super) fn draw(strength: f64, random: &mut Random) -> Box<dyn Effect> {
     // Over a minute as late in the mean square as the channels of `channel_delay`. Load and
     // position are smooth: their drift has to be larger to show.
-    let (channel, largest) = match random.uniform() {
-        which if which < 0.4 => (Channel::MotorTorque, 0.001),
-        which if which < 0.7 => (Channel::JointTorque, 0.0027),
-        _ => (Channel::Position, 0.0025),
-    };
+    let (channel, largest) = Channel::draw([0.001, 0.0027, 0.0025], random);
     Box::new(ClockDrift {
         channel,
         drift: strength * about(largest, random),
@@ -38,11 +27,8 @@ pub(super) fn draw(strength: f64, random: &mut Random) -> Box<dyn Effect> {
 
 impl Effect for ClockDrift {
     fn parameters(&self) -> Vec<(&'static str, f64, &'static str)> {
-        let name = match self.channel {
-            Channel::MotorTorque => "motor_torque_drift",
-            Channel::JointTorque => "joint_torque_drift",
-            Channel::Position => "position_drift",
-        };
+        let names = ["motor_torque_drift", "joint_torque_drift", "position_drift"];
+        let name = self.channel.of(names);
         vec![(name, self.drift, "s/s")]
     }
 
@@ -51,11 +37,7 @@ impl Effect for ClockDrift {
     }
 
     fn read(&mut self, _command: f64, reading: &mut Reading) {
-        let value = match self.channel {
-            Channel::MotorTorque => &mut reading.motor_torque,
-            Channel::JointTorque => &mut reading.joint_torque,
-            Channel::Position => &mut reading.position,
-        };
+        let value = self.channel.read(reading);
         self.read.push(*value);
         let place = (self.read.len() - 1) as f64 * (1.0 - self.drift);
         let before = place as usize;

@@ -12,6 +12,7 @@ mod asymmetric_coulomb;
 mod asymmetric_viscous;
 mod backlash;
 mod cable_spring;
+mod channel;
 mod channel_delay;
 mod clock_drift;
 mod current_saturation;
