@@ -31,8 +31,8 @@
 use crate::delay::{ENERGY_LIMIT, POSITION_LIMIT, Packet, VECTOR_LIMIT};
 use crate::operating::OperatingState;
 use crate::orientation::PackedOrientation;
+use crate::short_bytes::ShortBytes;
 use crate::{nanoseconds, seconds};
-use std::ops::Deref;
 
 /// Time between two frames, where none is left out \[ns\]: 500 Hz.
 pub const SEND_PERIOD_NS: i64 = 2_000_000;
@@ -100,19 +100,7 @@ pub struct LinkFrame {
 }
 
 /// A frame as bytes, of one of its three lengths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrameBytes {
-    bytes: [u8; POSE_LENGTH],
-    length: usize,
-}
-
-impl Deref for FrameBytes {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        &self.bytes[..self.length.min(POSE_LENGTH)]
-    }
-}
+pub type FrameBytes = ShortBytes<POSE_LENGTH>;
 
 /// The newest frame that the sender had received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -194,10 +182,7 @@ pub fn encode(frame: &LinkFrame) -> FrameBytes {
     bytes[14..18].copy_from_slice(&held.to_le_bytes());
     if frame.since_content > 0 {
         bytes[18] = frame.since_content;
-        return FrameBytes {
-            bytes,
-            length: KEEP_ALIVE_LENGTH,
-        };
+        return FrameBytes::new(bytes, KEEP_ALIVE_LENGTH);
     }
     let packet = &frame.packet;
     let numbers = packet
@@ -211,13 +196,11 @@ pub fn encode(frame: &LinkFrame) -> FrameBytes {
     if let Some(orientation) = frame.orientation {
         bytes[FRAME_LENGTH..].copy_from_slice(&orientation.to_bytes());
     }
-    FrameBytes {
-        bytes,
-        length: match frame.orientation {
-            Some(_) => POSE_LENGTH,
-            None => FRAME_LENGTH,
-        },
-    }
+    let length = match frame.orientation {
+        Some(_) => POSE_LENGTH,
+        None => FRAME_LENGTH,
+    };
+    FrameBytes::new(bytes, length)
 }
 
 /// Reads a frame received at `now_ns` \[ns since the UNIX epoch\] from a sender whose
@@ -249,9 +232,7 @@ pub fn decode(bytes: &[u8], now_ns: i64, ahead_ns: i64) -> Result<LinkFrame, Fra
         },
     };
     let there_ns = now_ns.saturating_add(ahead_ns);
-    // The time nearest to now that ends in these bits.
-    let ago = units(there_ns).wrapping_sub(u32::from_le_bytes(part(bytes, 6))) as i32;
-    let stamp_ns = before(there_ns, i64::from(ago));
+    let stamp_ns = nearest(u32::from_le_bytes(part(bytes, 6)), there_ns);
     // The newest time before now.
     let ago = units(now_ns).wrapping_sub(u32::from_le_bytes(part(bytes, 10)));
     let echo_ns = before(now_ns, i64::from(ago));
@@ -307,13 +288,19 @@ fn orientation(bytes: [u8; PackedOrientation::LENGTH]) -> Result<PackedOrientati
     })
 }
 
+/// The time nearest to `there_ns` whose low bits in the frame's unit are `low` \[ns\].
+pub(crate) fn nearest(low: u32, there_ns: i64) -> i64 {
+    let ago = units(there_ns).wrapping_sub(low) as i32;
+    before(there_ns, i64::from(ago))
+}
+
 /// So many of the frame's units before a time \[ns\].
 fn before(time_ns: i64, units: i64) -> i64 {
     (time_ns / TIME_UNIT * TIME_UNIT).saturating_sub(units * TIME_UNIT)
 }
 
 /// The low 32 bits of a time in the frame's unit.
-fn units(time_ns: i64) -> u32 {
+pub(crate) fn units(time_ns: i64) -> u32 {
     (time_ns / TIME_UNIT) as u32
 }
 

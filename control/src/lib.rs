@@ -19,7 +19,11 @@ pub mod orientation;
 pub mod planted;
 pub mod playout;
 pub mod servo;
+mod short_bytes;
 pub mod switching;
+pub mod view;
+
+pub use short_bytes::ShortBytes;
 
 /// Longest time that passes in one step of a loop \[s\]: one that was held up for longer does not
 /// compute on over what it has not seen (a simulated arm loses time).

@@ -3,7 +3,7 @@
 
 use std::{hint::black_box, time::Instant};
 
-use ferntast_seal::{PLAIN_LENGTH, PrivateKey, Received, Role, SecureEnd};
+use ferntast_seal::{Kind, PLAIN_LENGTH, PrivateKey, Received, Role, SecureEnd};
 
 const FRAMES: usize = 200_000;
 
@@ -46,15 +46,15 @@ fn main() {
         if let Some(message) = arm.message(now_ns) {
             operator.received(message.bytes(), now_ns);
         }
-        if let Some(sealed) = operator.seal(&plain(u32::MAX)) {
+        if let Some(sealed) = operator.seal(Kind::Frame, &plain(u32::MAX)) {
             arm.received(&sealed, now_ns);
         }
     }
     let shaken = shaken.elapsed().as_micros();
     let sealed = timed(|number| {
-        let sealed = operator.seal(&plain(number)).expect("keys");
+        let sealed = operator.seal(Kind::Frame, &plain(number)).expect("keys");
         let opened = arm.received(black_box(&sealed), now_ns);
-        assert!(matches!(opened, Received::Frame(_)));
+        assert!(matches!(opened, Received::Sealed(..)));
     });
     let forged = timed(|number| {
         let mut forged = [number as u8; 60];

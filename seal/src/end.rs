@@ -22,13 +22,13 @@ use rand_chacha::{
 };
 
 use crate::{
-    frame::{self, Keys, PlainFrame, SealedFrame},
+    frame::{Keys, Kind, PlainFrame, SealedFrame},
     handshake::Handshake,
     keys::{PrivateKey, PublicKey},
     refusal::{Refusal, RefusalCounts},
     wire::{
         ANSWER, CHALLENGE, Challenge, FRAME, HELLO, INITIATION, LONGEST_MESSAGE, Message, VERSION,
-        parts,
+        VIEW, parts,
     },
 };
 
@@ -80,8 +80,8 @@ pub struct Established {
 /// What came in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Received {
-    /// A frame of the peer, opened.
-    Frame(PlainFrame),
+    /// A frame or a view of the peer, opened.
+    Sealed(Kind, PlainFrame),
     /// A message of the handshake.
     Handshake,
     /// Nothing to act on.
@@ -202,9 +202,9 @@ impl SecureEnd {
         self.is_alone(now_ns, patience_ns) || self.keys.as_ref().is_none_or(Keys::is_worn)
     }
 
-    /// Seals a frame of one of the three lengths; `None` before the first handshake.
-    pub fn seal(&mut self, plain: &[u8]) -> Option<SealedFrame> {
-        self.keys.as_mut()?.seal(plain)
+    /// Seals one of that kind and of a length that it has; `None` before the first handshake.
+    pub fn seal(&mut self, kind: Kind, plain: &[u8]) -> Option<SealedFrame> {
+        self.keys.as_mut()?.seal(kind, plain)
     }
 
     /// Bytes came in at `now_ns`.
@@ -227,12 +227,8 @@ impl SecureEnd {
         }
         let arm = matches!(self.role, Role::Arm { .. });
         match (first & 0x0f, arm) {
-            (FRAME, _) => {
-                if !frame::is_length(found) {
-                    return Err(Refusal::Length { found });
-                }
-                return self.open(bytes, now_ns).map(Received::Frame);
-            }
+            (FRAME, _) => return self.sealed(Kind::Frame, bytes, now_ns),
+            (VIEW, false) => return self.sealed(Kind::View, bytes, now_ns),
             (HELLO, true) if found == 1 => self.challenge(),
             (HELLO, true) => return Err(Refusal::Length { found }),
             (CHALLENGE, false) => self.challenged(bytes, now_ns)?,
@@ -243,16 +239,25 @@ impl SecureEnd {
         Ok(Received::Handshake)
     }
 
-    fn open(&mut self, sealed: &[u8], now_ns: i64) -> Result<PlainFrame, Refusal> {
+    fn sealed(&mut self, kind: Kind, bytes: &[u8], now_ns: i64) -> Result<Received, Refusal> {
+        let found = bytes.len();
+        if !kind.has_length(found) {
+            return Err(Refusal::Length { found });
+        }
+        let plain = self.open(kind, bytes, now_ns)?;
+        Ok(Received::Sealed(kind, plain))
+    }
+
+    fn open(&mut self, kind: Kind, sealed: &[u8], now_ns: i64) -> Result<PlainFrame, Refusal> {
         let number = sealed.get(1).copied().unwrap_or_default();
         let mut opened = match &mut self.keys {
-            Some(keys) if keys.number == number => keys.open(sealed),
+            Some(keys) if keys.number == number => keys.open(kind, sealed),
             _ => Err(Refusal::UnknownKey),
         };
         let unread = matches!(opened, Err(Refusal::UnknownKey | Refusal::Forged));
         let fits = |own: &mut Proposed| unread && own.keys.number == number;
         if let Some(mut proposed) = self.proposed.take_if(fits) {
-            opened = proposed.keys.open(sealed);
+            opened = proposed.keys.open(kind, sealed);
             match opened {
                 Ok(_) => self.establish(proposed),
                 Err(_) => self.proposed = Some(proposed),

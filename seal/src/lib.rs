@@ -22,7 +22,8 @@ mod wire;
 
 pub use end::{Established, Received, Role, SecureEnd};
 pub use frame::{
-    FrameBytes, LONG_LENGTH, PLAIN_LENGTH, PlainFrame, SEALED_LENGTH, SHORT_LENGTH, SealedFrame,
+    FrameBytes, Kind, LONG_LENGTH, LONGEST_VIEW, PLAIN_LENGTH, PlainFrame, SEALED_LENGTH,
+    SHORT_LENGTH, SealedFrame,
 };
 pub use keys::{ExchangeKey, KEY_LENGTH, KeyError, PrivateKey, PublicKey};
 pub use refusal::{Refusal, RefusalCounts};

@@ -1,8 +1,9 @@
-//! What goes over the wire: four kinds of messages, told by their first byte.
+//! What goes over the wire: five kinds of messages, told by their first byte.
 //!
 //! | kind | content | bytes |
 //! |---|---|---:|
 //! | frame | see [`frame`](crate::frame) | 60; 68 with an orientation; 29 of a keep-alive |
+//! | view | what the arm's end shows of its arm, sealed as a frame is | up to 116 |
 //! | hello | kind: the operator's end asks for a challenge | 1 |
 //! | challenge | kind, 8 random bytes of the arm's end | 9 |
 //! | initiation | kind, the challenge, first message of Noise | 113 |
@@ -11,7 +12,7 @@
 //! Bits 4–7 of the first byte are the version of all that, bits 0–3 the kind.
 
 /// Version of the format.
-pub const VERSION: u8 = 4;
+pub const VERSION: u8 = 5;
 /// Longest message of a handshake \[bytes\].
 pub const LONGEST_MESSAGE: usize = 128;
 
@@ -20,6 +21,7 @@ pub(crate) const HELLO: u8 = 1;
 pub(crate) const CHALLENGE: u8 = 2;
 pub(crate) const INITIATION: u8 = 3;
 pub(crate) const ANSWER: u8 = 4;
+pub(crate) const VIEW: u8 = 5;
 
 /// The challenge that a handshake is for: what is played again is for another.
 pub(crate) type Challenge = [u8; 8];

@@ -23,7 +23,7 @@ const REASONS = [
   ["started", "It has just been started."],
   ["disable was asked for", "It was told to stop."],
   ["pause was asked for", "It was told to hold."],
-  ["told over the link", "Its host says so, and knows why."],
+  ["told over the link", "Its host says so, and not why yet."],
   ["commands fell silent", "No commands came: the hand, the link or this computer stood still."],
   ["measurements fell silent", "No measurements came: the arm's driver, or this computer, stood still."],
 ];
@@ -58,7 +58,7 @@ function crash(events, device, state) {
 function distance(snapshot, about, state) {
   const way = apart(about, snapshot);
   if (way === null && state === "FAULT") return "";
-  if (about.end === "operator") return "How far it is from the hand is not known here: it comes to the hand slowly.";
+  if (about.end === "operator" && !snapshot.tip) return "How far it is from the hand is not seen: it comes to the hand slowly.";
   if (about.end === "arm") return "It goes on when the operator, on the other host, arms it again.";
   if (way === null) return "The hand begins where the tip is.";
   if (way < TOGETHER) return "Hand and tip are together.";

@@ -1,6 +1,7 @@
 // The console: what is drawn when.
 
 import { byId, fill, make, toast } from "../common/dom.js";
+import { fixed } from "../common/numbers.js";
 import { onTheme } from "../common/theme.js";
 import { connect, on, operates, session } from "./connection.js";
 import * as gamepad from "./gamepad.js";
@@ -17,8 +18,12 @@ const TEXTS = 200;
 let drawn = { scene: 0, strips: 0, texts: 0 };
 let shown = null;
 
-/** The snapshot that has crossed the link by now: what the operator would see. */
+/** Whether the arm is seen over the link, late as it is. */
+const afar = () => session.about.end === "operator";
+
+/** The snapshot that has crossed the link by now: what the operator would see; null where that is what there is. */
 function delayed() {
+  if (afar()) return null;
   const way = session.now.link?.delay;
   if (!way) return null;
   const seen = session.now.t - way;
@@ -29,11 +34,12 @@ function delayed() {
 }
 
 function legend() {
+  byId("delayed").parentElement.hidden = afar();
   const key = (style, colour, text) => make("span", {}, make("i", { className: style, style: colour }), text);
   fill(byId("scene-legend"),
     key("disc", "background:var(--model)", "tip"), key("", "border-color:var(--measured)", "arm"),
     key("ring", "border-color:var(--hand)", "hand, its force and spring"), key("", "border-color:var(--force)", "contact force"),
-    key("ring dash", "border-color:var(--second)", "delayed image: the arm (dashed) as the operator sees it"));
+    afar() ? null : key("ring dash", "border-color:var(--second)", "delayed image: the arm (dashed) as the operator sees it"));
 }
 
 function frame(time) {
@@ -66,11 +72,20 @@ function frame(time) {
 
 let counted = 0;
 
+/** An arm of which nothing new came for this long is not seen any more [s]: no link's way is that long. */
+const LOST = 10;
+/** How late it may be seen without a word [s]. */
+const SOON = 0.15;
+
 /** What of the session is on another host, where its ends are apart. */
-const ELSEWHERE = {
-  operator: "The arm is on the other host: its picture is on the page there.",
-  arm: "The hand is on the other host.",
-};
+function elsewhere() {
+  const { q_age: age } = session.now;
+  if (session.about.end === "arm") return "The hand is on the other host.";
+  if (!afar()) return "";
+  if (age === null) return "The arm is on the other host: nothing is seen of it yet.";
+  if (age > LOST) return `The arm is on the other host: not seen for ${fixed(age, 0)} s.`;
+  return `The arm is on the other host, seen over the link${age < SOON ? "" : `, ${fixed(age, 1)} s late`}.`;
+}
 
 function hint() {
   const mine = operates();
@@ -78,11 +93,10 @@ function hint() {
   canvas.classList.toggle("hold", mine && !hand.wanted());
   canvas.classList.toggle("holding", Boolean(hand.wanted()));
   canvas.dataset.drawn = counted;
-  const elsewhere = ELSEWHERE[session.about?.end];
   const own = !mine ? "Take the controls to move the hand." : hand.wanted()
     ? "Release, or Space, lets the hand go." : gamepad.present() ? "Drag, arrow keys or the gamepad's trigger take the hand."
       : "Drag, or arrow keys, to take the hand.";
-  const text = session.about?.end === "arm" ? elsewhere : own + picture.hint() + (elsewhere ? ` ${elsewhere}` : "");
+  const text = session.about.end === "arm" ? elsewhere() : [own + picture.hint(), elsewhere()].join(" ").trim();
   if (byId("scene-hint").textContent !== text) byId("scene-hint").textContent = text;
 }
 
@@ -92,8 +106,8 @@ function refuse() {
 
 /** Starts the console. */
 export function start() {
-  legend();
   on("hello", () => {
+    legend();
     picture.build();
     panel.build();
     strips.build(byId("strips"));

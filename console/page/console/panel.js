@@ -179,7 +179,7 @@ export function slow(snapshot) {
     fill(byId("status"), ...(session.connected ? [
       chip(TONE[state], "arm", state), end === "arm" ? null : chip(TONE[leader], "master", leader),
       chip(link?.connected ? "good" : "bad", "link", link?.connected ? "up" : "down"),
-      end === "operator" ? null : chip(contact?.on ? "warn" : "", "contact", contact ? contact.on ? contact.edge : "free" : "?"),
+      end === "operator" && !contact ? null : chip(contact?.on ? "warn" : "", "contact", contact ? contact.on ? contact.edge : "free" : "?"),
       end === "arm" ? null : chip("", "hand", holder(snapshot)),
       recorder.on ? chip("bad", "rec", "on") : null,
     ] : [chip("bad", "page", "no connection")]));

@@ -129,6 +129,8 @@ pub struct Snapshot {
     pub t: f64,
     /// Joint positions; `None` before the first message.
     pub q: Option<Vec<f32>>,
+    /// How long ago the joints were there \[s\].
+    pub q_age: Option<f32>,
     /// Joint torques \[Nm\].
     pub tau: Vec<f32>,
     /// The tip, follower base frame.

@@ -27,7 +27,7 @@ use axum::{
 };
 
 pub use hand::{GripModel, HandMapping, PageHand};
-pub use ports::{SessionPorts, page_of};
+pub use ports::{ArmTopics, SessionPorts, page_of};
 pub use shared_session::SharedSession;
 
 use crate::connections::Connection;

@@ -31,6 +31,8 @@ const NODES_NANOS: i64 = 500_000_000;
 const NODE_LIFE: f64 = 1.0;
 /// Operating states are told every 0.1 s; one that was not for this long is not known \[s\].
 const STATE_LIFE: f64 = 1.0;
+/// A contact of which nothing was heard for this long is not known \[s\].
+const CONTACT_LIFE: f64 = 1.0;
 /// A hand that was not measured for this long is not there \[s\].
 const HAND_LIFE: f64 = 0.1;
 /// Hands of pages are told from others by these bits of their source.
@@ -41,10 +43,27 @@ pub fn page_of(source: u64) -> Option<u64> {
     (source & 0xFFFF_FFFF_0000_0000 == PAGE_SOURCE).then_some(source & 0xFFFF_FFFF)
 }
 
+/// The topics that tell of the arm: those of its nodes, or what is heard of it over the link.
+#[derive(Clone, Copy, Debug)]
+pub struct ArmTopics {
+    /// Its joints.
+    pub joints: topics::Topic<JointSample>,
+    /// Its tip.
+    pub tip: topics::Topic<PoseSample>,
+    /// The contact force on the tip.
+    pub force: topics::Topic<WrenchSample>,
+    /// The contact.
+    pub contact: topics::Topic<ContactStateSample>,
+    /// Its operating state.
+    pub state: topics::Topic<OperatingStateSample>,
+}
+
 /// The newest message of a topic.
 struct Newest<M: Message> {
     subscriber: Subscriber<M>,
     last: Option<M>,
+    /// When it was taken.
+    taken: Time,
 }
 
 impl<M: Message> Newest<M> {
@@ -52,14 +71,22 @@ impl<M: Message> Newest<M> {
         Ok(Newest {
             subscriber: bus.subscriber(topic, Depth::Newest)?,
             last: None,
+            taken: Time::INVALID,
         })
     }
 
     fn take(&mut self, now: Time) -> Option<M> {
         if let Some(received) = self.subscriber.newest(now) {
             self.last = Some(received.message);
+            self.taken = now;
         }
         self.last
+    }
+
+    /// The same, unless nothing came for `life` \[s\].
+    fn living(&mut self, now: Time, life: f64) -> Option<M> {
+        self.take(now)
+            .filter(|_| now.seconds_since(self.taken) < life)
     }
 }
 
@@ -100,8 +127,7 @@ pub struct SessionPorts {
 }
 
 impl SessionPorts {
-    /// Opens the topics on `bus`, of an arm of those joints, whose state is told on `arm_state`.
-    /// `teller` is whose status on `/diagnostics` says what happens.
+    /// Opens the topics on `bus`, of an arm of those joints, of which `arm` tells. `teller` is whose status on `/diagnostics` says what happens.
     ///
     /// # Errors
     ///
@@ -109,7 +135,7 @@ impl SessionPorts {
     pub fn connect(
         bus: &Bus,
         joints: &JointNames,
-        arm_state: topics::Topic<OperatingStateSample>,
+        arm: ArmTopics,
         shared: Arc<SharedSession>,
         hand: PageHand,
         mapping: HandMapping,
@@ -120,11 +146,11 @@ impl SessionPorts {
             hand,
             held: None,
             mapping,
-            joints: Newest::open(bus, topics::FOLLOWER_MEASURED_JS)?,
-            tip: Newest::open(bus, topics::FOLLOWER_MEASURED_CP)?,
+            joints: Newest::open(bus, arm.joints)?,
+            tip: Newest::open(bus, arm.tip)?,
             wanted: Newest::open(bus, topics::FOLLOWER_SERVO_CP)?,
-            force: Newest::open(bus, topics::FOLLOWER_MEASURED_CF)?,
-            contact: Newest::open(bus, topics::FOLLOWER_CONTACT_STATE)?,
+            force: Newest::open(bus, arm.force)?,
+            contact: Newest::open(bus, arm.contact)?,
             leader: Newest::open(bus, topics::LEADER_SETPOINT_CP)?,
             any_hand: Newest::open(bus, topics::LEADER_MEASURED_CP)?,
             hand_force: Newest::open(bus, topics::LEADER_SERVO_CF)?,
@@ -133,7 +159,7 @@ impl SessionPorts {
                 Newest::open(bus, topics::LINK_FOLLOWER_STATUS)?,
             ],
             states: [
-                ("follower", Newest::open(bus, arm_state)?),
+                ("follower", Newest::open(bus, arm.state)?),
                 ("leader", Newest::open(bus, topics::LEADER_OPERATING_STATE)?),
             ],
             authority: Newest::open(bus, topics::LEADER_AUTHORITY)?,
@@ -315,6 +341,7 @@ impl SessionPorts {
             r#type: "snapshot",
             t: now.seconds_since(began),
             q: joints.map(|joints| of_each(&joints, joints.position::<MAX_JOINTS>())),
+            q_age: joints.map(|joints| now.seconds_since(joints.stamp) as f32),
             tau: joints.map_or_else(Vec::new, |joints| {
                 of_each(&joints, joints.effort::<MAX_JOINTS>())
             }),
@@ -324,7 +351,7 @@ impl SessionPorts {
                 .force
                 .take(now)
                 .map_or([0.0; 3], |wrench| short(wrench.force)),
-            contact: self.contact.take(now).map(contact),
+            contact: self.contact.living(now, CONTACT_LIFE).map(contact),
             hand: self.held.or_else(|| self.other_hand(now)).map(short),
             begin: short(self.begin(now)),
             hand_force: self.hand_force.take(now).map(|wrench| short(wrench.force)),

@@ -163,6 +163,11 @@ impl End {
         taken
     }
 
+    /// How far the other end's clock is ahead at `now_ns`, as far as it is known \[ns\].
+    pub fn clock_ahead_ns(&self, now_ns: i64) -> i64 {
+        self.meter.clock_ahead_ns(now_ns)
+    }
+
     /// What the other end said last of arming.
     pub fn heard_arming(&self) -> Option<u8> {
         self.heard_arming

@@ -9,6 +9,7 @@ use crate::frame::FrameBytes;
 use crate::operating::OperatingState;
 use crate::orientation::Orientation;
 use crate::switching::{Laws, LeaderSwitch};
+use crate::view::{SentView, ViewError, ViewReceiver};
 
 /// What a step of the operator's end takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +40,7 @@ pub struct LeaderLink {
     arming: ArmingCount,
     /// How often the arm has stopped, as its end counts.
     stops: Option<u8>,
+    views: ViewReceiver,
 }
 
 impl LeaderLink {
@@ -51,6 +53,7 @@ impl LeaderLink {
             velocity: VelocityFilter::default(),
             arming: ArmingCount::default(),
             stops: None,
+            views: ViewReceiver::default(),
         }
     }
 
@@ -67,6 +70,7 @@ impl LeaderLink {
     pub fn peer_changed(&mut self, now_ns: i64, clock_ahead_ns: i64) {
         self.end.restart(now_ns, clock_ahead_ns);
         self.stops = None;
+        self.views.restart();
     }
 
     /// The operator wishes to re-arm: says so in every frame from now on.
@@ -82,6 +86,20 @@ impl LeaderLink {
     /// Bytes arrived at `arrived_ns`, to be acted on in the next step at the earliest.
     pub fn arrived(&mut self, bytes: &[u8], arrived_ns: i64) {
         self.end.arrived(bytes, arrived_ns);
+    }
+
+    /// A view of the arm's end arrived at `arrived_ns`; `None` where a newer one was there before.
+    ///
+    /// # Errors
+    ///
+    /// [`ViewError`].
+    pub fn view_arrived(
+        &mut self,
+        bytes: &[u8],
+        arrived_ns: i64,
+    ) -> Result<Option<SentView>, ViewError> {
+        let ahead_ns = self.end.clock_ahead_ns(arrived_ns);
+        self.views.arrived(bytes, arrived_ns, ahead_ns)
     }
 
     /// One step at `now_ns`.

@@ -10,6 +10,8 @@
 //! holds the keys tells the end when another process is at the other one
 //! ([`LeaderLink::peer_changed`], [`FollowerLink::peer_changed`]).
 //!
+//! Beside its frames the arm's end may show its arm ([`crate::view`]), for people.
+//!
 //! An end may leave out frames that say nothing new ([`crate::codec`]), and each understands one
 //! that does.
 //!

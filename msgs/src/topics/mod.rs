@@ -135,6 +135,15 @@ topics! {
     LINK_PEER: Topic<LinkPeerSample> = "/link/peer", State, from(link_leader), Never;
     /// CRTK state of the arm's servo, as the arm's end said it over the link.
     LINK_ARM_STATE: Topic<OperatingStateSample> = "/link/arm_state", State, from(link_leader), Never;
+    /// Joint positions of the arm, as the arm's end shows them over the link where the ends are on
+    /// two hosts; by this host's clock, as far as it knows the other's \[rad\].
+    LINK_ARM_MEASURED_JS: Topic<JointSample> = "/link/arm_measured_js", Stream, from(link_leader), Never;
+    /// The same of the tip's position.
+    LINK_ARM_MEASURED_CP: Topic<PoseSample> = "/link/arm_measured_cp", Stream, from(link_leader), Never;
+    /// The same of the contact force on the tip, base frame \[N\].
+    LINK_ARM_MEASURED_CF: Topic<WrenchSample> = "/link/arm_measured_cf", Stream, from(link_leader), Never;
+    /// The same of the contact, without the friction coefficient.
+    LINK_ARM_CONTACT_STATE: Topic<ContactStateSample> = "/link/arm_contact_state", Stream, from(link_leader), Never;
     /// Whom the arm's end talks to, and that one's clock.
     LINK_FOLLOWER_PEER: Topic<LinkPeerSample> = "/link/follower_peer", State, from(link_follower), Never;
     /// Command to the link: another delay law.

@@ -12,7 +12,7 @@ use ferntast_config::Believed;
 use ferntast_console::{
     Listen, Server,
     server::Content,
-    session::{GripModel, HandMapping, PageHand, SessionPorts, SharedSession},
+    session::{ArmTopics, GripModel, HandMapping, PageHand, SessionPorts, SharedSession},
 };
 use ferntast_emulation::hand::{HandImpedance, ImpedanceParameters};
 use ferntast_msgs::{
@@ -52,6 +52,27 @@ impl GripModel for Grip {
     }
 }
 
+/// What tells of the arm on a host that runs `here`.
+fn arm_topics(here: Option<End>) -> ArmTopics {
+    let state = End::arm_state(here);
+    match End::Arm.is_at(here) {
+        true => ArmTopics {
+            joints: topics::FOLLOWER_MEASURED_JS,
+            tip: topics::FOLLOWER_MEASURED_CP,
+            force: topics::FOLLOWER_MEASURED_CF,
+            contact: topics::FOLLOWER_CONTACT_STATE,
+            state,
+        },
+        false => ArmTopics {
+            joints: topics::LINK_ARM_MEASURED_JS,
+            tip: topics::LINK_ARM_MEASURED_CP,
+            force: topics::LINK_ARM_MEASURED_CF,
+            contact: topics::LINK_ARM_CONTACT_STATE,
+            state,
+        },
+    }
+}
+
 /// Runs the console until it is told to stop.
 ///
 /// # Errors
@@ -78,7 +99,7 @@ pub fn run(process: &ProcessContext) -> Result<(), NodeError> {
     let mut ports = SessionPorts::connect(
         &process.bus,
         &process.session.joints(),
-        End::arm_state(process.session.end),
+        arm_topics(process.session.end),
         shared.clone(),
         hand,
         mapping,

@@ -1,12 +1,16 @@
 //! The arm's end of the link.
 
-use ferntast_control::link::{ESTIMATE_LIFE, FollowerLink, FollowerReadings, Word};
+use ferntast_control::{
+    link::{ESTIMATE_LIFE, FollowerLink, FollowerReadings, Word},
+    view::{ArmView, ContactView, Reason, ViewSender},
+};
+use ferntast_model::Joints;
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        ContactStateSample, Fault, Frame, Level, LinkCommandSample, LinkEnd, LinkPeerSample,
-        LinkStatusSample, OperatingStateSample, PoseSample, StateCommand, StateCommandSample,
-        WrenchSample,
+        ContactStateSample, Fault, Frame, JointSample, Level, LinkCommandSample, LinkEnd,
+        LinkPeerSample, LinkStatusSample, OperatingStateSample, PoseSample, StateCommand,
+        StateCommandSample, WrenchSample,
     },
 };
 
@@ -23,6 +27,7 @@ ports! {
     FollowerLinkPorts for FollowerLinkNode;
     /// What the follower end takes.
     input FollowerLinkInput {
+        measured_js: Newest<JointSample> = FOLLOWER_MEASURED_JS,
         measured_cp: Newest<PoseSample> = FOLLOWER_MEASURED_CP,
         measured_cf: Newest<WrenchSample> = FOLLOWER_MEASURED_CF,
         contact_state: Newest<ContactStateSample> = FOLLOWER_CONTACT_STATE,
@@ -48,7 +53,12 @@ pub struct FollowerLinkNode {
     peers: PeerWatch,
     /// Steps in which it is still told that a word was outdated.
     outdated: u32,
+    /// Shows the arm to the other end.
+    view: Option<ViewSender>,
 }
+
+/// An arm that was not measured for this long is not shown \[s\].
+const VIEW_LIFE: f64 = 0.1;
 
 impl FollowerLinkNode {
     /// The end `link` of the session of that number.
@@ -58,6 +68,15 @@ impl FollowerLinkNode {
             status: Status::new(LinkEnd::FOLLOWER, session),
             peers: PeerWatch::default(),
             outdated: 0,
+            view: None,
+        }
+    }
+
+    /// The same, which shows its arm to the other end, as people on another host do not see it.
+    pub fn showing(self) -> FollowerLinkNode {
+        FollowerLinkNode {
+            view: Some(ViewSender::default()),
+            ..self
         }
     }
 }
@@ -87,6 +106,31 @@ fn contact_force(now: Time, input: &FollowerLinkInput) -> Option<[f64; 3]> {
         > ESTIMATE_LIFE;
     let valid = !old && state.valid == 1;
     FollowerReadings::force_of(valid, state.touches == 1, wrench.force)
+}
+
+/// The arm as the other end sees it; `None` where it is not measured.
+fn view(now: Time, input: &FollowerLinkInput) -> Option<ArmView> {
+    let (joints, tip) = (&input.measured_js, &input.measured_cp);
+    if joints.silence(now).max(tip.silence(now)) > VIEW_LIFE {
+        return None;
+    }
+    let joints = joints.message.as_ref()?;
+    let places = joints.position.map(|own| own as f32);
+    let contact = input.contact_state.message.map(|own| ContactView {
+        in_contact: own.in_contact == 1,
+        touches: own.touches == 1,
+        valid: own.valid == 1,
+        near_rest: own.near_rest == 1,
+        edge: own.edge.0,
+        forces: [own.normal_force as f32, own.tangential_force as f32],
+    });
+    let force = input.measured_cf.message.map(|own| own.force);
+    Some(ArmView {
+        joints: Joints::from_slice(places.get(..joints.joints.len())?).ok()?,
+        tip: tip.message?.position.map(|own| own as f32),
+        force: force.unwrap_or_default().map(|own| own as f32),
+        contact: contact.unwrap_or_default(),
+    })
 }
 
 impl Node for FollowerLinkNode {
@@ -125,6 +169,11 @@ impl Node for FollowerLinkNode {
             }
         });
         output.frame.frame = step.frame;
+        output.frame.view = self.view.as_mut().and_then(|own| {
+            let said = input.operating_state.message;
+            let reason = said.map(|own| Reason::new(readings.state, own.reason.as_str()));
+            own.step(now.nanos(), reason, || view(now, input))
+        });
         let state = self.link.state(now.nanos());
         output.status = self.status.step(now, &state, &input.frames);
         output.peer = self.status.peer(now, &state, peer);

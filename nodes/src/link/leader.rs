@@ -2,15 +2,17 @@
 
 use ferntast_control::{
     link::{LeaderLink, LeaderReadings},
+    operating,
     orientation::Orientation,
     switching,
+    view::{ArmView, Reason, View},
 };
 use ferntast_msgs::{
     Text, Time,
     sample::{
-        Fault, Frame, LawCommandSample, Level, LinkCommandSample, LinkEnd, LinkPeerSample,
-        LinkStatusSample, OperatingState, OperatingStateSample, PoseSample, StateCommand,
-        StateCommandSample, WrenchSample,
+        ContactStateSample, Edge, Fault, Frame, JointNames, JointSample, LawCommandSample, Level,
+        LinkCommandSample, LinkEnd, LinkPeerSample, LinkStatusSample, OperatingState,
+        OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
     },
 };
 
@@ -20,7 +22,7 @@ use super::{
     status::{PeerWatch, Status},
     transport::LinkNode,
 };
-use crate::node::{Node, ports};
+use crate::node::{Node, NodeHealth, ports};
 
 ports! {
     /// The leader end's topics.
@@ -41,6 +43,10 @@ ports! {
         status: LinkStatusSample = LINK_STATUS,
         peer: LinkPeerSample = LINK_PEER,
         arm_state: OperatingStateSample = LINK_ARM_STATE,
+        arm_js: JointSample = LINK_ARM_MEASURED_JS,
+        arm_cp: PoseSample = LINK_ARM_MEASURED_CP,
+        arm_cf: WrenchSample = LINK_ARM_MEASURED_CF,
+        arm_contact: ContactStateSample = LINK_ARM_CONTACT_STATE,
     }
     extra { frame: FrameOutput, }
 }
@@ -50,24 +56,97 @@ pub struct LeaderLinkNode {
     link: LeaderLink,
     /// The arm can turn its tool.
     turns: bool,
+    /// Of the arm, as they are called here.
+    joints: JointNames,
     status: Status,
     /// A law that was asked for and is not there.
     unknown_law: Option<Text<24>>,
     peers: PeerWatch,
+    /// Why the arm is in its state, as was told last.
+    reason: Option<Reason>,
 }
 
 impl LeaderLinkNode {
-    /// The end `link` of the session of that number. To an arm that `turns` its tool, the hand's
-    /// orientation is sent, too.
-    pub fn new(link: LeaderLink, session: u16, turns: bool) -> LeaderLinkNode {
+    /// The end `link` of the session of that number, of an arm of those `joints`. To one that
+    /// `turns` its tool, the hand's orientation is sent, too.
+    pub fn new(link: LeaderLink, session: u16, joints: JointNames, turns: bool) -> LeaderLinkNode {
         LeaderLinkNode {
             link,
             turns,
+            joints,
             status: Status::new(LinkEnd::LEADER, session),
             unknown_law: None,
             peers: PeerWatch::default(),
+            reason: None,
         }
     }
+
+    /// What the arm's end shows of its arm, and when it was so; `None` where nothing newer came.
+    fn look(&mut self, frames: &FrameInput, health: &mut NodeHealth) -> Option<(Time, ArmView)> {
+        let (bytes, arrived) = frames.view()?;
+        let mut wrong = |message| {
+            health.raise(Fault::MeasurementInvalid, Level::WARN);
+            health.message = message;
+        };
+        let sent = match self.link.view_arrived(bytes, arrived.nanos()) {
+            Ok(sent) => sent?,
+            Err(error) => {
+                wrong(Text::display(error));
+                return None;
+            }
+        };
+        let view = match sent.view {
+            View::Arm(view) => view,
+            View::Reason(reason) => {
+                self.reason = Some(reason);
+                return None;
+            }
+        };
+        let (there, here) = (view.joints.len(), self.joints.len());
+        if there != here {
+            wrong(Text::display(format_args!(
+                "the arm there has {there} joints, here {here}: --arm differs"
+            )));
+            return None;
+        }
+        Some((Time::from_nanos(sent.sent_ns), view))
+    }
+
+    /// The arm's state as its end says it, with why it is in it, where that was told.
+    fn arm_state(&self, now: Time, state: operating::OperatingState) -> OperatingStateSample {
+        let why = self.reason.as_ref().filter(|own| own.state == state);
+        let why = why.map_or("told over the link", Reason::text);
+        OperatingStateSample::new(now, OperatingState(state.code()), why)
+    }
+}
+
+/// Puts what was shown of the arm at `stamp` into messages.
+fn tell(stamp: Time, view: &ArmView, joints: JointNames, output: &mut LeaderLinkOutput) {
+    let positions = view.joints.map(|own| f64::from(*own)).into_places(0.0);
+    output.arm_js = Some(JointSample::empty(joints, stamp).with_position(positions));
+    let place = view.tip.map(f64::from);
+    output.arm_cp = Some(PoseSample {
+        orientation: [0.0; 4],
+        ..PoseSample::at(stamp, Frame::FOLLOWER_BASE, place)
+    });
+    let force = view.force.map(f64::from);
+    output.arm_cf = Some(WrenchSample::force(stamp, Frame::FOLLOWER_BASE, force));
+    let contact = &view.contact;
+    // A code of a newer program.
+    let edge = Some(Edge(contact.edge)).filter(|own| own.name().is_some());
+    let [normal_force, tangential_force] = contact.forces.map(f64::from);
+    output.arm_contact = Some(ContactStateSample {
+        in_contact: u8::from(contact.in_contact),
+        touches: u8::from(contact.touches),
+        valid: u8::from(contact.valid),
+        near_rest: u8::from(contact.near_rest),
+        edge: edge.unwrap_or(Edge::NONE),
+        normal_force,
+        tangential_force,
+        friction_coefficient: f64::NAN,
+        friction_coefficient_error: f64::INFINITY,
+        ..ContactStateSample::initial(stamp)
+    });
 }
 
 impl LinkNode for LeaderLinkNode {
@@ -102,6 +181,7 @@ impl Node for LeaderLinkNode {
         let peer = &input.frames.peer;
         if let Some(other) = self.peers.changed(peer) {
             self.link.peer_changed(now.nanos(), other.clock_offset_ns);
+            self.reason = None;
         }
         for (bytes, arrived) in input.frames.iter() {
             self.link.arrived(bytes, arrived.nanos());
@@ -114,6 +194,9 @@ impl Node for LeaderLinkNode {
                 .and_then(|own| Orientation::given(own.orientation)),
             state: operating_state(now, &input.operating_state),
         };
+        if let Some((stamp, view)) = self.look(&input.frames, &mut output.health) {
+            tell(stamp, &view, self.joints, output);
+        }
         let step = self.link.step(now.nanos(), &readings);
         // With the pose of this step the master published the force from there on.
         let rendered = input.servo_cf.message.map(|wrench| wrench.force);
@@ -125,8 +208,7 @@ impl Node for LeaderLinkNode {
         output.peer = self.status.peer(now, &state, peer);
         // Told as often, once there is somebody.
         let told = output.peer.filter(|own| own.handshakes > 0);
-        let arm = OperatingState(state.peer.code());
-        output.arm_state = told.map(|_| OperatingStateSample::new(now, arm, "told over the link"));
+        output.arm_state = told.map(|_| self.arm_state(now, state.peer));
         if let Some(law) = &self.unknown_law {
             output.health.raise(Fault::CommandInvalid, Level::WARN);
             output.health.message = Text::display(format_args!(

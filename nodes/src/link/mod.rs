@@ -2,7 +2,8 @@
 //!
 //! Motion goes forward, force comes back, in frames of 60 bytes at 500 Hz or fewer, sealed
 //! ([`ferntast_seal`]); of 68 bytes where a hand's orientation goes along. What an end does is in [`ferntast_control::link`]; here are its
-//! topics. Frames come in through the channel emulator ([`transport`]), whose way
+//! topics. Where the ends are on two hosts, the arm's end shows its arm beside them
+//! ([`ferntast_control::view`]). Frames come in through the channel emulator ([`transport`]), whose way
 //! out is the moment of arrival.
 
 mod follower;
@@ -16,7 +17,11 @@ pub mod transport;
 use ferntast_bus::frames::LinkDirection;
 use ferntast_control::link::{FollowerLink, LeaderLink};
 
-use crate::{graph::Build, node::Ticking, process::NodeError};
+use crate::{
+    graph::Build,
+    node::Ticking,
+    process::{End, NodeError},
+};
 
 pub use follower::{FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FollowerLinkPorts};
 pub use leader::{LeaderLinkInput, LeaderLinkNode, LeaderLinkOutput, LeaderLinkPorts};
@@ -38,14 +43,12 @@ pub fn make_leader(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
     let session = session_number(&build.session.session);
     let link = &loaded.scenario.link;
     let end = LeaderLink::new(loaded.laws(), link.buffer).coded(link.codec.of(link.deadband));
-    let node = LeaderLinkNode::new(end, session, loaded.arm.model.turns_tool());
+    let joints = build.session.joints();
+    let node = LeaderLinkNode::new(end, session, joints, loaded.arm.model.turns_tool());
     let wire = (build.open_link)(LinkDirection::Forward)?;
     let seed = loaded.scenario.seed.wrapping_add(2);
     let transport = LinkTransport::new(wire, loaded.link.down.clone(), seed)?;
-    let ports = LinkPorts::new(
-        LeaderLinkPorts::connect(build.bus, &build.session.joints())?,
-        transport,
-    );
+    let ports = LinkPorts::new(LeaderLinkPorts::connect(build.bus, &joints)?, transport);
     build.join(node, ports)
 }
 
@@ -63,6 +66,11 @@ pub fn make_follower(build: Build) -> Result<Box<dyn Ticking>, NodeError> {
         .bridging(link.rearm_after_gap)
         .planted(build.session.planted);
     let node = FollowerLinkNode::new(end, session);
+    let node = match build.session.end {
+        // Who has the hand is on another host.
+        Some(End::Arm) => node.showing(),
+        Some(End::Operator) | None => node,
+    };
     let wire = (build.open_link)(LinkDirection::Back)?;
     let seed = loaded.scenario.seed.wrapping_add(1);
     let transport = LinkTransport::new(wire, loaded.link.up.clone(), seed)?;

@@ -11,10 +11,13 @@ use ferntast_control::{
 use ferntast_emulation::hand::{Hand, ScriptedHand, ScriptedHandConfig};
 use ferntast_msgs::{
     Time,
-    sample::{Frame, LinkEnd, PoseSample, StateCommand, StateCommandSample},
+    sample::{
+        self as own, ContactStateSample, Edge, Frame, JointNames, JointSample, LinkEnd,
+        OperatingStateSample, PoseSample, StateCommand, StateCommandSample, WrenchSample,
+    },
 };
 
-use ferntast_seal::Refusal;
+use ferntast_seal::{Established, PrivateKey, Refusal};
 
 use super::{
     FollowerLinkInput, FollowerLinkNode, FollowerLinkOutput, FrameInput, LeaderLinkInput,
@@ -61,6 +64,102 @@ fn the_status_says_every_10_ms_what_was_refused() {
 
 const START: i64 = 1_700_000_000_000_000_000;
 
+fn established(clock_offset_ns: i64) -> Established {
+    Established {
+        incarnation: 1,
+        peer: PrivateKey::from_random([1; 32]).public(),
+        clock_offset_ns,
+    }
+}
+
+fn joints() -> JointNames {
+    JointNames::new(["shoulder", "elbow"]).expect("valid")
+}
+
+/// An arm's end that shows its arm, and an operator's whose clock is 3 s behind.
+#[test]
+fn the_arm_is_shown_at_the_operator_s_end_with_when_it_was_so_by_the_clock_there() {
+    let laws = || Laws::new(Law::default());
+    let mut arm = FollowerLinkNode::new(FollowerLink::new(laws(), 0.0), 7).showing();
+    let mut operator = LeaderLinkNode::new(LeaderLink::new(laws(), 0.0), 7, joints(), false);
+    let one = JointNames::new(["alone"]).expect("valid");
+    let mut wrong = LeaderLinkNode::new(LeaderLink::new(laws(), 0.0), 7, one, false);
+    let ahead = 3_000_000_000;
+    let there = |tick: i64| Time::from_nanos(START + ahead + tick * 1_000_000);
+    let mut shown = Vec::new();
+    for tick in 0..200 {
+        let now = there(tick);
+        let measured = JointSample::zero(joints(), now).with_position([0.1, -0.001 * tick as f64]);
+        let contact = ContactStateSample {
+            in_contact: 1,
+            touches: 1,
+            valid: 1,
+            edge: Edge::UNLUBRICATED,
+            normal_force: 8.0,
+            ..ContactStateSample::initial(now)
+        };
+        let why = "commands fell silent";
+        let paused = OperatingStateSample::new(now, own::OperatingState::PAUSED, why);
+        let input = FollowerLinkInput {
+            // Nothing is measured in the first tenth of a second.
+            measured_js: newest(now, (tick >= 100).then_some(measured)),
+            measured_cp: newest(
+                now,
+                Some(PoseSample::at(now, Frame::FOLLOWER_BASE, [0.3, 0.2, 0.0])),
+            ),
+            measured_cf: newest(
+                now,
+                Some(WrenchSample::force(
+                    now,
+                    Frame::FOLLOWER_BASE,
+                    [0.0, -8.0, 0.0],
+                )),
+            ),
+            contact_state: newest(now, Some(contact)),
+            operating_state: newest(now, Some(paused)),
+            ..FollowerLinkInput::default()
+        };
+        let mut sent = FollowerLinkOutput::default();
+        arm.step(now, &input, &mut sent);
+        let here = Time::from_nanos(START + tick * 1_000_000 + 500_000);
+        let mut seen = LeaderLinkInput::default();
+        let frames = sent.frame.frame.iter().map(|frame| &**frame);
+        seen.frames = FrameInput::of(frames, here);
+        seen.frames.peer.established = Some(established(ahead));
+        if let Some(view) = sent.frame.view {
+            seen.frames.see(&view, here);
+        }
+        let mut told = LeaderLinkOutput::default();
+        operator.step(here, &seen, &mut told);
+        if let Some(state) = told.arm_state.filter(|_| tick > 0) {
+            let told = (state.state, state.reason.as_str());
+            assert_eq!(told, (own::OperatingState::PAUSED, why));
+        }
+        let shows = told.arm_js.is_some();
+        if let Some(js) = told.arm_js {
+            let tick = (js.stamp.nanos() - START) as f64 / 1e6;
+            assert!((js.position[1] + 0.001 * tick).abs() < 1e-6, "{js:?}");
+            assert_eq!(js.joints, joints());
+            let (cp, cf) = (told.arm_cp.expect("with it"), told.arm_cf.expect("with it"));
+            assert!((cp.position[0] - 0.3).abs() < 1e-6 && cf.force == [0.0, -8.0, 0.0]);
+            let contact = told.arm_contact.expect("with it");
+            let told = (contact.in_contact, contact.edge, contact.normal_force);
+            assert_eq!(told, (1, Edge::UNLUBRICATED, 8.0));
+            shown.push(js);
+        }
+        let mut told = LeaderLinkOutput::default();
+        wrong.step(here, &seen, &mut told);
+        let words = told.health.message.as_str().contains("--arm differs");
+        assert!(
+            told.arm_js.is_none() && words == shows,
+            "{}",
+            told.health.message.as_str()
+        );
+    }
+    // At 120 and at 160 ms; before, views said why.
+    assert_eq!(shown.len(), 2);
+}
+
 fn newest<M>(now: Time, message: Option<M>) -> Newest<M> {
     Newest {
         message,
@@ -96,7 +195,7 @@ impl Operator {
         into_master.state_command.push(enable);
         Operator {
             master: MasterNode::new(&config, hand).expect("valid"),
-            leader: LeaderLinkNode::new(LeaderLink::new(laws(), 0.0), 7, false),
+            leader: LeaderLinkNode::new(LeaderLink::new(laws(), 0.0), 7, joints(), false),
             arm: FollowerLink::new(laws(), 0.0),
             into_master,
             into_leader: LeaderLinkInput::default(),

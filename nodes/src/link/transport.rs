@@ -7,9 +7,9 @@ use ferntast_bus::{
     SubscriberCounts,
     frames::{Door, FrameReceiver, FrameSender, MAX_FRAME, Reason},
 };
-use ferntast_control::frame::{
-    FRAME_LENGTH, FrameBytes, KEEP_ALIVE_LENGTH, LONGEST_WIRE_LENGTH, POSE_LENGTH, SEAL_LENGTH,
-    WIRE_LENGTH,
+use ferntast_control::{
+    frame::{FRAME_LENGTH, FrameBytes, KEEP_ALIVE_LENGTH, POSE_LENGTH, SEAL_LENGTH, WIRE_LENGTH},
+    view::{LONGEST_VIEW, ViewBytes},
 };
 use ferntast_emulation::channel::{Channel, ChannelConfig};
 use ferntast_model::ParameterError;
@@ -19,7 +19,7 @@ use ferntast_msgs::{
     topics::{JointNameError, TopicName},
 };
 use ferntast_seal::{
-    Established, LONG_LENGTH, PLAIN_LENGTH, PlainFrame, Received, Refusal, RefusalCounts,
+    Established, Kind, LONG_LENGTH, PLAIN_LENGTH, PlainFrame, Received, Refusal, RefusalCounts,
     SEALED_LENGTH, SHORT_LENGTH, SecureEnd,
 };
 
@@ -31,6 +31,10 @@ const BATCH: usize = 256;
 
 const _: () = assert!(FRAME_LENGTH == PLAIN_LENGTH && WIRE_LENGTH == SEALED_LENGTH);
 const _: () = assert!(KEEP_ALIVE_LENGTH == SHORT_LENGTH && POSE_LENGTH == LONG_LENGTH);
+const _: () = assert!(LONGEST_VIEW <= ferntast_seal::LONGEST_VIEW && POSE_LENGTH <= LONGEST_VIEW);
+
+/// What the emulated channel carries at most: the longest view, as long as it was sealed \[bytes\].
+const LONGEST_ON_THE_WAY: usize = LONGEST_VIEW + SEAL_LENGTH;
 
 /// One end of the link, open.
 pub struct LinkWire {
@@ -70,19 +74,43 @@ pub struct Emulated {
     pub loss: f64,
 }
 
-/// A frame, opened, and when it arrived.
+/// A frame or view of `MOST` bytes at most, opened, and when it arrived.
 #[derive(Clone, Copy, Debug)]
-struct Arrived {
-    bytes: [u8; POSE_LENGTH],
+struct Arrived<const MOST: usize> {
+    bytes: [u8; MOST],
     length: usize,
     at: Time,
 }
 
-/// Frames that arrived since the last step, oldest first.
+impl<const MOST: usize> Default for Arrived<MOST> {
+    fn default() -> Self {
+        Arrived {
+            bytes: [0; MOST],
+            length: 0,
+            at: Time::INVALID,
+        }
+    }
+}
+
+impl<const MOST: usize> Arrived<MOST> {
+    fn set(&mut self, bytes: &[u8], at: Time) {
+        self.length = bytes.len().min(MOST);
+        self.bytes[..self.length].copy_from_slice(&bytes[..self.length]);
+        self.at = at;
+    }
+
+    /// Content and time of arrival.
+    fn get(&self) -> (&[u8], Time) {
+        (&self.bytes[..self.length], self.at)
+    }
+}
+
+/// Frames that arrived since the last step, oldest first, and the last view.
 #[derive(Debug)]
 pub struct FrameInput {
-    frames: [Arrived; BATCH],
+    frames: [Arrived<POSE_LENGTH>; BATCH],
     count: usize,
+    view: Option<Arrived<LONGEST_VIEW>>,
     /// Whom they come from.
     pub peer: Peer,
     /// What they came through.
@@ -92,12 +120,9 @@ pub struct FrameInput {
 impl Default for FrameInput {
     fn default() -> Self {
         FrameInput {
-            frames: [Arrived {
-                bytes: [0; POSE_LENGTH],
-                length: 0,
-                at: Time::INVALID,
-            }; BATCH],
+            frames: [Arrived::default(); BATCH],
             count: 0,
+            view: None,
             peer: Peer::default(),
             channel: Emulated::default(),
         }
@@ -118,11 +143,14 @@ impl FrameInput {
     /// One more; there is no room for more than a batch.
     fn add(&mut self, frame: &[u8], at: Time) {
         if let Some(place) = self.frames.get_mut(self.count) {
-            place.length = frame.len().min(POSE_LENGTH);
-            place.bytes[..place.length].copy_from_slice(&frame[..place.length]);
-            place.at = at;
+            place.set(frame, at);
             self.count += 1;
         }
+    }
+
+    /// A view of the arm, in place of one that came before it.
+    pub(super) fn see(&mut self, view: &[u8], at: Time) {
+        self.view.insert(Arrived::default()).set(view, at);
     }
 
     fn is_full(&self) -> bool {
@@ -131,17 +159,22 @@ impl FrameInput {
 
     /// Content and time of arrival of each.
     pub fn iter(&self) -> impl Iterator<Item = (&[u8], Time)> {
-        self.frames[..self.count]
-            .iter()
-            .map(|own| (&own.bytes[..own.length], own.at))
+        self.frames[..self.count].iter().map(Arrived::get)
+    }
+
+    /// The last view of the arm that arrived since the last step.
+    pub fn view(&self) -> Option<(&[u8], Time)> {
+        self.view.as_ref().map(Arrived::get)
     }
 }
 
-/// The frame to be sent after a step.
+/// What is to be sent after a step.
 #[derive(Debug, Default)]
 pub struct FrameOutput {
     /// The frame, when one is due.
     pub frame: Option<FrameBytes>,
+    /// The view of the arm, when one is due.
+    pub view: Option<ViewBytes>,
 }
 
 /// A link node's input, output: topics and frames.
@@ -204,12 +237,14 @@ impl LinkTransport {
         established.map_or(0, |own| own.incarnation as u8)
     }
 
-    /// Puts a frame that came into the channel, as long as it was when it was sealed, with the
-    /// mark where the seal was.
-    fn push(&mut self, arrived: Time, plain: &PlainFrame) {
-        let mut on_the_way = [0; LONGEST_WIRE_LENGTH];
+    /// Puts what came into the channel, as long as it was when it was sealed, with the mark and the
+    /// kind where the seal was.
+    fn push(&mut self, arrived: Time, kind: Kind, plain: &PlainFrame) {
+        let mut on_the_way = [0; LONGEST_ON_THE_WAY];
+        let plain = &plain[..plain.len().min(LONGEST_VIEW)];
         on_the_way[..plain.len()].copy_from_slice(plain);
         on_the_way[plain.len()] = self.mark();
+        on_the_way[plain.len() + 1] = u8::from(kind == Kind::View);
         let sealed = plain.len() + SEAL_LENGTH;
         self.channel.push(arrived.nanos(), &on_the_way[..sealed]);
     }
@@ -218,21 +253,26 @@ impl LinkTransport {
         let mut buffer = [0; MAX_FRAME];
         while let Some((length, arrived)) = self.wire.receiver.receive(now, &mut buffer) {
             let bytes = &buffer[..length.min(MAX_FRAME)];
-            if let Received::Frame(plain) = self.wire.secure.received(bytes, arrived.nanos()) {
-                self.push(arrived, &plain);
+            let received = self.wire.secure.received(bytes, arrived.nanos());
+            if let Received::Sealed(kind, plain) = received {
+                self.push(arrived, kind, &plain);
             }
         }
         let mark = self.mark();
-        let mut on_the_way = [0; LONGEST_WIRE_LENGTH];
+        let mut on_the_way = [0; LONGEST_ON_THE_WAY];
         input.count = 0;
+        input.view = None;
         while !input.is_full() {
             let Some((length, released)) = self.channel.pop(now.nanos(), &mut on_the_way) else {
                 break;
             };
             let length = length.saturating_sub(SEAL_LENGTH);
-            // What a process sent that is no longer there is over.
-            if on_the_way[length] == mark {
-                input.add(&on_the_way[..length], Time::from_nanos(released));
+            let (bytes, released) = (&on_the_way[..length], Time::from_nanos(released));
+            match &on_the_way[length..] {
+                [own, 0, ..] if *own == mark => input.add(bytes, released),
+                [own, _, ..] if *own == mark => input.see(bytes, released),
+                // What a process sent that is no longer there is over.
+                _ => {}
             }
         }
         input.channel = self.emulated();
@@ -251,9 +291,13 @@ impl LinkTransport {
         if let Some(message) = self.wire.secure.message(now.nanos()) {
             failed += u64::from(self.wire.sender.send(now, message.bytes()).is_err());
         }
-        let sealed = output.frame.as_ref();
-        if let Some(sealed) = sealed.and_then(|frame| self.wire.secure.seal(frame)) {
-            failed += u64::from(self.wire.sender.send(now, &sealed).is_err());
+        let secure = &mut self.wire.secure;
+        let frame = output.frame.as_ref();
+        let frame = frame.and_then(|own| secure.seal(Kind::Frame, own));
+        let view = output.view.as_ref();
+        let view = view.and_then(|own| secure.seal(Kind::View, own));
+        for sealed in [frame, view].iter().flatten() {
+            failed += u64::from(self.wire.sender.send(now, sealed).is_err());
         }
         failed
     }

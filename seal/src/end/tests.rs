@@ -65,11 +65,11 @@ impl Rig {
         self.now_ns += MILLISECOND;
         for bytes in sent.iter().filter(|_| carries[0]) {
             let received = self.arm.received(bytes, self.now_ns);
-            self.opened[0] += u32::from(matches!(received, Received::Frame(_)));
+            self.opened[0] += u32::from(matches!(received, Received::Sealed(..)));
         }
         for bytes in answered.iter().filter(|_| carries[1]) {
             let received = self.operator.received(bytes, self.now_ns);
-            self.opened[1] += u32::from(matches!(received, Received::Frame(_)));
+            self.opened[1] += u32::from(matches!(received, Received::Sealed(..)));
         }
         self.forward.extend(sent);
         self.back.extend(answered);
@@ -88,14 +88,14 @@ impl Rig {
 
 fn sends(end: &mut SecureEnd, plain: &[u8], now_ns: i64) -> Vec<Vec<u8>> {
     let message = end.message(now_ns).map(|own| own.bytes().to_vec());
-    let frame = end.seal(plain).map(|own| own.to_vec());
+    let frame = end.seal(Kind::Frame, plain).map(|own| own.to_vec());
     message.into_iter().chain(frame).collect()
 }
 
 #[test]
 fn a_handshake_takes_two_round_trips_and_frames_go_both_ways() {
     let mut rig = Rig::new();
-    assert!(rig.operator.seal(&[0; PLAIN_LENGTH]).is_none());
+    assert!(rig.operator.seal(Kind::Frame, &[0; PLAIN_LENGTH]).is_none());
     let opened = rig.run(100);
     assert!(
         opened.iter().all(|own| (90..=97).contains(own)),
@@ -109,6 +109,27 @@ fn a_handshake_takes_two_round_trips_and_frames_go_both_ways() {
     let opened = rig.run(5_000);
     assert_eq!(opened, [5_000, 5_000]);
     assert_eq!(rig.incarnations(), [1, 1]);
+}
+
+#[test]
+fn a_view_goes_from_the_arm_s_end_to_the_operator_s_alone() {
+    let mut rig = Rig::new();
+    rig.run(100);
+    let view = [7; 43];
+    let (kind, now_ns) = (Kind::View, rig.now_ns);
+    let sealed = rig.arm.seal(kind, &view).unwrap();
+    let Received::Sealed(Kind::View, opened) = rig.operator.received(&sealed, now_ns) else {
+        panic!("{:?}", rig.operator.last_refusal());
+    };
+    assert_eq!(opened[..], view);
+    let again = Received::Refused(Refusal::Replayed);
+    assert_eq!(rig.operator.received(&sealed, now_ns), again);
+    let reflected = Received::Refused(Refusal::WrongSide);
+    assert_eq!(rig.arm.received(&sealed, now_ns), reflected);
+    let sealed = rig.operator.seal(kind, &view).unwrap();
+    assert_eq!(rig.arm.received(&sealed, now_ns), reflected);
+    // Frames go on as they were counted.
+    assert_eq!(rig.run(50), [50, 50]);
 }
 
 #[test]
@@ -155,7 +176,7 @@ fn what_was_recorded_is_worth_nothing() {
             for end in [&mut rig.arm, &mut rig.operator] {
                 for bytes in [one, other] {
                     let received = end.received(bytes, now_ns);
-                    assert!(!matches!(received, Received::Frame(_)), "{at} {restart}");
+                    assert!(!matches!(received, Received::Sealed(..)), "{at} {restart}");
                 }
             }
         }
@@ -336,7 +357,7 @@ proptest! {
                 _ => {}
             }
             for bytes in &sent {
-                if let Received::Frame(opened) = rig.arm.received(bytes, rig.now_ns) {
+                if let Received::Sealed(_, opened) = rig.arm.received(bytes, rig.now_ns) {
                     let number = u32::from_le_bytes([opened[0], opened[1], opened[2], opened[3]]);
                     prop_assert!(number < rig.number);
                     prop_assert!(seen.insert(number), "{number} twice");

@@ -1,9 +1,10 @@
 //! `ferntast session --end`: the hand on one host, the arm on another, as docs/two_hosts.md has it.
 
-use std::{collections::BTreeSet, fs};
+use std::{collections::BTreeSet, fs, path::Path};
 
+use ferntast_msgs::topics;
 use ferntast_tests::{
-    Host, LINK_KEYS, PATIENCE, Process, Session, TwoHosts, number, refused, wait_until,
+    Host, LINK_KEYS, PATIENCE, Process, Session, TwoHosts, messages, number, refused, wait_until,
 };
 use serde_json::Value;
 
@@ -95,6 +96,48 @@ fn each_host_runs_its_end_by_one_command() {
         let round_trip = number(own, "link.rtt_ms");
         assert!((18.0..40.0).contains(&round_trip), "{own:#}");
     }
+    let recorded = ["operator", "arm"].map(|end| session.folder().join(end));
+    the_arm_is_seen_as_it_was(&recorded[0], &recorded[1]);
+}
+
+/// What the operator's host recorded of the arm is what the arm's host measured at that time: both
+/// have the clock of this machine.
+fn the_arm_is_seen_as_it_was(operator: &Path, arm: &Path) {
+    let seen = messages(operator, topics::LINK_ARM_MEASURED_JS);
+    let truth = messages(arm, topics::FOLLOWER_MEASURED_JS);
+    let (first, last) = (seen[0].message.stamp, seen[seen.len() - 1].message.stamp);
+    let rate = (seen.len() - 1) as f64 / last.seconds_since(first);
+    assert!((20.0..26.0).contains(&rate), "{rate} Hz");
+    let mut compared = 0;
+    for view in &seen {
+        let at = view.message.stamp;
+        // By then it has crossed the emulated channel.
+        let way = view.received.seconds_since(at);
+        assert!((0.007..0.2).contains(&way), "seen {way} s late");
+        let after = truth.partition_point(|own| own.message.stamp < at);
+        let near = truth.iter().skip(after.saturating_sub(5)).take(10);
+        let near: Vec<_> = near
+            .filter(|own| own.message.stamp.seconds_since(at).abs() < 0.005)
+            .collect();
+        if near.is_empty() {
+            // Recorded before the arm's host did, or after.
+            continue;
+        }
+        compared += 1;
+        for joint in 0..2 {
+            let apart = |own: f64| (own - view.message.position[joint]).abs();
+            let least = near.iter().map(|own| apart(own.message.position[joint]));
+            assert!(least.fold(f64::INFINITY, f64::min) < 1e-4, "{view:?}");
+        }
+    }
+    assert!(compared > seen.len() / 2, "{compared} of {}", seen.len());
+    let contacts = messages(operator, topics::LINK_ARM_CONTACT_STATE);
+    let touched = contacts.iter().filter(|own| own.message.in_contact == 1);
+    let share = touched.count() as f64 / contacts.len() as f64;
+    assert!(
+        (0.02..0.98).contains(&share),
+        "in contact {share} of the time"
+    );
 }
 
 #[test]
