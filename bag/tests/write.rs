@@ -281,8 +281,19 @@ fn a_killed_recording_has_lost_half_a_second_at_most() {
     let path = directory.path().join("run");
     let mut writer = BagWriter::create(&path, options()).unwrap();
     record(&mut writer, 0..1000).unwrap();
-    // As if killed: nothing more is written, nothing is closed.
+    // As if killed: nothing more is written, nothing is closed. But what it took goes to the disk
+    // behind it, and a second of messages was written at once here.
     std::mem::forget(writer);
+    let length = || {
+        fs::read_dir(&path)
+            .unwrap()
+            .map(|own| own.unwrap().metadata().unwrap().len())
+    };
+    let mut last = 0;
+    while last < length().sum() {
+        last = length().sum();
+        std::thread::sleep(std::time::Duration::from_millis(300));
+    }
     let error = BagReader::open(&path).unwrap_err();
     assert!(matches!(error, OpenBagError::Truncated { .. }), "{error}");
     assert!(error.to_string().contains("ferntast bag repair"), "{error}");

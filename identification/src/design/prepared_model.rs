@@ -89,6 +89,18 @@ impl PreparedModel {
         self.find_unjudged_rows();
     }
 
+    /// The same model without the rows whose filters reach a sample at which the torque of
+    /// `effect`, which it lacks, is not determined by what is measured.
+    #[must_use]
+    pub(crate) fn without_undetermined(mut self, effect: &EffectHandle, shape: &[f64]) -> Self {
+        let reach = self.filters.column_reach();
+        for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
+            let samples = effect.undetermined_samples(shape, &signals.points);
+            signals.rows.retain(|row| !reaches(*row, reach, &samples));
+        }
+        self
+    }
+
     /// Notes the rows whose filters reach a sample at which the measured torque is
     /// not the motor's, by an effect of the model.
     fn find_unjudged_rows(&mut self) {

@@ -1,20 +1,29 @@
 //! An effect that shows only just after reversals, where the rows of the
-//! regression are left out, is searched in all rows of a contact.
+//! regression are left out, is searched in all rows.
 //!
 //! A tip that rests until the compliance behind it has wound up (the paper's
-//! Fig. 16) does so over a travel that may be shorter than what is left out.
+//! Fig. 16) does so over a travel that may be shorter than what is left out. The same goes for a
+//! joint whose load comes off the teeth as it turns back.
 
 use super::candidates::{Candidate, missing, score};
+use crate::data::Subject;
 use crate::design::{Design, PreparedModel};
+use crate::effects::EffectHandle;
 use crate::shape_search;
 
-/// Smallest share of the mean square over all rows that it explains; other
+/// Smallest share of the mean square over all rows that an effect of a contact explains; other
 /// influences at reversals (the uncertain sign of a velocity near zero) explain less.
-const MIN_SHARE: f64 = 0.5;
+const MIN_SHARE_OF_CONTACT: f64 = 0.5;
+/// The same of an effect of a joint, which has to be there away from reversals, too.
+const MIN_SHARE_OF_JOINT: f64 = 0.3;
 /// Smallest certainty of its prediction of rows left out, in standard errors.
 const MIN_CERTAINTY: f64 = 4.0;
 /// Probability of a false alarm.
 const SIGNIFICANCE: f64 = 1e-4;
+/// Smallest share of the mean square away from reversals that an effect of a joint explains, and
+/// largest p-value there.
+const MIN_SHARE_AWAY: f64 = 0.1;
+const MAX_P_VALUE_AWAY: f64 = 0.01;
 
 /// Puts an effect that shows at reversals first in `passing`, where it is
 /// significant on all rows and explains more of them than the first does.
@@ -30,9 +39,17 @@ pub fn put_first(prepared: &PreparedModel, design: &Design, passing: &mut Vec<Ca
     let Some(shape) = shape_search::search(&whole, &all_rows, &effect) else {
         return;
     };
+    // Samples at which its torque is not determined tell nothing of it.
+    let whole = whole.without_undetermined(&effect, &shape);
+    let all_rows = Design::new(&whole);
     let on_all_rows = score(&whole, &all_rows, &effect, &shape);
-    let is_significant = effect.plausible(&shape, &on_all_rows.coefficients)
-        && on_all_rows.share() > MIN_SHARE
+    let (min_share, is_there) = match effect.row().of {
+        Subject::Contact => (MIN_SHARE_OF_CONTACT, true),
+        Subject::Joint => (MIN_SHARE_OF_JOINT, is_there_away(prepared, &effect, &shape)),
+    };
+    let is_significant = is_there
+        && effect.plausible(&shape, &on_all_rows.coefficients)
+        && on_all_rows.share() > min_share
         && on_all_rows.certainty > MIN_CERTAINTY
         && on_all_rows.p_value < SIGNIFICANCE;
     let rival = passing.first().map_or(0.0, |first| {
@@ -57,4 +74,12 @@ pub fn put_first(prepared: &PreparedModel, design: &Design, passing: &mut Vec<Ca
             plausible: true,
         },
     );
+}
+
+/// Whether an effect of a joint explains something away from reversals, too, as what a gap does
+/// begins before them; the uncertain sign of a velocity near zero does not.
+fn is_there_away(prepared: &PreparedModel, effect: &EffectHandle, shape: &[f64]) -> bool {
+    let sliding = prepared.clone().without_undetermined(effect, shape);
+    let score = score(&sliding, &Design::new(&sliding), effect, shape);
+    score.share() > MIN_SHARE_AWAY && score.p_value < MAX_P_VALUE_AWAY
 }

@@ -22,6 +22,7 @@ pub mod expression;
 mod inertia;
 mod joint_coupling;
 mod late_channel;
+mod load_backlash;
 mod motor_constant;
 mod presliding_hysteresis;
 mod static_law;
@@ -215,6 +216,7 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(Inertia::correction()),
         Arc::new(elasticity::Elasticity::default()),
         Arc::new(backlash::Backlash::default()),
+        Arc::new(load_backlash::LoadBacklash::default()),
         Arc::new(motor_constant::MotorConstant::default()),
         Arc::new(torque_sensor_gain::TorqueSensorGain::default()),
         Arc::new(torque_sensor_offset::TorqueSensorOffset::default()),

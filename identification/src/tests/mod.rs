@@ -7,6 +7,7 @@ mod compensation;
 mod contact;
 mod formulas;
 mod honesty;
+mod load_backlash;
 pub mod recordings;
 
 use std::collections::BTreeMap;

@@ -2,6 +2,7 @@
 
 use ferntast_control::{
     link::{ESTIMATE_LIFE, FollowerLink, FollowerReadings, Word},
+    operating::OperatingState,
     view::{ArmView, ContactView, Reason, ViewSender},
 };
 use ferntast_model::Joints;
@@ -170,8 +171,11 @@ impl Node for FollowerLinkNode {
         });
         output.frame.frame = step.frame;
         output.frame.view = self.view.as_mut().and_then(|own| {
-            let said = input.operating_state.message;
-            let reason = said.map(|own| Reason::new(readings.state, own.reason.as_str()));
+            let said = input.operating_state.message.as_ref();
+            let reason = said.and_then(|own| {
+                let state = OperatingState::from_code(own.state.0)?;
+                Some(Reason::new(state, own.reason.as_str()))
+            });
             own.step(now.nanos(), reason, || view(now, input))
         });
         let state = self.link.state(now.nanos());

@@ -26,9 +26,11 @@ fn hidden(session: &Session, subject: &str) -> f64 {
         .success()
         .json();
     let rows = catalogue.as_array().into_iter().flatten();
-    // A second one of a kind counts beside the first alone.
+    // A second one of a kind counts beside the first alone. The bench has a torque sensor, beside
+    // which a gap before a load that is not measured is another effect.
     let first = |row: &&Value| row["of"] == subject && row["another"].is_null();
-    rows.filter(first).count() as f64
+    let recorded = |row: &&Value| row["id"] != "load_backlash";
+    rows.filter(first).filter(recorded).count() as f64
 }
 
 #[test]
