@@ -25,15 +25,32 @@ const SIGNIFICANCE: f64 = 1e-4;
 const MIN_SHARE_AWAY: f64 = 0.1;
 const MAX_P_VALUE_AWAY: f64 = 0.01;
 
+/// Share of the mean square away from reversals, with what rings there, that an effect of a joint
+/// explains where it is worth a search in all rows.
+const MIN_SHARE_TRIED: f64 = 0.05;
+
 /// Puts an effect that shows at reversals first in `passing`, where it is
-/// significant on all rows and explains more of them than the first does.
-pub fn put_first(prepared: &PreparedModel, design: &Design, passing: &mut Vec<Candidate>) {
+/// significant on all rows and explains more of them than the first does. `tried` are all
+/// candidates, away from reversals.
+pub fn put_first(
+    prepared: &PreparedModel,
+    design: &Design,
+    passing: &mut Vec<Candidate>,
+    tried: &[Candidate],
+) {
     let Some(effect) = missing(prepared)
         .into_iter()
         .find(|e| e.row().shows_at_reversals)
     else {
         return;
     };
+    let explains = |own: &Candidate| own.score.share() > MIN_SHARE_TRIED;
+    let mut own = tried
+        .iter()
+        .filter(|own| own.id() == effect.description().id);
+    if effect.row().of == Subject::Joint && !own.any(explains) {
+        return;
+    }
     let whole = prepared.with_reversals();
     let all_rows = Design::new(&whole);
     let Some(shape) = shape_search::search(&whole, &all_rows, &effect) else {

@@ -74,7 +74,7 @@ pub(super) fn examine(
     backlash_or_presliding::decide(&prepared, &mut passing, &trial.candidates);
     sensor_zero::decide(&prepared, &mut passing);
     encompassing_test::drop_encompassed(&prepared, &design, &mut passing);
-    at_reversals::put_first(&prepared, &design, &mut passing);
+    at_reversals::put_first(&prepared, &design, &mut passing, &trial.candidates);
     let mut maps = maps(&prepared, &design);
     let confirmation = match known.is_some() || filtered.is_contact() {
         true => Confirmation::NONE,

@@ -86,27 +86,26 @@ fn model() -> ModelSpec {
 
 #[test]
 fn a_gap_is_named_with_what_is_behind_it_and_the_rest_becomes_right() {
-    for gap in [0.005, 0.01] {
-        let data = recorded(gap);
-        let found = diagnose(&data, &model(), &mut |_| ()).unwrap();
-        assert_eq!(found.verdict, Verdict::Missing, "{gap}");
-        assert_eq!(found.candidates[0].effect, "load_backlash", "{gap}");
-        let term = Term::Catalogue("load_backlash".to_owned());
-        let added = add(&data, &model(), &term).unwrap();
-        let left = added.held_out_after / added.held_out_before;
-        assert!(left < 0.6, "{gap}: {left} of the error is left");
-        let value = |name: &str| added.parameters[name].value;
-        let near = |name: &str, expected: f64, share: f64| {
-            let found = value(name);
-            let apart = (found / expected - 1.0).abs();
-            assert!(apart < share, "{gap}: {name} {found}, not {expected}");
-        };
-        near("inertia", MOTOR + LOAD, 0.03);
-        near("b0", 2.0 * COULOMB, 0.05);
-        near("b1", 2.0 * VISCOUS, 0.1);
-        near("gap", gap, 0.2);
-        near("inertia_share", LOAD / (MOTOR + LOAD), 0.3);
-    }
+    let gap = 0.01;
+    let data = recorded(gap);
+    let found = diagnose(&data, &model(), &mut |_| ()).unwrap();
+    assert_eq!(found.verdict, Verdict::Missing, "{gap}");
+    assert_eq!(found.candidates[0].effect, "load_backlash", "{gap}");
+    let term = Term::Catalogue("load_backlash".to_owned());
+    let added = add(&data, &model(), &term).unwrap();
+    let left = added.held_out_after / added.held_out_before;
+    assert!(left < 0.6, "{gap}: {left} of the error is left");
+    let value = |name: &str| added.parameters[name].value;
+    let near = |name: &str, expected: f64, share: f64| {
+        let found = value(name);
+        let apart = (found / expected - 1.0).abs();
+        assert!(apart < share, "{gap}: {name} {found}, not {expected}");
+    };
+    near("inertia", MOTOR + LOAD, 0.03);
+    near("b0", 2.0 * COULOMB, 0.05);
+    near("b1", 2.0 * VISCOUS, 0.1);
+    near("gap", gap, 0.2);
+    near("inertia_share", LOAD / (MOTOR + LOAD), 0.3);
 }
 
 #[test]
