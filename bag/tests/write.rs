@@ -284,14 +284,15 @@ fn a_killed_recording_has_lost_half_a_second_at_most() {
     // As if killed: nothing more is written, nothing is closed. But what it took goes to the disk
     // behind it, and a second of messages was written at once here.
     std::mem::forget(writer);
-    let length = || {
-        fs::read_dir(&path)
-            .unwrap()
+    let length = || -> u64 {
+        let files = fs::read_dir(&path).unwrap();
+        files
             .map(|own| own.unwrap().metadata().unwrap().len())
+            .sum()
     };
     let mut last = 0;
-    while last < length().sum() {
-        last = length().sum();
+    while last < length() {
+        last = length();
         std::thread::sleep(std::time::Duration::from_millis(300));
     }
     let error = BagReader::open(&path).unwrap_err();

@@ -82,8 +82,7 @@ impl PreparedModel {
         let reach = self.filters.column_reach();
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
             for term in &self.terms {
-                let samples = (term.effect).undetermined_samples(&term.shape, &signals.points);
-                signals.rows.retain(|row| !reaches(*row, reach, &samples));
+                leave_out_undetermined(signals, reach, &term.effect, &term.shape);
             }
         }
         self.find_unjudged_rows();
@@ -95,8 +94,7 @@ impl PreparedModel {
     pub(crate) fn without_undetermined(mut self, effect: &EffectHandle, shape: &[f64]) -> Self {
         let reach = self.filters.column_reach();
         for signals in self.sessions.iter_mut().chain(&mut self.held_out) {
-            let samples = effect.undetermined_samples(shape, &signals.points);
-            signals.rows.retain(|row| !reaches(*row, reach, &samples));
+            leave_out_undetermined(signals, reach, effect, shape);
         }
         self
     }
@@ -141,4 +139,16 @@ impl PreparedModel {
 fn reaches(row: usize, reach: usize, samples: &[usize]) -> bool {
     let after = samples.partition_point(|at| at + reach < row);
     samples.get(after).is_some_and(|at| *at <= row + reach)
+}
+
+/// Leaves out the rows of a session whose filters, which look `reach` samples to either side, reach
+/// one at which the torque of `effect` is not determined by what is measured.
+fn leave_out_undetermined(
+    signals: &mut Signals,
+    reach: usize,
+    effect: &EffectHandle,
+    shape: &[f64],
+) {
+    let samples = effect.undetermined_samples(shape, &signals.points);
+    signals.rows.retain(|row| !reaches(*row, reach, &samples));
 }

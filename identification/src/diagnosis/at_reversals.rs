@@ -24,7 +24,6 @@ const SIGNIFICANCE: f64 = 1e-4;
 /// largest p-value there.
 const MIN_SHARE_AWAY: f64 = 0.1;
 const MAX_P_VALUE_AWAY: f64 = 0.01;
-
 /// Share of the mean square away from reversals, with what rings there, that an effect of a joint
 /// explains where it is worth a search in all rows.
 const MIN_SHARE_TRIED: f64 = 0.05;
@@ -44,11 +43,11 @@ pub fn put_first(
     else {
         return;
     };
-    let explains = |own: &Candidate| own.score.share() > MIN_SHARE_TRIED;
-    let mut own = tried
-        .iter()
-        .filter(|own| own.id() == effect.description().id);
-    if effect.row().of == Subject::Joint && !own.any(explains) {
+    let is_of_joint = effect.row().of == Subject::Joint;
+    let explains = |own: &Candidate| {
+        own.id() == effect.description().id && own.score.share() > MIN_SHARE_TRIED
+    };
+    if is_of_joint && !tried.iter().any(explains) {
         return;
     }
     let whole = prepared.with_reversals();
@@ -60,15 +59,15 @@ pub fn put_first(
     let whole = whole.without_undetermined(&effect, &shape);
     let all_rows = Design::new(&whole);
     let on_all_rows = score(&whole, &all_rows, &effect, &shape);
-    let (min_share, is_there) = match effect.row().of {
-        Subject::Contact => (MIN_SHARE_OF_CONTACT, true),
-        Subject::Joint => (MIN_SHARE_OF_JOINT, is_there_away(prepared, &effect, &shape)),
+    let min_share = match is_of_joint {
+        true => MIN_SHARE_OF_JOINT,
+        false => MIN_SHARE_OF_CONTACT,
     };
-    let is_significant = is_there
-        && effect.plausible(&shape, &on_all_rows.coefficients)
+    let is_significant = effect.plausible(&shape, &on_all_rows.coefficients)
         && on_all_rows.share() > min_share
         && on_all_rows.certainty > MIN_CERTAINTY
-        && on_all_rows.p_value < SIGNIFICANCE;
+        && on_all_rows.p_value < SIGNIFICANCE
+        && (!is_of_joint || is_there_away(prepared, &effect, &shape));
     let rival = passing.first().map_or(0.0, |first| {
         score(&whole, &all_rows, &first.effect, &first.shape).gain
     });

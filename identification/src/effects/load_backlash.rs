@@ -34,8 +34,6 @@ const SPEED: usize = 1;
 const FREE: usize = 2;
 const BEGUN: usize = 3;
 
-/// Teeth that come together over less than this share of the gap do not strike.
-const STRIKES: f64 = 0.1;
 /// Teeth may strike so much before they are thought to, and ring for so long after it \[s\].
 const EARLY: f64 = 0.02;
 const RINGS: f64 = 0.06;
@@ -95,6 +93,10 @@ fn lacking(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
     };
     let half = 0.5 * shape[0];
     if memory[BEGUN] == 0.0 {
+        // At rest nothing tells on which side the teeth touch.
+        if load.transmitted == 0.0 {
+            return 0.0;
+        }
         *memory = [half * sign(load.transmitted), point.velocity, 0.0, 1.0];
     }
     if memory[FREE] == 0.0 {
@@ -128,20 +130,17 @@ impl Effect for LoadBacklash {
     // What the teeth transmit as they strike and ring depends on their stiffness.
     fn undetermined_samples(&self, shape: &[f64], points: &[Point]) -> Vec<usize> {
         let mut memory = Memory::default();
-        let mut was_free = false;
-        let mut left_at = 0.0;
+        let mut side = 0.0;
         let mut strikes = Vec::new();
         for point in points {
             lacking(shape, point, &mut memory);
-            let is_free = memory[FREE] != 0.0;
-            if is_free && !was_free {
-                left_at = memory[PLACE];
+            if memory[FREE] == 0.0 {
+                // Across the gap: those that touch where they came off do not strike.
+                if side * memory[PLACE] < 0.0 {
+                    strikes.push(point.time);
+                }
+                side = memory[PLACE];
             }
-            let crossed = (memory[PLACE] - left_at).abs();
-            if was_free && !is_free && crossed > STRIKES * shape[0] {
-                strikes.push(point.time);
-            }
-            was_free = is_free;
         }
         let mut strikes = strikes.into_iter().peekable();
         let mut rings = Vec::new();
@@ -243,6 +242,21 @@ mod tests {
         let times =
             [rings[0], rings[rings.len() - 1]].map(|at| points[at].time - points[last].time);
         assert!((times[0] + EARLY).abs() < 2.0 * PERIOD && times[1] > 0.02);
+    }
+
+    #[test]
+    fn a_recording_that_begins_at_rest_begins_when_something_moves() {
+        let moving = points(4.0);
+        let rest = Point {
+            period: PERIOD,
+            inertia: INERTIA,
+            ..Point::default()
+        };
+        let resting = [vec![rest; 100], moving.clone()].concat();
+        let shape = [0.005, 1.0, 1.0];
+        let expected = column(&shape, &moving);
+        assert!(expected.iter().any(|own| *own != 0.0));
+        assert_eq!(column(&shape, &resting)[100..], expected);
     }
 
     #[test]

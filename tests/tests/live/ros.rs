@@ -361,7 +361,7 @@ fn rclpy_drives_the_arm_with_hand_1() {
 #[test]
 #[ignore = "needs outside recordings: hand"]
 fn rclpy_drives_the_arm_with_hand_2() {
-    drives_the_arm("15", |_| human_hand("hand_2.csv"));
+    drives_the_arm("30", |_| human_hand("hand_2.csv"));
 }
 
 #[test]
