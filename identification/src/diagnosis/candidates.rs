@@ -29,7 +29,7 @@ pub struct Candidate {
     pub shape: Vec<f64>,
     /// What it explains of rows left out.
     pub score: Score,
-    /// Whether sign and size of its coefficients are physically possible.
+    /// Whether its shape, and sign and size of its coefficients, are physically possible.
     pub plausible: bool,
     /// Number of its shapes that were tried.
     pub variants: usize,
@@ -154,7 +154,7 @@ pub fn try_again(prepared: &PreparedModel, design: &Design, other: &Trial) -> Tr
         };
         let score = score(prepared, design, &effect, &known.shape);
         candidates.push(Candidate {
-            plausible: effect.plausible(&known.shape, &score.coefficients),
+            plausible: effect.is_possible(&known.shape, &score.coefficients),
             score,
             effect,
             ..known.clone()
@@ -195,7 +195,7 @@ pub fn try_all(prepared: &PreparedModel, design: &Design, progress: &mut dyn FnM
         progress((done as f64 + 0.8) / count);
         let Some(shape) = shape else { continue };
         let score = score(prepared, design, effect, &shape);
-        let plausible = effect.plausible(&shape, &score.coefficients);
+        let plausible = effect.is_possible(&shape, &score.coefficients);
         trial.candidates.push(Candidate {
             effect: effect.clone(),
             shape,

@@ -34,6 +34,9 @@ pub struct EffectDescription {
     pub excited_by: String,
     /// The recording that shows it best.
     pub shown_by: Proposal,
+    /// Whether it is one of recordings without a joint torque alone.
+    #[serde(skip_serializing_if = "is_false")]
+    pub of_unmeasured_load: bool,
     /// Id of the effect that it is another one of the same kind as: it counts beside that alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub another: Option<String>,
@@ -41,6 +44,11 @@ pub struct EffectDescription {
     /// residual are similar.
     #[serde(rename = "taken_for")]
     pub confusable_with: Vec<String>,
+}
+
+/// Most effects do not say it.
+fn is_false(own: &bool) -> bool {
+    !own
 }
 
 impl EffectDescription {
@@ -64,6 +72,7 @@ impl EffectDescription {
             shows_as: row.shows_as.to_owned(),
             excited_by: row.excited_by.to_owned(),
             shown_by: row.shown_by,
+            of_unmeasured_load: row.of_unmeasured_load,
             another: row.another.map(str::to_owned),
             confusable_with: row
                 .confusable_with

@@ -22,9 +22,10 @@ row!(
     shows_as: "jump where the load changes from driven to driving",
     excited_by: "slowing down and turning back",
     shown_by: Proposal::SlowReversals,
-    confusable_with: &["backlash", "presliding_hysteresis", "load_stribeck"],
+    confusable_with: &["load_elasticity", "backlash", "presliding_hysteresis", "load_stribeck"],
     shows_at_reversals: true,
     needs_prediction: true,
+    of_unmeasured_load: true,
 );
 
 /// Indices of the memory: place in the gap \[rad\] from its middle; speed of the load \[rad/s\];
@@ -151,13 +152,6 @@ impl Effect for LoadBacklash {
             }
         }
         rings
-    }
-
-    fn unavailable(&self, facts: &Facts) -> Option<String> {
-        facts.joint_torque.then(|| {
-            "the torque of the load is given: what a gap keeps from the motor is \"backlash\""
-                .to_owned()
-        })
     }
 
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {

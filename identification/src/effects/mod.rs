@@ -23,6 +23,7 @@ mod inertia;
 mod joint_coupling;
 mod late_channel;
 mod load_backlash;
+mod load_elasticity;
 mod motor_constant;
 mod presliding_hysteresis;
 mod static_law;
@@ -76,8 +77,8 @@ pub trait Effect: Send + Sync {
     /// Why its coefficients cannot be identified from recordings with these
     /// `facts`, in words; `None` where they can.
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        let _ = facts;
-        None
+        let is_measured = self.row().of_unmeasured_load && facts.joint_torque;
+        is_measured.then(|| "the torque of the load is given".to_owned())
     }
 
     /// Grid of shapes to try, one vector of shape parameters each; a single empty
@@ -157,6 +158,19 @@ pub trait Effect: Send + Sync {
         true
     }
 
+    /// Whether it is itself at this `shape`, and not the image of something else: a search goes
+    /// through other shapes, too, so that what fits best there is not taken for the effect at
+    /// the nearest shape that it may have.
+    fn is_itself(&self, shape: &[f64]) -> bool {
+        let _ = shape;
+        true
+    }
+
+    /// Whether it can be named: it is itself, and plausible.
+    fn is_possible(&self, shape: &[f64], coefficients: &[f64]) -> bool {
+        self.is_itself(shape) && self.plausible(shape, coefficients)
+    }
+
     /// Number of free parameters: coefficients and shape, unless one follows from
     /// the other. The fewer, the simpler.
     fn freedom(&self) -> usize {
@@ -217,6 +231,7 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(elasticity::Elasticity::default()),
         Arc::new(backlash::Backlash::default()),
         Arc::new(load_backlash::LoadBacklash::default()),
+        Arc::new(load_elasticity::LoadElasticity::default()),
         Arc::new(motor_constant::MotorConstant::default()),
         Arc::new(torque_sensor_gain::TorqueSensorGain::default()),
         Arc::new(torque_sensor_offset::TorqueSensorOffset::default()),

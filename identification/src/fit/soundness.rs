@@ -198,7 +198,7 @@ fn implausible(
                     .to_owned(),
             });
         }
-        if found.len() == first && !term.effect.plausible(&term.shape, own) {
+        if found.len() == first && !term.effect.is_possible(&term.shape, own) {
             let place = |(_, own): &&(String, Place)| own.term == at;
             let Some((name, _)) = names.iter().find(place) else {
                 continue;

@@ -7,8 +7,8 @@ mod compensation;
 mod contact;
 mod formulas;
 mod honesty;
-mod load_backlash;
 pub mod recordings;
+mod unmeasured_load;
 
 use std::collections::BTreeMap;
 

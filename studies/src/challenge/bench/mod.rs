@@ -171,7 +171,7 @@ mod tests {
             // A second one of a kind is hidden where the first is known, and what shows only
             // where no torque sensor is in recordings without one: in tests of the lab.
             let first = |own: &EffectDescription| {
-                own.of == subject && own.another.is_none() && own.id != "load_backlash"
+                own.of == subject && own.another.is_none() && !own.of_unmeasured_load
             };
             let own = catalogue().into_iter().filter(first);
             let mut own: Vec<String> = own.map(|own| own.id).collect();

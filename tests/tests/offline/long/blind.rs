@@ -26,10 +26,10 @@ fn hidden(session: &Session, subject: &str) -> f64 {
         .success()
         .json();
     let rows = catalogue.as_array().into_iter().flatten();
-    // A second one of a kind counts beside the first alone. The bench has a torque sensor, beside
-    // which a gap before a load that is not measured is another effect.
+    // A second one of a kind counts beside the first alone. The bench has a torque sensor, so that
+    // it has no load that nobody measures.
     let first = |row: &&Value| row["of"] == subject && row["another"].is_null();
-    let recorded = |row: &&Value| row["id"] != "load_backlash";
+    let recorded = |row: &&Value| row["of_unmeasured_load"] != true;
     rows.filter(first).filter(recorded).count() as f64
 }
 
