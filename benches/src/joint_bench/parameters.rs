@@ -14,6 +14,16 @@ pub(super) enum Transmission {
         /// K₃ \[Nm/rad³\].
         cubic_stiffness: f64,
     },
+    /// The same with a linear spring, and position measured on the motor's side; dry friction of
+    /// the link, too.
+    Soft {
+        /// \[Nm/rad\]
+        stiffness: f64,
+        /// \[Nm·s/rad\]
+        damping: f64,
+        /// Of the link \[Nm\].
+        link_friction: f64,
+    },
     /// Friction on the load's side, position measured on the motor's; dead
     /// zone of `gap` \[rad\] between them.
     Backlash {

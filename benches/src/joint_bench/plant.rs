@@ -40,7 +40,7 @@ struct Moving {
     /// Where friction acts.
     state: State,
     /// Position and velocity on the other side of the transmission: the load's
-    /// for an elastic one, the motor's for backlash.
+    /// for an elastic or soft one, the motor's for backlash.
     other: (f64, f64),
     /// τ_F \[Nm\] at the last step.
     friction: f64,
@@ -118,6 +118,23 @@ impl Fixed {
                 moving.other.0 += STEP * moving.other.1;
                 moving.state.load = load;
             }
+            Transmission::Soft {
+                stiffness,
+                damping,
+                link_friction,
+            } => {
+                let load =
+                    stiffness * (position - moving.other.0) + damping * (velocity - moving.other.1);
+                let pull = self.pull(moving.other.0, moving.other.1);
+                acceleration = (motor_torque - friction - load) * self.per_inertia;
+                let step = STEP / joint.link_inertia;
+                let free = moving.other.1 + step * (load - pull);
+                // Friction stops the link, and does not turn it round.
+                let slowed = (free.abs() - step * link_friction).max(0.0);
+                moving.other.1 = slowed.copysign(free);
+                moving.other.0 += STEP * moving.other.1;
+                moving.state.load = load;
+            }
             Transmission::Backlash { gap } => {
                 let ahead = moving.other.0 - position;
                 let pressed = ahead - ahead.clamp(-0.5 * gap, 0.5 * gap);
@@ -153,7 +170,7 @@ impl Plant {
     pub(super) fn new(joint: JointParameters, springs: bool, hidden_factor: f64) -> Self {
         let inertia = match joint.transmission {
             Transmission::Rigid => joint.inertia + joint.link_inertia,
-            Transmission::Elastic { .. } => joint.inertia,
+            Transmission::Elastic { .. } | Transmission::Soft { .. } => joint.inertia,
             Transmission::Backlash { .. } => GEAR_SHARE * joint.inertia + joint.link_inertia,
         };
         Plant {
@@ -206,7 +223,9 @@ impl Plant {
     pub(super) fn inertia_times_angle(&self) -> f64 {
         let position = self.moving.state.position;
         let mean = match self.fixed.joint.transmission {
-            Transmission::Rigid | Transmission::Elastic { .. } => position,
+            Transmission::Rigid | Transmission::Elastic { .. } | Transmission::Soft { .. } => {
+                position
+            }
             Transmission::Backlash { .. } => {
                 GEAR_SHARE * position + (1.0 - GEAR_SHARE) * self.moving.other.0
             }
@@ -228,7 +247,9 @@ impl Plant {
     /// Position \[rad\] and velocity \[rad/s\] where position is measured.
     pub(super) fn measured(&self) -> (f64, f64) {
         match self.fixed.joint.transmission {
-            Transmission::Rigid => (self.moving.state.position, self.moving.state.velocity),
+            Transmission::Rigid | Transmission::Soft { .. } => {
+                (self.moving.state.position, self.moving.state.velocity)
+            }
             Transmission::Elastic { .. } | Transmission::Backlash { .. } => self.moving.other,
         }
     }
@@ -236,7 +257,7 @@ impl Plant {
     /// Position \[rad\] and velocity \[rad/s\] of the motor, which the servo holds.
     pub(super) fn motor(&self) -> (f64, f64) {
         match self.fixed.joint.transmission {
-            Transmission::Rigid | Transmission::Elastic { .. } => {
+            Transmission::Rigid | Transmission::Elastic { .. } | Transmission::Soft { .. } => {
                 (self.moving.state.position, self.moving.state.velocity)
             }
             Transmission::Backlash { .. } => self.moving.other,

@@ -9,7 +9,8 @@ use std::f64::consts::TAU;
 
 use ferntast_emulation::random::Random;
 
-use super::{Bench, BenchConfig, BenchError, HiddenEffect, sensors::POSITION_QUANTUM};
+use super::parameters::Transmission;
+use super::{Bench, BenchConfig, BenchError, HiddenEffect, Motion, sensors::POSITION_QUANTUM};
 use crate::bench::{Hideable, MILLISECONDS_A_LOG, Stream, named, random};
 
 named! {
@@ -32,6 +33,10 @@ named! {
         OtherRate = "other_rate",
         /// Friction that no catalogue has.
         UnnamedFriction = "unnamed_friction",
+        /// Position and torque of the motor alone, in three sessions at 200 to 1000 Hz. A third has
+        /// a stiff gear, a third a soft one, with the load swinging at 4 to 12 Hz, a third a gap
+        /// of 10 to 40 mrad.
+        MotorOnly = "motor_only",
     }
 }
 
@@ -96,11 +101,15 @@ impl RealLikeBench {
             seed,
             sessions: match kind {
                 RealLike::OneSession => 1,
-                RealLike::LittleExcitation | RealLike::OtherRate => 3,
+                RealLike::LittleExcitation | RealLike::OtherRate | RealLike::MotorOnly => 3,
                 _ => 6,
             },
             ..BenchConfig::default()
         };
+        if kind == RealLike::MotorOnly {
+            // What springs pull would have to be measured.
+            config.motions = vec![Motion::FastUnloaded];
+        }
         if kind == RealLike::UnnamedFriction {
             let (bench, law) = Bench::with_law(&config)?;
             return Ok(Self {
@@ -145,6 +154,10 @@ impl RealLikeBench {
             RealLike::OtherRate => {
                 here.log_milliseconds = one_of(&[1, 2, 4, 5, 8, 10], &mut random)
             }
+            RealLike::MotorOnly => {
+                here.log_milliseconds = one_of(&[1, 2, 4, 5], &mut random);
+                also_there = before_the_load(&mut bench, &mut random);
+            }
             RealLike::OneSession | RealLike::LimitedDrive | RealLike::UnnamedFriction => {}
         }
         Ok(Self {
@@ -176,6 +189,7 @@ fn hidden(kind: RealLike, random: &mut Random) -> Option<HiddenEffect> {
             )
         }
         RealLike::LimitedDrive => own == HiddenEffect::CurrentSaturation,
+        RealLike::MotorOnly => needs_a_torque_sensor(own),
         _ => false,
     };
     let all = HiddenEffect::ALL.iter().copied();
@@ -189,6 +203,53 @@ fn hidden(kind: RealLike, random: &mut Random) -> Option<HiddenEffect> {
     let hides = random.chance(0.5);
     let drawn = one_of(&catalogue, random);
     hides.then_some(drawn)
+}
+
+/// What is not there or cannot be told without a torque sensor: a joint whose inertia is fitted
+/// has no other one, and no measure of torque; a late channel may be that of the sensor.
+fn needs_a_torque_sensor(own: HiddenEffect) -> bool {
+    use HiddenEffect::{
+        Backlash, ChannelDelay, Elasticity, Inertia, LoadCoulomb, LoadStribeck, MotorConstant,
+        TorqueSensorGain, TorqueSensorOffset,
+    };
+    let need = [
+        Backlash,
+        ChannelDelay,
+        Elasticity,
+        Inertia,
+        LoadCoulomb,
+        LoadStribeck,
+        MotorConstant,
+        TorqueSensorGain,
+        TorqueSensorOffset,
+    ];
+    need.contains(&own)
+}
+
+/// Gives the joint a load that nobody measures and draws what is between it and the motor: ids of
+/// the effects that it may be called, of a stiff gear none. Behind the gap there is all friction,
+/// too, as `backlash` has it.
+fn before_the_load(bench: &mut Bench, random: &mut Random) -> Vec<&'static str> {
+    let joint = &mut bench.joint;
+    let mut within = |low: f64, high: f64| low + (high - low) * random.uniform();
+    joint.link_inertia = joint.inertia * within(0.3, 1.5);
+    let drawn = within(0.0, 3.0);
+    if drawn < 1.0 {
+        return Vec::new();
+    }
+    if drawn < 2.0 {
+        let rate = TAU * within(4.0, 12.0);
+        joint.transmission = Transmission::Soft {
+            stiffness: joint.link_inertia * rate * rate,
+            damping: 2.0 * within(0.02, 0.1) * joint.link_inertia * rate,
+            link_friction: within(0.0, 4.0),
+        };
+        return vec!["load_elasticity"];
+    }
+    joint.transmission = Transmission::Backlash {
+        gap: within(0.01, 0.04),
+    };
+    vec!["backlash", "load_backlash"]
 }
 
 /// One of `all`, which are some.
@@ -270,6 +331,30 @@ mod tests {
         assert!((0.2..0.7).contains(&share), "{share}");
         let fastest = velocity.iter().fold(0.0, |most, own| own.abs().max(most));
         assert!((0.05..0.45).contains(&fastest), "{fastest}");
+    }
+
+    #[test]
+    fn before_a_load_that_nobody_measures_is_what_was_drawn() {
+        let mut counts = [0; 3];
+        for seed in 0..90 {
+            let drawn = RealLikeBench::draw(RealLike::MotorOnly, seed).unwrap();
+            let (kind, there) = match drawn.bench.joint.transmission {
+                Transmission::Rigid => (0, &[][..]),
+                Transmission::Soft { .. } => (1, &["load_elasticity"][..]),
+                Transmission::Backlash { .. } => (2, &["backlash", "load_backlash"][..]),
+                Transmission::Elastic { .. } => panic!("of a measured load"),
+            };
+            assert_eq!(drawn.also_there, there);
+            assert!(drawn.bench.joint.link_inertia >= 0.3 * drawn.bench.joint.inertia);
+            counts[kind] += 1;
+        }
+        assert!(
+            counts.iter().all(|own| (18..=42).contains(own)),
+            "{counts:?}"
+        );
+        let (_, recording) = recorded(RealLike::MotorOnly, 1);
+        let session = &recording.sessions[0];
+        assert!(session.motion == Some(Motion::FastUnloaded) && session.period <= 0.005);
     }
 
     /// The motor never gives more; the log has what it gives, or what was asked for.

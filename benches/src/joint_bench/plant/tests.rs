@@ -94,6 +94,49 @@ fn an_elastic_transmission_twists_by_its_law() {
     assert!((plant.state().load - expected).abs() < 0.02 * expected);
 }
 
+/// A link that is let go swings at its own frequency, √(K/I)/2π, until its friction stops it:
+/// each half swing is shorter by twice what friction holds, 2 τ_C/K.
+#[test]
+fn behind_a_soft_gear_the_link_swings() {
+    let mut joint = joint();
+    let rate = 30.0_f64;
+    // The motor is too heavy to move.
+    joint.inertia = 1e6;
+    (joint.link_inertia, joint.link_damping) = (1.0, 0.0);
+    joint.transmission = Transmission::Soft {
+        stiffness: rate * rate,
+        damping: 0.0,
+        link_friction: 0.9,
+    };
+    let mut plant = Plant::new(joint, false, 1.0);
+    plant.moving.other.0 = 0.01;
+    let mut direction = -1.0;
+    let mut turns = Vec::new();
+    for step in 0..6000 {
+        advance(&mut plant, 0.0);
+        let (place, speed) = plant.moving.other;
+        if direction * speed < 0.0 {
+            turns.push((step, place.abs()));
+            direction = -direction;
+        }
+    }
+    let half = std::f64::consts::PI / rate / STEP;
+    // From 10 mrad on: 8, 6, 4, 2 mrad, and rest.
+    assert_eq!(turns.len(), 4, "{turns:?}");
+    for (number, (step, size)) in turns.iter().enumerate() {
+        let expected = half * (number + 1) as f64;
+        assert!(
+            (f64::from(*step) - expected).abs() < 0.03 * half,
+            "{turns:?}"
+        );
+        assert!(
+            (size - (8e-3 - 2e-3 * number as f64)).abs() < 2e-4,
+            "{turns:?}"
+        );
+    }
+    assert!(plant.measured().0.abs() < 1e-3);
+}
+
 #[test]
 fn backlash_lets_the_motor_run_free_over_its_gap() {
     let mut joint = joint();

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use ferntast_benches::joint_bench::{
     BenchRecording, BenchSession, HiddenEffect, Motion, RealLike, RealLikeBench,
 };
-use ferntast_identification::{Dataset, ModelSpec, RecordedSession, Term, Verdict, add, diagnose};
+use ferntast_identification::{
+    Dataset, Inertia, ModelSpec, RecordedSession, Term, Verdict, add, diagnose,
+};
 use serde::{Deserialize, Serialize};
 
 use super::{super::TestBench, count::Count};
@@ -106,7 +108,12 @@ fn answer(case: &RealCase) -> Result<RealAnswer, String> {
     for session in &mut data.sessions {
         session.torque_is_modelled = case.kind == RealLike::UncertainLoad;
     }
-    let believed = HiddenEffect::model(&recording);
+    let mut believed = HiddenEffect::model(&recording);
+    if case.kind == RealLike::MotorOnly {
+        let sessions = data.sessions.iter_mut();
+        sessions.for_each(|session| session.joint_torque = None);
+        believed.inertia = Inertia::Fit;
+    }
     let told = diagnose(&data, &believed, &mut |_| {}).map_err(|error| error.to_string())?;
     let first = (told.candidates.first()).filter(|_| told.verdict == Verdict::Missing);
     let named = first.map(|own| own.effect.clone());

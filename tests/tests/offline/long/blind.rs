@@ -151,7 +151,7 @@ fn blind_on_recordings_like_real_ones() {
         ],
     );
     let rows = told["real_like"].as_object().expect("rows by kind");
-    assert_eq!(rows.len(), 7, "{rows:#?}");
+    assert_eq!(rows.len(), 8, "{rows:#?}");
     let mut beyond_family = 0.0;
     for (kind, row) in rows {
         assert_eq!(number(row, "recordings"), of_each, "{kind}");
