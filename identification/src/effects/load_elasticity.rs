@@ -1,12 +1,14 @@
 //! A soft gear before a load that nobody measures.
 //!
 //! Motor and load are two inertias with a spring and a damper between them. The motor is measured;
-//! a share s of the inertia J and of the friction is behind the spring. With the winding
-//! x = θ − q_L and the load's own frequency ω = √(K / s J), at which it swings while the motor is
-//! held, the load goes by J q̈_L = J (ω² x + 2 ζ ω ẋ) − r τ_R(q̇_L) per share, and the motor feels
-//! s J (ω² x + 2 ζ ω ẋ) where a model without it has s (J θ̈ + r τ_R(θ̇)). Spong 1987, "Modeling
-//! and control of elastic joint robots", ASME J. Dyn. Syst. Meas. Control 109, with friction of the
-//! load and damping. Weight winds the spring up by a little that hardly changes: it is left out.
+//! behind the spring is a share s of the inertia J and of the friction, or the links of an arm
+//! (s = 1). What a stiff load would take, L = s (J θ̈ + G + r τ_R) with weight and springs G, or the
+//! torque of the links, winds the spring up: with y the winding times the load's inertia,
+//! ÿ + 2 ζ ω ẏ + ω² y = L, and the motor feels 2 ζ ω ẏ + ω² y in place of L. ω is the load's own
+//! frequency, at which it swings while the motor is held. Spong 1987, "Modeling and control of
+//! elastic joint robots", ASME J. Dyn. Syst. Meas. Control 109, with friction of the load, which goes
+//! by its own speed, and damping. Of an arm's links the inertia, and so ω, is one for all postures,
+//! and friction is the motor's.
 
 use ferntast_model::friction::{ONE, Proposal, Unit};
 
@@ -15,9 +17,9 @@ use super::{Effect, Facts, Memory, Point, free, logarithmic, row, sign};
 row!(
     LoadElasticity,
     id: "load_elasticity",
-    equation: "in place of s (J q̈ + r τ_R) of the load the motor feels s J (ω² x + 2 ζ ω ẋ), ω = 2π frequency, x = q − q_L",
+    equation: "in place of L = s (J q̈ + G + r τ_R), of an arm's links of their torque, the motor feels 2ζω ẏ + ω² y; ÿ + 2ζω ẏ + ω² y = L, ω = 2π frequency",
     source: "Spong 1987, elastic joint; with friction of the load and damping",
-    coefficients: &[free("inertia_share", ONE)],
+    coefficients: &[free("load_share", ONE)],
     shape: &[
         free("frequency", Unit::new("Hz", "Hz")),
         free("damping_ratio", ONE),
@@ -31,10 +33,9 @@ row!(
     of_unmeasured_load: true,
 );
 
-/// Indices of the memory: position \[rad\] and speed \[rad/s\] of the load, the latter half a
-/// sample before; whether begun.
-const POSITION: usize = 0;
-const SPEED: usize = 1;
+/// Indices of the memory: y \[Nm s²\]; ẏ half a sample before \[Nm s\]; whether begun.
+const WOUND: usize = 0;
+const RATE: usize = 1;
 const BEGUN: usize = 2;
 
 /// Slowest load \[Hz\]: what swings more slowly is another mechanism than a gear.
@@ -47,40 +48,69 @@ const FASTEST_OF_SAMPLES: f64 = 0.15;
 const MOST_DAMPED: f64 = 0.2;
 const MOST_DAMPED_SEARCHED: f64 = 0.7;
 
-/// What the motor feels of the load beyond what it would feel of a stiff one, per share of the
-/// inertia \[Nm\].
+/// What the motor feels of the load beyond what it would feel of a stiff one, per share \[Nm\].
 fn beyond_stiff(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
-    let ([frequency, damping, friction_ratio], true) = (shape, point.inertia > 0.0) else {
+    let [frequency, damping, friction_ratio] = *shape else {
         return 0.0;
     };
-    let inertial = point.inertia * point.acceleration;
-    // The modelled load is inertia, weight and springs.
-    let friction = friction_ratio * (point.friction_predicted - (point.load - inertial));
-    let stiff = (inertial + friction) / point.inertia;
     let omega = std::f64::consts::TAU * frequency;
     // Steps of this length swing faster by (ω T)²/24.
     let omega = omega * (1.0 - (omega * point.period).powi(2) / 24.0);
     let [spring, damper] = [omega * omega, 2.0 * damping * omega];
+    let friction = Friction::at(friction_ratio, point);
+    let stiff = point.load + friction.of_stiff;
     if memory[BEGUN] == 0.0 {
-        *memory = [
-            point.position - stiff / spring,
-            point.velocity - 0.5 * point.period * point.acceleration,
-            1.0,
-            0.0,
-        ];
+        *memory = [stiff / spring, 0.0, 1.0, 0.0];
     }
-    let felt = |speed: f64| {
-        spring * (point.position - memory[POSITION]) + damper * (point.velocity - speed)
+    let [wound, before, ..] = *memory;
+    let felt = |rate: f64| spring * wound + damper * rate;
+    let driven = before + (point.load - felt(before)) * point.period;
+    let rate = friction.slow_down(driven, point);
+    memory[WOUND] = wound + rate * point.period;
+    memory[RATE] = rate;
+    felt(0.5 * (before + rate)) - stiff
+}
+
+/// Friction of the load, per share.
+struct Friction {
+    /// At the motor's speed, as that of a stiff load is \[Nm\].
+    of_stiff: f64,
+}
+
+impl Friction {
+    fn at(ratio: f64, point: &Point) -> Friction {
+        // The modelled load is inertia, weight and springs, which are among the model's effects.
+        let pull = point.load - point.inertia * point.acceleration;
+        let of_stiff = match ratio > 0.0 {
+            true => ratio * (point.friction_predicted - pull),
+            false => 0.0,
+        };
+        Friction { of_stiff }
+    }
+
+    /// ẏ \[Nm s\] where it would be `driven` without friction: this stops the load, and does not
+    /// turn it round.
+    fn slow_down(&self, driven: f64, point: &Point) -> f64 {
+        if self.of_stiff == 0.0 || point.inertia <= 0.0 {
+            return driven;
+        }
+        let momentum = point.inertia * point.velocity - driven;
+        let slowed = (momentum.abs() - self.of_stiff.abs() * point.period).max(0.0);
+        point.inertia * point.velocity - slowed * sign(momentum)
+    }
+}
+
+fn bounds(facts: &Facts) -> [[f64; 2]; 3] {
+    let fastest = FASTEST.min(FASTEST_OF_SAMPLES / facts.period);
+    let most_friction = match facts.torque_is_of_links {
+        true => 0.0,
+        false => 4.0,
     };
-    let before = memory[SPEED];
-    let driven = before + felt(before) * point.period;
-    // Friction stops it, and does not turn it round.
-    let slowed = (driven.abs() - friction.abs() / point.inertia * point.period).max(0.0);
-    let speed = slowed * sign(driven);
-    let felt = felt(0.5 * (before + speed));
-    memory[POSITION] += speed * point.period;
-    memory[SPEED] = speed;
-    point.inertia * (felt - stiff)
+    [
+        [SLOWEST.min(fastest), fastest],
+        [0.0, MOST_DAMPED_SEARCHED],
+        [0.0, most_friction],
+    ]
 }
 
 impl Effect for LoadElasticity {
@@ -92,14 +122,25 @@ impl Effect for LoadElasticity {
         }
     }
 
+    fn unavailable(&self, facts: &Facts) -> Option<String> {
+        let is_measured = facts.joint_torque && !facts.torque_is_of_links;
+        is_measured.then(|| {
+            "the torque of the load is given: what is soft before it is \"elasticity\"".to_owned()
+        })
+    }
+
     // So close that a load that swings by itself for long is not missed between two of them.
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
-        let [low, high] = self.bounds(facts)[0];
+        let [[low, high], _, [_, most]] = bounds(facts);
+        let friction_ratios = match most > 0.0 {
+            true => &[0.0, 0.7, 1.4][..],
+            false => &[0.0],
+        };
         let mut shapes = Vec::new();
         for frequency in logarithmic(low, high, 14) {
             for damping_ratio in [0.04, 0.2] {
-                for friction_ratio in [0.0, 0.7, 1.4] {
-                    shapes.push(vec![frequency, damping_ratio, friction_ratio]);
+                for friction_ratio in friction_ratios {
+                    shapes.push(vec![frequency, damping_ratio, *friction_ratio]);
                 }
             }
         }
@@ -107,12 +148,7 @@ impl Effect for LoadElasticity {
     }
 
     fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
-        let fastest = FASTEST.min(FASTEST_OF_SAMPLES / facts.period);
-        vec![
-            [SLOWEST.min(fastest), fastest],
-            [0.0, MOST_DAMPED_SEARCHED],
-            [0.0, 4.0],
-        ]
+        bounds(facts).into()
     }
 
     fn is_itself(&self, shape: &[f64]) -> bool {
@@ -120,7 +156,7 @@ impl Effect for LoadElasticity {
     }
 
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
-        // Of the inertia that a model without it has, which may be smaller.
+        // Of the load that a model without it has, which may be smaller.
         coefficients.iter().all(|share| (0.05..2.0).contains(share))
     }
 }
@@ -192,22 +228,37 @@ mod tests {
     /// The spring winds up to J ω² x = r τ_R before the load moves: 2 Nm at 5 Hz take 2.25 mrad.
     #[test]
     fn friction_holds_the_load_until_the_spring_is_wound_up() {
-        let start = |at: usize| Point {
+        let start = Point {
             period: PERIOD,
-            position: 1e-5 * at as f64,
             velocity: 0.01,
             friction_predicted: 2.0,
             inertia: INERTIA,
             ..Point::default()
         };
-        let mut memory = [0.0, 0.0, 1.0, 0.0];
-        let moves = (0..1000).find(|&at| {
-            beyond_stiff(&[5.0, 0.0, 1.0], &start(at), &mut memory);
-            memory[SPEED] > 0.0
+        // The load is at rest: the spring winds up as fast as the motor goes.
+        let mut memory = [0.0, INERTIA * 0.01, 1.0, 0.0];
+        let moves = (0..1000).find(|_| {
+            beyond_stiff(&[5.0, 0.0, 1.0], &start, &mut memory);
+            memory[RATE] < 0.999 * INERTIA * 0.01
         });
         let expected = 2.0 / (INERTIA * (TAU * 5.0).powi(2));
-        let travel = 1e-5 * moves.unwrap() as f64;
+        let travel = 0.01 * PERIOD * moves.unwrap() as f64;
         assert!((travel - expected).abs() < 3e-5, "{travel} rad");
+    }
+
+    /// Of an arm's links, whose torque is given: nothing is asked of the joint's own inertia.
+    #[test]
+    fn of_links_all_torque_winds_the_gear_up() {
+        let mut points = points(5.0, 0.0);
+        for own in &mut points {
+            own.load += 20.0;
+            own.inertia = 0.0;
+        }
+        let column = column(&[10.0, 0.02, 0.0], &points);
+        let most = column[3800..].iter().copied().fold(0.0, f64::max);
+        // The weight is borne as by a stiff gear.
+        let expected = INERTIA * 0.1 * (TAU * 5.0).powi(2) / 3.0;
+        assert!((most / expected - 1.0).abs() < 0.05, "{most} Nm");
     }
 
     #[test]

@@ -172,7 +172,7 @@ fn a_soft_gear_is_named_with_the_frequency_of_its_load() {
             ("b0", 2.0 * COULOMB, 0.03),
             ("b1", 2.0 * VISCOUS, 0.06),
             ("frequency", frequency, 0.03),
-            ("inertia_share", SHARE, 0.1),
+            ("load_share", SHARE, 0.1),
             // Friction of the load by share of the inertia: half of it by two thirds.
             ("friction_ratio", 0.75, 0.3),
         ];
