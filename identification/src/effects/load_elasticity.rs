@@ -100,14 +100,19 @@ impl Friction {
     }
 }
 
+/// Fastest load \[Hz\] that samples show.
+fn fastest(facts: &Facts) -> f64 {
+    FASTEST.min(FASTEST_OF_SAMPLES / facts.period)
+}
+
+/// Of the shape.
 fn bounds(facts: &Facts) -> [[f64; 2]; 3] {
-    let fastest = FASTEST.min(FASTEST_OF_SAMPLES / facts.period);
     let most_friction = match facts.torque_is_of_links {
         true => 0.0,
         false => 4.0,
     };
     [
-        [SLOWEST.min(fastest), fastest],
+        [SLOWEST, fastest(facts).max(SLOWEST)],
         [0.0, MOST_DAMPED_SEARCHED],
         [0.0, most_friction],
     ]
@@ -123,9 +128,16 @@ impl Effect for LoadElasticity {
     }
 
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        let is_measured = facts.joint_torque && !facts.torque_is_of_links;
-        is_measured.then(|| {
-            "the torque of the load is given: what is soft before it is \"elasticity\"".to_owned()
+        if facts.joint_torque && !facts.torque_is_of_links {
+            return Some(
+                "the torque of the load is given: what is soft before it is \"elasticity\"".into(),
+            );
+        }
+        let least = 2.0 * SLOWEST;
+        (fastest(facts) < least).then(|| {
+            format!(
+                "loads that swing at {least} Hz are not seen: record or filter at a higher rate"
+            )
         })
     }
 
