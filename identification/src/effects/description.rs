@@ -34,7 +34,7 @@ pub struct EffectDescription {
     pub excited_by: String,
     /// The recording that shows it best.
     pub shown_by: Proposal,
-    /// Whether it is one of recordings without a joint torque alone.
+    /// Whether it is about a load whose torque nobody measures.
     #[serde(skip_serializing_if = "is_false")]
     pub of_unmeasured_load: bool,
     /// Id of the effect that it is another one of the same kind as: it counts beside that alone.

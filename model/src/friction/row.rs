@@ -250,8 +250,8 @@ pub struct Row {
     /// It is a channel whose time stamps are late, which smooths as a filter does: noise may look
     /// like it.
     pub is_lateness: bool,
-    /// It is between the motor and a load whose torque nobody measures: where a joint torque is
-    /// given, another effect is what this one is there.
+    /// It is between the motor and a load whose torque nobody measures: where a sensor gives that
+    /// torque, another effect is what this one is there.
     pub of_unmeasured_load: bool,
     /// Numbers that it is free to choose, where these are not its coefficients
     /// and its shape. The fewer, the simpler.
