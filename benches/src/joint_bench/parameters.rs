@@ -6,23 +6,18 @@ use ferntast_emulation::random::Random;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Transmission {
     Rigid,
-    /// Friction on the motor's side, position measured on the load's:
-    /// τ = K δ + K₃ δ³ with the twist δ.
+    /// Friction on the motor's side: τ = K δ + K₃ δ³ + D δ̇ with the twist δ.
     Elastic {
         /// K \[Nm/rad\].
         stiffness: f64,
         /// K₃ \[Nm/rad³\].
         cubic_stiffness: f64,
-    },
-    /// The same with a linear spring, and position measured on the motor's side; dry friction of
-    /// the link, too.
-    Soft {
-        /// \[Nm/rad\]
-        stiffness: f64,
-        /// \[Nm·s/rad\]
+        /// D \[Nm·s/rad\].
         damping: f64,
-        /// Of the link \[Nm\].
+        /// Dry friction of the link, too \[Nm\].
         link_friction: f64,
+        /// Whether position is measured on the motor's side, not on the load's.
+        measures_motor: bool,
     },
     /// Friction on the load's side, position measured on the motor's; dead
     /// zone of `gap` \[rad\] between them.

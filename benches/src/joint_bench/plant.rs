@@ -40,7 +40,7 @@ struct Moving {
     /// Where friction acts.
     state: State,
     /// Position and velocity on the other side of the transmission: the load's
-    /// for an elastic or soft one, the motor's for backlash.
+    /// for an elastic one, the motor's for backlash.
     other: (f64, f64),
     /// τ_F \[Nm\] at the last step.
     friction: f64,
@@ -106,32 +106,19 @@ impl Fixed {
             Transmission::Elastic {
                 stiffness,
                 cubic_stiffness,
+                damping,
+                link_friction,
+                ..
             } => {
                 let twist = position - moving.other.0;
-                // A fifth of critical damping, with the link alone.
-                let damping = 0.4 * (stiffness * joint.link_inertia).sqrt();
                 let load = (stiffness + cubic_stiffness * twist * twist) * twist
                     + damping * (velocity - moving.other.1);
                 let pull = self.pull(moving.other.0, moving.other.1);
                 acceleration = (motor_torque - friction - load) * self.per_inertia;
-                moving.other.1 += STEP * (load - pull) / joint.link_inertia;
-                moving.other.0 += STEP * moving.other.1;
-                moving.state.load = load;
-            }
-            Transmission::Soft {
-                stiffness,
-                damping,
-                link_friction,
-            } => {
-                let load =
-                    stiffness * (position - moving.other.0) + damping * (velocity - moving.other.1);
-                let pull = self.pull(moving.other.0, moving.other.1);
-                acceleration = (motor_torque - friction - load) * self.per_inertia;
-                let step = STEP / joint.link_inertia;
-                let free = moving.other.1 + step * (load - pull);
+                let free = moving.other.1 + STEP * (load - pull) / joint.link_inertia;
                 // Friction stops the link, and does not turn it round.
-                let slowed = (free.abs() - step * link_friction).max(0.0);
-                moving.other.1 = slowed.copysign(free);
+                let slowed = free.abs() - STEP * link_friction / joint.link_inertia;
+                moving.other.1 = slowed.max(0.0).copysign(free);
                 moving.other.0 += STEP * moving.other.1;
                 moving.state.load = load;
             }
@@ -170,7 +157,7 @@ impl Plant {
     pub(super) fn new(joint: JointParameters, springs: bool, hidden_factor: f64) -> Self {
         let inertia = match joint.transmission {
             Transmission::Rigid => joint.inertia + joint.link_inertia,
-            Transmission::Elastic { .. } | Transmission::Soft { .. } => joint.inertia,
+            Transmission::Elastic { .. } => joint.inertia,
             Transmission::Backlash { .. } => GEAR_SHARE * joint.inertia + joint.link_inertia,
         };
         Plant {
@@ -223,9 +210,7 @@ impl Plant {
     pub(super) fn inertia_times_angle(&self) -> f64 {
         let position = self.moving.state.position;
         let mean = match self.fixed.joint.transmission {
-            Transmission::Rigid | Transmission::Elastic { .. } | Transmission::Soft { .. } => {
-                position
-            }
+            Transmission::Rigid | Transmission::Elastic { .. } => position,
             Transmission::Backlash { .. } => {
                 GEAR_SHARE * position + (1.0 - GEAR_SHARE) * self.moving.other.0
             }
@@ -247,17 +232,18 @@ impl Plant {
     /// Position \[rad\] and velocity \[rad/s\] where position is measured.
     pub(super) fn measured(&self) -> (f64, f64) {
         match self.fixed.joint.transmission {
-            Transmission::Rigid | Transmission::Soft { .. } => {
-                (self.moving.state.position, self.moving.state.velocity)
-            }
-            Transmission::Elastic { .. } | Transmission::Backlash { .. } => self.moving.other,
+            Transmission::Elastic {
+                measures_motor: false,
+                ..
+            } => self.moving.other,
+            _ => self.motor(),
         }
     }
 
     /// Position \[rad\] and velocity \[rad/s\] of the motor, which the servo holds.
     pub(super) fn motor(&self) -> (f64, f64) {
         match self.fixed.joint.transmission {
-            Transmission::Rigid | Transmission::Elastic { .. } | Transmission::Soft { .. } => {
+            Transmission::Rigid | Transmission::Elastic { .. } => {
                 (self.moving.state.position, self.moving.state.velocity)
             }
             Transmission::Backlash { .. } => self.moving.other,

@@ -212,18 +212,18 @@ fn needs_a_torque_sensor(own: HiddenEffect) -> bool {
         Backlash, ChannelDelay, Elasticity, Inertia, LoadCoulomb, LoadStribeck, MotorConstant,
         TorqueSensorGain, TorqueSensorOffset,
     };
-    let need = [
-        Backlash,
-        ChannelDelay,
-        Elasticity,
-        Inertia,
-        LoadCoulomb,
-        LoadStribeck,
-        MotorConstant,
-        TorqueSensorGain,
-        TorqueSensorOffset,
-    ];
-    need.contains(&own)
+    matches!(
+        own,
+        Backlash
+            | ChannelDelay
+            | Elasticity
+            | Inertia
+            | LoadCoulomb
+            | LoadStribeck
+            | MotorConstant
+            | TorqueSensorGain
+            | TorqueSensorOffset
+    )
 }
 
 /// Gives the joint a load that nobody measures and draws what is between it and the motor: ids of
@@ -239,10 +239,12 @@ fn before_the_load(bench: &mut Bench, random: &mut Random) -> Vec<&'static str> 
     }
     if drawn < 2.0 {
         let rate = TAU * within(4.0, 12.0);
-        joint.transmission = Transmission::Soft {
+        joint.transmission = Transmission::Elastic {
             stiffness: joint.link_inertia * rate * rate,
+            cubic_stiffness: 0.0,
             damping: 2.0 * within(0.02, 0.1) * joint.link_inertia * rate,
             link_friction: within(0.0, 4.0),
+            measures_motor: true,
         };
         return vec!["load_elasticity"];
     }
@@ -340,9 +342,11 @@ mod tests {
             let drawn = RealLikeBench::draw(RealLike::MotorOnly, seed).unwrap();
             let (kind, there) = match drawn.bench.joint.transmission {
                 Transmission::Rigid => (0, &[][..]),
-                Transmission::Soft { .. } => (1, &["load_elasticity"][..]),
+                Transmission::Elastic { measures_motor, .. } => {
+                    assert!(measures_motor);
+                    (1, &["load_elasticity"][..])
+                }
                 Transmission::Backlash { .. } => (2, &["backlash", "load_backlash"][..]),
-                Transmission::Elastic { .. } => panic!("of a measured load"),
             };
             assert_eq!(drawn.also_there, there);
             assert!(drawn.bench.joint.link_inertia >= 0.3 * drawn.bench.joint.inertia);

@@ -63,7 +63,7 @@ pub fn put_first(
         true => MIN_SHARE_OF_JOINT,
         false => MIN_SHARE_OF_CONTACT,
     };
-    let is_significant = effect.plausible(&shape, &on_all_rows.coefficients)
+    let is_significant = effect.is_possible(&shape, &on_all_rows.coefficients)
         && on_all_rows.share() > min_share
         && on_all_rows.certainty > MIN_CERTAINTY
         && on_all_rows.p_value < SIGNIFICANCE

@@ -10,7 +10,7 @@
 
 use ferntast_model::friction::{ANGLE, ONE, Proposal};
 
-use super::{Effect, Facts, Memory, Point, free, logarithmic, row, sign};
+use super::{Effect, Facts, Memory, Point, are_shares, combinations, free, logarithmic, row, sign};
 
 row!(
     LoadBacklash,
@@ -55,10 +55,8 @@ impl Load {
             return None;
         };
         let inertial = point.inertia * point.acceleration;
-        // The modelled load is inertia, weight and springs.
-        let pull = point.load - inertial;
-        let friction = friction_ratio * (point.friction_predicted - pull);
-        let weight = weight_ratio * pull;
+        let friction = friction_ratio * point.friction_beside_load();
+        let weight = weight_ratio * point.weight_and_springs();
         Some(Load {
             friction: friction.abs(),
             weight,
@@ -156,15 +154,8 @@ impl Effect for LoadBacklash {
 
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
         let [low, high] = self.bounds(facts)[0];
-        let mut shapes = Vec::new();
-        for gap in logarithmic(low, high, 12) {
-            for friction_ratio in [0.2, 0.6, 1.4] {
-                for weight_ratio in [1.2, 2.4] {
-                    shapes.push(vec![gap, friction_ratio, weight_ratio]);
-                }
-            }
-        }
-        shapes
+        let friction_ratios = vec![0.2, 0.6, 1.4];
+        combinations(&[logarithmic(low, high, 12), friction_ratios, vec![1.2, 2.4]])
     }
 
     fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
@@ -173,14 +164,14 @@ impl Effect for LoadBacklash {
     }
 
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
-        // Of the inertia that a model without the gap has, which is smaller.
-        coefficients.iter().all(|share| (0.05..2.0).contains(share))
+        are_shares(coefficients)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::column_of;
 
     const PERIOD: f64 = 1e-4;
     const INERTIA: f64 = 0.9;
@@ -209,10 +200,7 @@ mod tests {
     }
 
     fn column(shape: &[f64], points: &[Point]) -> Vec<f64> {
-        let mut memory = Memory::default();
-        let each = points.iter();
-        each.map(|point| lacking(shape, point, &mut memory))
-            .collect()
+        column_of(&LoadBacklash::default(), shape, points)
     }
 
     /// The load goes ahead by ½ (A − f) t², with A the motor's deceleration and f the load's own: a

@@ -12,7 +12,7 @@
 
 use ferntast_model::friction::{ONE, Proposal, Unit};
 
-use super::{Effect, Facts, Memory, Point, free, logarithmic, row, sign};
+use super::{Effect, Facts, Memory, Point, are_shares, combinations, free, logarithmic, row, sign};
 
 row!(
     LoadElasticity,
@@ -57,47 +57,29 @@ fn beyond_stiff(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
     // Steps of this length swing faster by (ω T)²/24.
     let omega = omega * (1.0 - (omega * point.period).powi(2) / 24.0);
     let [spring, damper] = [omega * omega, 2.0 * damping * omega];
-    let friction = Friction::at(friction_ratio, point);
-    let stiff = point.load + friction.of_stiff;
+    let friction = friction_ratio * point.friction_beside_load();
+    let stiff = point.load + friction;
     if memory[BEGUN] == 0.0 {
         *memory = [stiff / spring, 0.0, 1.0, 0.0];
     }
     let [wound, before, ..] = *memory;
     let felt = |rate: f64| spring * wound + damper * rate;
     let driven = before + (point.load - felt(before)) * point.period;
-    let rate = friction.slow_down(driven, point);
+    let rate = slowed_by(friction, driven, point);
     memory[WOUND] = wound + rate * point.period;
     memory[RATE] = rate;
     felt(0.5 * (before + rate)) - stiff
 }
 
-/// Friction of the load, per share.
-struct Friction {
-    /// At the motor's speed, as that of a stiff load is \[Nm\].
-    of_stiff: f64,
-}
-
-impl Friction {
-    fn at(ratio: f64, point: &Point) -> Friction {
-        // The modelled load is inertia, weight and springs, which are among the model's effects.
-        let pull = point.load - point.inertia * point.acceleration;
-        let of_stiff = match ratio > 0.0 {
-            true => ratio * (point.friction_predicted - pull),
-            false => 0.0,
-        };
-        Friction { of_stiff }
+/// ẏ \[Nm s\] after a sample, where it would be `driven` without friction of the load, per share
+/// \[Nm\]: this stops the load, and does not turn it round.
+fn slowed_by(friction: f64, driven: f64, point: &Point) -> f64 {
+    if friction == 0.0 || point.inertia <= 0.0 {
+        return driven;
     }
-
-    /// ẏ \[Nm s\] where it would be `driven` without friction: this stops the load, and does not
-    /// turn it round.
-    fn slow_down(&self, driven: f64, point: &Point) -> f64 {
-        if self.of_stiff == 0.0 || point.inertia <= 0.0 {
-            return driven;
-        }
-        let momentum = point.inertia * point.velocity - driven;
-        let slowed = (momentum.abs() - self.of_stiff.abs() * point.period).max(0.0);
-        point.inertia * point.velocity - slowed * sign(momentum)
-    }
+    let momentum = point.inertia * point.velocity - driven;
+    let slowed = (momentum.abs() - friction.abs() * point.period).max(0.0);
+    point.inertia * point.velocity - slowed * sign(momentum)
 }
 
 /// Fastest load \[Hz\] that samples show.
@@ -145,18 +127,10 @@ impl Effect for LoadElasticity {
     fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
         let [[low, high], _, [_, most]] = bounds(facts);
         let friction_ratios = match most > 0.0 {
-            true => &[0.0, 0.7, 1.4][..],
-            false => &[0.0],
+            true => vec![0.0, 0.7, 1.4],
+            false => vec![0.0],
         };
-        let mut shapes = Vec::new();
-        for frequency in logarithmic(low, high, 14) {
-            for damping_ratio in [0.04, 0.2] {
-                for friction_ratio in friction_ratios {
-                    shapes.push(vec![frequency, damping_ratio, *friction_ratio]);
-                }
-            }
-        }
-        shapes
+        combinations(&[logarithmic(low, high, 14), vec![0.04, 0.2], friction_ratios])
     }
 
     fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
@@ -168,14 +142,14 @@ impl Effect for LoadElasticity {
     }
 
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
-        // Of the load that a model without it has, which may be smaller.
-        coefficients.iter().all(|share| (0.05..2.0).contains(share))
+        are_shares(coefficients)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::column_of;
     use std::f64::consts::TAU;
 
     const PERIOD: f64 = 1e-3;
@@ -206,10 +180,7 @@ mod tests {
     }
 
     fn column(shape: &[f64], points: &[Point]) -> Vec<f64> {
-        let mut memory = Memory::default();
-        let each = points.iter();
-        each.map(|point| beyond_stiff(shape, point, &mut memory))
-            .collect()
+        column_of(&LoadElasticity::default(), shape, points)
     }
 
     /// Without friction it is linear: J θ̈ (1/(1 − ρ²) − 1) with ρ the ratio of the frequencies,

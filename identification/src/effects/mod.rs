@@ -264,7 +264,34 @@ pub fn find_by_row(is: impl Fn(&Row) -> bool) -> Option<EffectHandle> {
     all().into_iter().find(|effect| is(effect.row()))
 }
 
+/// Every combination of a value of each axis, those of the last one next to each other.
+pub(crate) fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    axes.iter().fold(vec![Vec::new()], |shapes, values| {
+        let each = shapes.iter();
+        each.flat_map(|shape| values.iter().map(|v| [shape.as_slice(), &[*v]].concat()))
+            .collect()
+    })
+}
+
+/// Whether shares of a load are possible: they are of the load that a model without the effect
+/// has, which may be smaller than it is.
+fn are_shares(coefficients: &[f64]) -> bool {
+    coefficients.iter().all(|share| (0.05..2.0).contains(share))
+}
+
 /// A parameter that no law of the servo uses, without bounds.
 const fn free(name: &'static str, unit: Unit) -> EffectParameter {
     EffectParameter::new(name, unit, f64::NEG_INFINITY, f64::INFINITY)
+}
+
+/// The only column of an effect over `points`.
+#[cfg(test)]
+fn column_of(effect: &dyn Effect, shape: &[f64], points: &[Point]) -> Vec<f64> {
+    let mut memory = Memory::default();
+    let mut column = [0.0];
+    let each = points.iter().map(|point| {
+        effect.evaluate(shape, point, &mut memory, &mut column);
+        column[0]
+    });
+    each.collect()
 }

@@ -11,7 +11,7 @@ pub mod periodicity;
 mod tests;
 
 use crate::design::{BlockGrams, Design, PreparedModel};
-use crate::effects::EffectHandle;
+use crate::effects::{EffectHandle, combinations};
 use crate::numerics::gram::Gram;
 use crate::validation::{between, gain_within};
 
@@ -321,9 +321,8 @@ pub fn grid(prepared: &PreparedModel, effect: &EffectHandle) -> Vec<Vec<f64>> {
         2 => 8,
         _ => 4,
     };
-    let mut grid = vec![Vec::new()];
-    for [low, high] in &bounds {
-        let values: Vec<f64> = (0..count)
+    let axis = |[low, high]: &[f64; 2]| {
+        (0..count)
             .map(|i| {
                 let share = i as f64 / (count - 1) as f64;
                 // Positive bounds far apart are scanned by ratio.
@@ -333,13 +332,9 @@ pub fn grid(prepared: &PreparedModel, effect: &EffectHandle) -> Vec<Vec<f64>> {
                     low + (high - low) * share
                 }
             })
-            .collect();
-        grid = grid
-            .iter()
-            .flat_map(|shape| values.iter().map(|v| [shape.clone(), vec![*v]].concat()))
-            .collect();
-    }
-    grid
+            .collect()
+    };
+    combinations(&bounds.iter().map(axis).collect::<Vec<_>>())
 }
 
 /// Distance to the farther of the neighbouring grid values, of each parameter.

@@ -52,6 +52,19 @@ impl Point {
         sign(self.velocity)
     }
 
+    /// Friction that the model predicts without the load that it models, weight and springs,
+    /// whose effects are among those that it predicts \[Nm\].
+    #[must_use]
+    pub fn friction_beside_load(&self) -> f64 {
+        self.friction_predicted - self.weight_and_springs()
+    }
+
+    /// The modelled load without what drives its inertia \[Nm\].
+    #[must_use]
+    pub fn weight_and_springs(&self) -> f64 {
+        self.load - self.inertia * self.acceleration
+    }
+
     /// What static laws of friction are functions of.
     #[must_use]
     pub fn friction_state(&self) -> FrictionState {

@@ -36,6 +36,10 @@ impl Effect for Elasticity {
         joint.transmission = Transmission::Elastic {
             stiffness: self.stiffness,
             cubic_stiffness: self.cubic_stiffness,
+            // A fifth of critical damping, with the link alone.
+            damping: 0.4 * (self.stiffness * joint.link_inertia).sqrt(),
+            link_friction: 0.0,
+            measures_motor: false,
         };
     }
 

@@ -83,6 +83,9 @@ fn an_elastic_transmission_twists_by_its_law() {
     joint.transmission = Transmission::Elastic {
         stiffness: 300.0,
         cubic_stiffness: 6e4,
+        damping: 0.4 * (300.0 * joint.link_inertia).sqrt(),
+        link_friction: 0.0,
+        measures_motor: false,
     };
     let mut plant = Plant::new(joint, true, 1.0);
     for _ in 0..60_000 {
@@ -103,10 +106,12 @@ fn behind_a_soft_gear_the_link_swings() {
     // The motor is too heavy to move.
     joint.inertia = 1e6;
     (joint.link_inertia, joint.link_damping) = (1.0, 0.0);
-    joint.transmission = Transmission::Soft {
+    joint.transmission = Transmission::Elastic {
         stiffness: rate * rate,
+        cubic_stiffness: 0.0,
         damping: 0.0,
         link_friction: 0.9,
+        measures_motor: true,
     };
     let mut plant = Plant::new(joint, false, 1.0);
     plant.moving.other.0 = 0.01;
