@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::acceptance::Acceptance;
 use super::candidates::{Candidate, Trial, try_again, try_all};
 use super::confirmation::Confirmation;
-use super::dependence::Dependence;
+use super::dependence::{self, Dependence};
 use super::results::Verdict;
 use super::verdict::{judge, maps, passing};
 use super::{
@@ -34,7 +34,8 @@ pub(super) struct Examination {
     pub(super) passing: Vec<Candidate>,
     /// The model with each of them, by their ids.
     pub(super) additions: BTreeMap<String, Addition>,
-    /// Dependences of the residual.
+    /// Dependences of the residual; where it goes with no signal, that on its own past, which tells
+    /// for no name and against none.
     pub(super) maps: Vec<Dependence>,
     pub(super) verdict: Verdict,
 }
@@ -88,7 +89,7 @@ pub(super) fn examine(
     acceptance.keep_accepted(&mut passing);
     progress(0.75);
     let mut tell = |done| progress(0.75 + 0.2 * done);
-    let verdict = judge(
+    let mut verdict = judge(
         &prepared,
         &design,
         &passing,
@@ -96,6 +97,12 @@ pub(super) fn examine(
         &confirmation,
         &mut tell,
     );
+    if maps.is_empty() {
+        maps.extend(dependence::on_own_past(&prepared, &design));
+    }
+    if verdict == Verdict::Complete && !maps.is_empty() {
+        verdict = Verdict::Unexplained;
+    }
     let made = acceptance.made.into_iter();
     let additions = made.filter_map(|(id, addition)| Some((id, addition?)));
     let additions = additions.collect();

@@ -1,6 +1,6 @@
 //! Effects of which there is more than one, or that one term does not describe.
 
-use super::recordings::{JointState, model, plain, recording};
+use super::recordings::{self, JointState, model, plain, recording};
 use crate::{Dataset, Verdict, compare, diagnose};
 
 /// What is named step by step, the last verdict, and the error on data held out that is left.
@@ -123,4 +123,48 @@ fn what_swings_with_time_is_told_with_its_period() {
     let period = own.period_s.unwrap();
     assert!((period * 3.1 - 1.0).abs() < 2e-3, "{period}");
     assert!(own.on().contains("period of 0.322"), "{}", own.on());
+}
+
+/// A structure that is struck again and again, and rings at 2.5 Hz for a second or two after each blow:
+/// in step with nothing. As much noise is nothing.
+#[test]
+fn what_rings_anew_after_each_blow_is_told_by_its_own_past() {
+    let mut ringing = recording(14, plain);
+    let mut noisy = ringing.clone();
+    let mut chance = recordings::noise(99);
+    let omega = std::f64::consts::TAU * 2.5;
+    let mut square = 0.0;
+    for session in &mut ringing.sessions {
+        let (mut x, mut v) = (0.0, 0.0);
+        for torque in &mut session.motor_torque {
+            let blow = chance();
+            v += match blow.abs() > 2.4 {
+                true => 0.4 * omega * blow.signum(),
+                false => 0.0,
+            };
+            v -= session.period * omega * (omega * x + 0.1 * v);
+            x += session.period * v;
+            square += x * x / (6.0 * 4000.0);
+            *torque += x;
+        }
+    }
+    for torque in noisy.sessions.iter_mut().flat_map(|s| &mut s.motor_torque) {
+        *torque += square.sqrt() * chance();
+    }
+    let asked = |data| diagnose(data, &model(&["coulomb", "viscous"]), &mut |_| ()).unwrap();
+    assert_eq!(asked(&noisy).verdict, Verdict::Complete);
+    let found = asked(&ringing);
+    assert_eq!(found.verdict, Verdict::Unexplained);
+    let [own] = found.residual_depends_on.as_slice() else {
+        panic!("{:?}", found.residual_depends_on);
+    };
+    assert_eq!(own.signals, ["own_past"]);
+    assert!((0.3..0.95).contains(&own.strength), "{}", own.strength);
+    let period = own.period_s.unwrap();
+    assert!((0.9..1.1).contains(&(period * 2.5)), "{period}");
+    assert!(
+        own.on().starts_with("its own past, which swings"),
+        "{}",
+        own.on()
+    );
 }

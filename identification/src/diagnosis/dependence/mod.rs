@@ -7,6 +7,7 @@
 
 mod basis;
 mod oscillation;
+mod own_past;
 
 use basis::{Channel, Ground, KNOTS_PAIR, KNOTS_PRODUCT, Slow};
 use serde::Serialize;
@@ -20,11 +21,18 @@ use crate::validation::{Score, between, gain_within};
 /// itself, what other maps leave is one, too.
 const MIN_SHARE_OF_OSCILLATION: f64 = 0.1;
 
+/// Smallest share of the mean square that the residual's own past explains: noise that the filters
+/// pass, and steps of an encoder, leave less than half of it.
+const MIN_SHARE_OF_OWN_PAST: f64 = 0.15;
+/// What a residual depends on that goes on from moment to moment, and with no signal.
+const OWN_PAST: &str = "own_past";
+
 /// A dependence of the residual on one signal or two.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Dependence {
     /// One to three signals: `position`, `velocity`, `load`, `acceleration`,
-    /// `load_rate`, `temperature`, `date`, `time`, or the name of an extra signal;
+    /// `load_rate`, `temperature`, `date`, `time`, or the name of an extra signal; or
+    /// `own_past`, the residual's own some moments before;
     /// of a contact as [`JointType::signal`](crate::JointType::signal) calls them.
     pub signals: Vec<String>,
     /// Share of the residual's mean square that a map over them explains on
@@ -36,7 +44,7 @@ pub struct Dependence {
     pub p_value: f64,
     /// See [`Score::certainty`].
     pub certainty: f64,
-    /// Of a residual that swings with time, whatever the joint does: its period \[s\].
+    /// Of a residual that swings, in step with time or anew after each stroke: its period \[s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
     /// Mean residual over the signals; empty where there are three.
@@ -48,9 +56,14 @@ impl Dependence {
     #[must_use]
     pub fn on(&self) -> String {
         let signals = self.signals.join(" and ");
-        match self.period_s {
-            Some(period) => format!("{signals}, with a period of {period:.4} s"),
-            None => signals,
+        match (signals == OWN_PAST, self.period_s) {
+            (false, Some(period)) => format!("{signals}, with a period of {period:.4} s"),
+            (false, None) => signals,
+            (true, Some(period)) => format!(
+                "its own past, which swings with about {:.2} Hz",
+                1.0 / period
+            ),
+            (true, None) => "its own past, which goes on from moment to moment".to_owned(),
         }
     }
 }
@@ -248,6 +261,17 @@ fn oscillating(prepared: &PreparedModel, design: &Design, tried: f64) -> Option<
     let own = dependence(&["time".to_owned()], &found.score, tried)?;
     (own.strength > MIN_SHARE_OF_OSCILLATION).then_some(Dependence {
         period_s: Some(found.period),
+        ..own
+    })
+}
+
+/// What the residual's own past tells of it, if that is much: no noise does that.
+#[must_use]
+pub fn on_own_past(prepared: &PreparedModel, design: &Design) -> Option<Dependence> {
+    let found = own_past::find(prepared, design);
+    let own = dependence(&[OWN_PAST.to_owned()], &found.score, 1.0)?;
+    (own.strength > MIN_SHARE_OF_OWN_PAST).then_some(Dependence {
+        period_s: found.period,
         ..own
     })
 }
