@@ -29,7 +29,8 @@ pub struct ArmAddition {
     pub held_out_after: f64,
     /// As mean squares, with the uncertainty of their difference.
     pub decrease: Decrease,
-    /// Whether the error on rows left out falls by more than its own uncertainty.
+    /// Whether the error on rows left out falls by more than its own uncertainty; that of all
+    /// joints together, too, where the effect moves links that others feel.
     pub lowers_error: bool,
     /// All parameters of the new model, by `parameter@joint`, of the arm by
     /// `effect.parameter`.
@@ -64,9 +65,10 @@ pub fn add(dataset: &ArmDataset, spec: &ArmSpec, term: &ArmTerm) -> Result<ArmAd
         }
         _ => None,
     };
+    let of_all = weighted_decrease(&decreases, &weights_of(&then.held_out()));
     let decrease = match of_joint.and_then(|at| decreases.get(at)) {
         Some(own) => *own,
-        None => weighted_decrease(&decreases, &weights_of(&then.held_out())),
+        None => of_all,
     };
     let (parameters, not_excited) = parameters(&after);
     Ok(ArmAddition {
@@ -74,7 +76,7 @@ pub fn add(dataset: &ArmDataset, spec: &ArmSpec, term: &ArmTerm) -> Result<ArmAd
         joint: term.joint.clone(),
         held_out_before: decrease.before,
         held_out_after: decrease.after,
-        lowers_error: decrease.is_certain(),
+        lowers_error: decrease.is_certain() && (!term.moves_links() || of_all.is_certain()),
         decrease,
         parameters,
         not_excited,

@@ -6,9 +6,11 @@
 //! model.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
+use super::addition::add;
 use super::comparison::{fit, name_partner, samples, used, varies_together};
 use super::contest::{Contender, Contest};
 use super::data::ArmDataset;
@@ -24,6 +26,7 @@ use crate::comparison::{Usage, VariesTogether, noise_floor::NoiseFloor};
 use crate::data::Term;
 use crate::diagnosis::dependence::Dependence;
 use crate::diagnosis::{self, Diagnosis, NamedCandidate, NotTested, Suspect, Verdict};
+use crate::effects::LOAD_SHARE;
 use crate::fit::Rms;
 use ferntast_model::friction::Proposal;
 
@@ -32,6 +35,8 @@ const SIGNIFICANCE: f64 = 0.01;
 /// Smallest share of a joint's mean square that a name explains: the links' torques are
 /// those of smoothed motions, and not exact to the last percent of light joints' noise.
 const MIN_SHARE: f64 = 0.025;
+/// Share of the links' torque that winds a gear up: all, within what other errors make of it.
+const WHOLE: RangeInclusive<f64> = 0.7..=1.3;
 /// Share of the work that the first look at all joints is.
 const FIRST_LOOK: f64 = 0.6;
 
@@ -158,30 +163,32 @@ pub fn diagnose(
             for (helped, decrease) in helped.iter_mut().zip(&winner.decreases) {
                 *helped = decrease.is_certain();
             }
-            // With it in the model: what is left is a second effect, or nothing.
             let more = with(spec, arm.term(winner.effect));
             let then = PreparedArm::new(dataset, &more)?;
-            let open: Vec<usize> = (all.iter().copied())
-                .filter(|at| each[*at].verdict != Verdict::Complete)
-                .collect();
-            let left = look(&then, &open, last)?;
-            for (at, left) in open.iter().zip(&left) {
-                candidates.extend(told.of_joint(*at, left));
-                helped[*at] |= left.verdict == Verdict::Complete;
-            }
+            candidates.extend(look_again(&told, &then, &each, &all, &mut helped, last)?);
         }
         Some(Contender::Joint(winner)) => {
-            let others = all.iter().filter(|at| **at != winner);
-            candidates.extend(told.of_joint(winner, &each[winner]));
-            candidates.extend(others.flat_map(|at| told.of_joint(*at, &each[*at])));
+            let mut own = told.of_joint(winner, &each[winner]);
+            let more = own.first().map(|first| with(spec, first.term()));
             let passing: Vec<&Tried> = tried.iter().filter(|own| own.passes(&weights)).collect();
-            if let (Some(first), false) = (each[winner].candidates.first(), passing.is_empty()) {
-                let term = ArmTerm {
-                    effect: Term::Catalogue(first.effect.clone()),
-                    joint: arm.joints.get(winner).map(|joint| joint.name.clone()),
-                };
-                let more = with(spec, term);
-                candidates.extend(still_passing(dataset, &more, &passing, &weights, &told)?);
+            match &more {
+                Some(more) if own[0].term().moves_links() => {
+                    own.truncate(1);
+                    candidates.append(&mut own);
+                    let then = PreparedArm::new(dataset, more)?;
+                    let mut left = look_again(&told, &then, &each, &all, &mut helped, last)?;
+                    // A second gear that is soft has to help the others, too.
+                    left.retain(|own| !own.term().moves_links() || helps(dataset, more, own));
+                    candidates.append(&mut left);
+                }
+                _ => {
+                    candidates.append(&mut own);
+                    let others = all.iter().filter(|at| **at != winner);
+                    candidates.extend(others.flat_map(|at| told.of_joint(*at, &each[*at])));
+                }
+            }
+            if let (Some(more), false) = (&more, passing.is_empty()) {
+                candidates.extend(still_passing(dataset, more, &passing, &weights, &told)?);
             }
         }
         Some(Contender::Unexplained) | None => {
@@ -246,7 +253,8 @@ fn look(
 /// is too little to be told from the links' own error.
 fn corrected(mut told: Diagnosis, joints: usize) -> Diagnosis {
     let is_certain = |p_value: f64| p_value * (joints as f64) < SIGNIFICANCE;
-    (told.candidates).retain(|own| is_certain(own.p_value) && own.share > MIN_SHARE);
+    (told.candidates)
+        .retain(|own| is_certain(own.p_value) && own.share > MIN_SHARE && winds_up_whole(own));
     told.residual_depends_on
         .retain(|own| is_certain(own.p_value));
     let (named, left) = (&told.candidates, &told.residual_depends_on);
@@ -256,6 +264,41 @@ fn corrected(mut told: Diagnosis, joints: usize) -> Diagnosis {
         _ => Verdict::Complete,
     };
     told
+}
+
+/// With what explains most in the model, `then`: what is left in those of the joints `which` where
+/// something is missing is a second effect, or nothing, and they were helped.
+fn look_again(
+    told: &Told<'_>,
+    then: &PreparedArm<'_>,
+    each: &[Diagnosis],
+    which: &[usize],
+    helped: &mut [bool],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<ArmCandidate>, ArmError> {
+    let open = which.iter().copied();
+    let open: Vec<usize> = open
+        .filter(|at| each[*at].verdict != Verdict::Complete)
+        .collect();
+    let left = look(then, &open, progress)?;
+    let mut candidates = Vec::new();
+    for (at, left) in open.iter().zip(&left) {
+        candidates.extend(told.of_joint(*at, left));
+        helped[*at] |= left.verdict == Verdict::Complete;
+    }
+    Ok(candidates)
+}
+
+/// Whether it lowers the errors of all joints together.
+fn helps(dataset: &ArmDataset, spec: &ArmSpec, candidate: &ArmCandidate) -> bool {
+    add(dataset, spec, &candidate.term()).is_ok_and(|added| added.lowers_error)
+}
+
+/// Whether an effect that winds a gear up does so by all of the torque that the links take, as a gear
+/// is; of every other effect.
+fn winds_up_whole(candidate: &NamedCandidate) -> bool {
+    let share = candidate.parameters.get(LOAD_SHARE);
+    share.is_none_or(|share| WHOLE.contains(&share.value))
 }
 
 /// The model with one more effect.

@@ -25,6 +25,7 @@ mod possible;
 mod prepared;
 mod rigid_body;
 mod shared;
+mod soft_gears;
 mod spec;
 mod term;
 #[cfg(test)]

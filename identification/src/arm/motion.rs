@@ -4,11 +4,13 @@
 use ferntast_model::Joints;
 
 use super::data::{ArmDataset, ArmSession};
+use super::soft_gears::Winding;
 use crate::data::{Dataset, JointType, RecordedSession};
 use crate::numerics::filter::thin;
 use crate::signals::Filters;
 
 /// States of all joints at the working rate.
+#[derive(Clone)]
 pub(super) struct States {
     pub(super) q: Vec<Joints<f64>>,
     pub(super) qd: Vec<Joints<f64>>,
@@ -19,6 +21,8 @@ pub(super) struct States {
 pub(super) struct Motion {
     /// Thinned.
     pub(super) sessions: Vec<ArmSession>,
+    /// Of each joint.
+    filters: Vec<Filters>,
     pub(super) states: Vec<States>,
     /// How many of these are fitted; the others are held out.
     pub(super) fitted: usize,
@@ -64,8 +68,24 @@ impl Motion {
                 .map(|session| States::new(session, &filters))
                 .collect(),
             sessions,
+            filters,
             fitted: dataset.sessions.len(),
         }
+    }
+
+    /// States of the links where gears are wound up by `windings`.
+    pub(super) fn states_behind(&self, windings: &[Winding]) -> Vec<States> {
+        let sessions = self.sessions.iter().enumerate();
+        let each = sessions.map(|(number, session)| {
+            let mut behind = session.clone();
+            for own in windings {
+                let wound = own.by_session.get(number).into_iter().flatten();
+                let positions = behind.position.get_mut(own.joint).into_iter().flatten();
+                positions.zip(wound).for_each(|(q, wound)| *q -= wound);
+            }
+            States::new(&behind, &self.filters)
+        });
+        each.collect()
     }
 }
 
@@ -92,6 +112,15 @@ impl States {
             qd: order(1),
             qdd: order(2),
         }
+    }
+
+    /// The same with velocity and acceleration of one joint from `other`.
+    pub(super) fn with_motion_of(mut self, joint: usize, other: &States) -> States {
+        let qd = self.qd.iter_mut().zip(&other.qd);
+        let qdd = self.qdd.iter_mut().zip(&other.qdd);
+        qd.chain(qdd)
+            .for_each(|(own, other)| own[joint] = other[joint]);
+        self
     }
 
     pub(super) fn len(&self) -> usize {

@@ -10,13 +10,13 @@ use super::data::ArmDataset;
 use super::effects::ArmEffect;
 use super::error::ArmError;
 use super::joint::ArmJoint;
-use super::motion::Motion;
+use super::motion::{Motion, States};
 use super::possible::{nearest_link, nearest_payload};
 use super::rigid_body::RigidBody;
 use super::shared::{self, ArmColumns};
+use super::soft_gears::{TurnedInertias, Winding};
 use super::spec::ArmSpec;
 use super::term::ArmTerm;
-use crate::data::error::PrepareError;
 use crate::data::stated_filter::StatedFilter;
 use crate::data::{Dataset, RecordedSession};
 use crate::effects::{LOAD_OF, POSITION_OF, VELOCITY_OF};
@@ -47,6 +47,7 @@ pub struct PreparedArm<'a> {
     pub joints: Vec<ArmJoint>,
     pub(super) spec: &'a ArmSpec,
     pub(super) motion: Motion,
+    inertias: TurnedInertias,
     pub(super) corrections: Vec<Correction>,
 }
 
@@ -65,10 +66,12 @@ impl<'a> PreparedArm<'a> {
             covariance: DMatrix::zeros(effect.columns(), effect.columns()),
             is_held: false,
         });
+        let motion = Motion::new(dataset, |joint| spec.joint_type(joint));
         let mut arm = Self {
             joints: Vec::new(),
             spec,
-            motion: Motion::new(dataset, |joint| spec.joint_type(joint)),
+            inertias: TurnedInertias::new(&spec.chain, &motion.states),
+            motion,
             corrections: corrections.collect(),
         };
         arm.bind(&dataset.joints, dataset.filter)?;
@@ -101,23 +104,70 @@ impl<'a> PreparedArm<'a> {
 
     /// Makes every joint's recordings and binds its model to them.
     fn bind(&mut self, names: &[String], filter: Option<StatedFilter>) -> Result<(), ArmError> {
-        let body = self.body();
-        let torques: Vec<Vec<Vec<f64>>> = (self.motion.states.iter())
-            .map(|states| body.torques(states))
+        let torques = self.torques(&self.motion.states);
+        let joints = 0..names.len();
+        let joints = joints.map(|at| self.joint_of(at, names, filter, &torques));
+        self.joints = joints.collect::<Result<_, _>>()?;
+        self.bind_behind_soft_gears(names, filter)
+    }
+
+    /// The same, once more, of the joints that feel links behind the soft gears of others.
+    fn bind_behind_soft_gears(
+        &mut self,
+        names: &[String],
+        filter: Option<StatedFilter>,
+    ) -> Result<(), ArmError> {
+        let joints = self.joints.iter().enumerate();
+        let windings: Vec<Winding> = joints
+            .filter_map(|(at, joint)| self.inertias.winding(at, joint))
             .collect();
+        if windings.is_empty() {
+            return Ok(());
+        }
+        let behind = self.motion.states_behind(&windings);
+        let torques = self.torques(&behind);
         let mut joints = Vec::new();
-        for (at, name) in names.iter().enumerate() {
-            let dataset = self.dataset_of(at, names, filter, &torques);
-            let spec = self.spec.of_joint(at, names)?;
-            let refuse = |source: PrepareError| ArmError::Joint {
-                joint: name.clone(),
-                source: Box::new(source),
+        for at in 0..names.len() {
+            let is_soft = windings.iter().any(|own| own.joint == at);
+            let torques = match is_soft {
+                // Moved with the motor from where the links are: what winds the gear up.
+                true => {
+                    let each = behind.iter().cloned().zip(&self.motion.states);
+                    let moved = each.map(|(links, motors)| links.with_motion_of(at, motors));
+                    &self.torques(&moved.collect::<Vec<_>>())
+                }
+                false => &torques,
             };
-            let prepared = prepare(&dataset, &spec).map_err(refuse)?;
-            joints.push(ArmJoint::new(name.clone(), dataset, spec, prepared));
+            joints.push(self.joint_of(at, names, filter, torques)?);
         }
         self.joints = joints;
         Ok(())
+    }
+
+    /// τ of each joint at every sample, by session.
+    fn torques(&self, states: &[States]) -> Vec<Vec<Vec<f64>>> {
+        let body = self.body();
+        states.iter().map(|states| body.torques(states)).collect()
+    }
+
+    /// Joint number `at`, its model bound to recordings with these torques of the links.
+    fn joint_of(
+        &self,
+        at: usize,
+        names: &[String],
+        filter: Option<StatedFilter>,
+        torques: &[Vec<Vec<f64>>],
+    ) -> Result<ArmJoint, ArmError> {
+        let name = names[at].clone();
+        let dataset = self.dataset_of(at, names, filter, torques);
+        let spec = self.spec.of_joint(at, names)?;
+        match prepare(&dataset, &spec) {
+            Ok(prepared) => Ok(ArmJoint::new(name, dataset, spec, prepared)),
+            Err(source) => Err(ArmError::Joint {
+                joint: name,
+                source: Box::new(source),
+            }),
+        }
     }
 
     fn dataset_of(
@@ -128,7 +178,8 @@ impl<'a> PreparedArm<'a> {
         torques: &[Vec<Vec<f64>>],
     ) -> Dataset {
         let each = self.motion.sessions.iter().zip(&self.motion.states);
-        let mut sessions = each.zip(torques).map(|((session, states), torques)| {
+        let each = each.zip(torques).enumerate();
+        let mut sessions = each.map(|(number, ((session, states), torques))| {
             let mut extra = BTreeMap::new();
             for (other, name) in names
                 .iter()
@@ -150,6 +201,8 @@ impl<'a> PreparedArm<'a> {
                 motor_torque: session.motor_torque[joint].clone(),
                 joint_torque: torques.get(joint).cloned(),
                 torque_is_of_links: true,
+                relative_links_inertia: (self.inertias.relative(number, joint))
+                    .map(<[f64]>::to_vec),
                 extra,
                 conditions: session.conditions.clone(),
                 ..RecordedSession::default()

@@ -1,5 +1,7 @@
 //! A planar arm of two joints in gravity, whose torques are written down by hand.
 
+mod soft_gear;
+
 use std::f64::consts::PI;
 
 use ferntast_model::rigid_body::{

@@ -60,6 +60,10 @@ pub struct RecordedSession {
     /// errors are effects of the arm.
     #[serde(default)]
     pub torque_is_of_links: bool,
+    /// Inertia of an arm's links that the joint turns, the others held, over its mean over the
+    /// recordings \[-\].
+    #[serde(default)]
+    pub relative_links_inertia: Option<Vec<f64>>,
 }
 
 /// The recordings of one joint, or of one contact.

@@ -19,9 +19,9 @@ pub enum Verdict {
     /// An effect of the catalogue is missing.
     Missing,
     /// No systematic rest: on the samples used the residual depends on no signal that
-    /// is recorded, and no effect of the catalogue lowers the error.
+    /// is recorded and not on its own past, and no effect of the catalogue lowers the error.
     Complete,
-    /// The residual depends on signals in a way that no effect of the catalogue has.
+    /// The residual depends on signals, or on its own past, in a way that no effect of the catalogue has.
     Unexplained,
 }
 

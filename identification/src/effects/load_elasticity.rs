@@ -7,19 +7,23 @@
 //! ÿ + 2 ζ ω ẏ + ω² y = L, and the motor feels 2 ζ ω ẏ + ω² y in place of L. ω is the load's own
 //! frequency, at which it swings while the motor is held. Spong 1987, "Modeling and control of
 //! elastic joint robots", ASME J. Dyn. Syst. Meas. Control 109, with friction of the load, which goes
-//! by its own speed, and damping. Of an arm's links the inertia, and so ω, is one for all postures,
-//! and friction is the motor's.
+//! by its own speed, and damping. Of an arm's links friction is the motor's, ω is that of their mean
+//! inertia, and with ρ the inertia in the posture over its mean (ρ ẏ)˙ + 2 ζ ω ẏ + ω² y = L: how the
+//! inertia changes acts on the speed of the links, not of the motor.
 
 use ferntast_model::friction::{ONE, Proposal, Unit};
 
 use super::{Effect, Facts, Memory, Point, are_shares, combinations, free, logarithmic, row, sign};
+
+/// Its coefficient.
+pub const LOAD_SHARE: &str = "load_share";
 
 row!(
     LoadElasticity,
     id: "load_elasticity",
     equation: "in place of L = s (J q̈ + G + r τ_R), of an arm's links of their torque, the motor feels 2ζω ẏ + ω² y; ÿ + 2ζω ẏ + ω² y = L, ω = 2π frequency",
     source: "Spong 1987, elastic joint; with friction of the load and damping",
-    coefficients: &[free("load_share", ONE)],
+    coefficients: &[free(LOAD_SHARE, ONE)],
     shape: &[
         free("frequency", Unit::new("Hz", "Hz")),
         free("damping_ratio", ONE),
@@ -33,9 +37,9 @@ row!(
     of_unmeasured_load: true,
 );
 
-/// Indices of the memory: y \[Nm s²\]; ẏ half a sample before \[Nm s\]; whether begun.
+/// Indices of the memory: y \[Nm s²\]; ρ ẏ half a sample before \[Nm s\]; whether begun.
 const WOUND: usize = 0;
-const RATE: usize = 1;
+const MOMENTUM: usize = 1;
 const BEGUN: usize = 2;
 
 /// Slowest load \[Hz\]: what swings more slowly is another mechanism than a gear.
@@ -63,15 +67,16 @@ fn beyond_stiff(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
         *memory = [stiff / spring, 0.0, 1.0, 0.0];
     }
     let [wound, before, ..] = *memory;
-    let felt = |rate: f64| spring * wound + damper * rate;
+    let inertia = point.relative_links_inertia;
+    let felt = |momentum: f64| spring * wound + damper * momentum / inertia;
     let driven = before + (point.load - felt(before)) * point.period;
-    let rate = slowed_by(friction, driven, point);
-    memory[WOUND] = wound + rate * point.period;
-    memory[RATE] = rate;
-    felt(0.5 * (before + rate)) - stiff
+    let momentum = slowed_by(friction, driven, point);
+    memory[WOUND] = wound + momentum / inertia * point.period;
+    memory[MOMENTUM] = momentum;
+    felt(0.5 * (before + momentum)) - stiff
 }
 
-/// ẏ \[Nm s\] after a sample, where it would be `driven` without friction of the load, per share
+/// ρ ẏ \[Nm s\] after a sample, where it would be `driven` without friction of the load, per share
 /// \[Nm\]: this stops the load, and does not turn it round.
 fn slowed_by(friction: f64, driven: f64, point: &Point) -> f64 {
     if friction == 0.0 || point.inertia <= 0.0 {
@@ -141,6 +146,15 @@ impl Effect for LoadElasticity {
         shape.get(1).is_some_and(|damping| *damping <= MOST_DAMPED)
     }
 
+    fn winding(&self, shape: &[f64], points: &[Point]) -> Option<Vec<f64>> {
+        let mut memory = Memory::default();
+        let each = points.iter().map(|point| {
+            beyond_stiff(shape, point, &mut memory);
+            memory[WOUND] - memory[MOMENTUM] / point.relative_links_inertia * point.period
+        });
+        Some(each.collect())
+    }
+
     fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
         are_shares(coefficients)
     }
@@ -173,6 +187,7 @@ mod tests {
                     load: INERTIA * acceleration,
                     friction_predicted: friction * velocity.signum(),
                     inertia: INERTIA,
+                    relative_links_inertia: 1.0,
                     ..Point::default()
                 }
             })
@@ -216,13 +231,14 @@ mod tests {
             velocity: 0.01,
             friction_predicted: 2.0,
             inertia: INERTIA,
+            relative_links_inertia: 1.0,
             ..Point::default()
         };
         // The load is at rest: the spring winds up as fast as the motor goes.
         let mut memory = [0.0, INERTIA * 0.01, 1.0, 0.0];
         let moves = (0..1000).find(|_| {
             beyond_stiff(&[5.0, 0.0, 1.0], &start, &mut memory);
-            memory[RATE] < 0.999 * INERTIA * 0.01
+            memory[MOMENTUM] < 0.999 * INERTIA * 0.01
         });
         let expected = 2.0 / (INERTIA * (TAU * 5.0).powi(2));
         let travel = 0.01 * PERIOD * moves.unwrap() as f64;

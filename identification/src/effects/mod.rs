@@ -48,6 +48,7 @@ pub use exact::ExactSignal;
 pub(crate) use exact::{constant_of, parts_of};
 pub use inertia::Inertia;
 pub use joint_coupling::{COUPLING, JointCoupling, LOAD_OF, POSITION_OF, VELOCITY_OF};
+pub use load_elasticity::LOAD_SHARE;
 pub use term::{BoundTerm, with_columns};
 
 /// Largest number of columns of one effect.
@@ -67,6 +68,12 @@ pub trait Effect: Send + Sync {
     /// has the row without any, [`Row::NONE`].
     fn row(&self) -> &'static Row {
         &Row::NONE
+    }
+
+    /// How far a gear that is soft by it is wound up by the torque of an arm's links at each of
+    /// `points`, times the links' mean inertia \[Nm s²\]; `None` of what winds nothing up.
+    fn winding(&self, _shape: &[f64], _points: &[Point]) -> Option<Vec<f64>> {
+        None
     }
 
     /// Number of columns.

@@ -128,6 +128,7 @@ impl Signals {
         let raw = Arc::new(raw);
         let [smooth, ..] = filters.state_kernels(filters.state, period);
         let temperature = session.temperature.as_ref().map(|s| thin(s));
+        let links_inertia = session.relative_links_inertia.as_ref().map(|s| thin(s));
         let days = session.start / SECONDS_PER_DAY;
         let points = (0..raw.position.len())
             .map(|at| Point {
@@ -135,6 +136,7 @@ impl Signals {
                 temperature: temperature.as_ref().map_or(0.0, |t| smooth.at(t, at)),
                 time: session.into_recording + at as f64 * period,
                 days: days + at as f64 * period / SECONDS_PER_DAY,
+                relative_links_inertia: links_inertia.as_ref().map_or(1.0, |own| own[at]),
                 ..Point::default()
             })
             .collect();

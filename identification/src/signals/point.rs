@@ -43,6 +43,8 @@ pub struct Point {
     pub load_slope: f64,
     /// J of the model, given or fitted \[kg m²\].
     pub inertia: f64,
+    /// Inertia of an arm's links that the joint turns, over its mean \[-\]; 1 of a joint alone.
+    pub relative_links_inertia: f64,
 }
 
 impl Point {

@@ -8,7 +8,7 @@ mod contact;
 mod formulas;
 mod honesty;
 pub mod recordings;
-mod unmeasured_load;
+pub(crate) mod unmeasured_load;
 
 use std::collections::BTreeMap;
 

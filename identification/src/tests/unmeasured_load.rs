@@ -25,7 +25,7 @@ fn friction(velocity: f64) -> f64 {
 }
 
 /// Position \[rad\], velocity and acceleration that the motor is led along.
-type Motion = [f64; 3];
+pub(crate) type Motion = [f64; 3];
 
 /// Three sines, which differ from session to session.
 fn sines(session: u32, time: f64) -> Motion {
@@ -41,7 +41,7 @@ fn sines(session: u32, time: f64) -> Motion {
 }
 
 /// Strokes of 0.9 s to and fro at four speeds, with 0.1 s to start and to stop.
-fn strokes(session: u32, time: f64) -> Motion {
+pub(crate) fn strokes(session: u32, time: f64) -> Motion {
     const STROKE: f64 = 0.9;
     const RAMP: f64 = 0.1;
     let number = (time / STROKE).floor();
