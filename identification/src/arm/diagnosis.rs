@@ -169,10 +169,11 @@ pub fn diagnose(
         }
         Some(Contender::Joint(winner)) => {
             let mut own = told.of_joint(winner, &each[winner]);
-            let more = own.first().map(|first| with(spec, first.term()));
+            let first = own.first().map(ArmCandidate::term);
+            let more = first.map(|first| (first.moves_links(), with(spec, first)));
             let passing: Vec<&Tried> = tried.iter().filter(|own| own.passes(&weights)).collect();
             match &more {
-                Some(more) if own[0].term().moves_links() => {
+                Some((true, more)) => {
                     own.truncate(1);
                     candidates.append(&mut own);
                     let then = PreparedArm::new(dataset, more)?;
@@ -187,7 +188,7 @@ pub fn diagnose(
                     candidates.extend(others.flat_map(|at| told.of_joint(*at, &each[*at])));
                 }
             }
-            if let (Some(more), false) = (&more, passing.is_empty()) {
+            if let (Some((_, more)), false) = (&more, passing.is_empty()) {
                 candidates.extend(still_passing(dataset, more, &passing, &weights, &told)?);
             }
         }

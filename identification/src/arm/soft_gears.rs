@@ -1,8 +1,9 @@
 //! Links behind soft gears, which are not where their motors are.
 //!
-//! A gear that is soft in the model of its joint winds up under the torque of the links, by a
-//! winding that is the torque over its stiffness K = ω² M, M the mean inertia that the joint turns. The other joints
-//! feel the links where they are, swings and all; the joint itself has the winding in its own model.
+//! A gear that is soft in the model of its joint winds up under the torque of the links: by y/M, y of
+//! [`load_elasticity`](mod@crate::effects) and M the mean inertia that the joint turns. The other
+//! joints feel the links where they are, swings and all; the joint itself has the winding in its own
+//! model. Inertias are those of the links as they are believed, without the effects of the arm.
 
 use ferntast_model::rigid_body::Chain;
 
@@ -35,9 +36,9 @@ impl TurnedInertias {
         let samples: usize = recordings.iter().map(States::len).sum();
         let mean = (0..joints).map(|joint| {
             let sum: f64 = relative.iter().flat_map(|own| &own[joint]).sum();
-            let mean = (sum / samples.max(1) as f64).max(f64::MIN_POSITIVE);
+            let mean = sum / samples.max(1) as f64;
             let each = relative.iter_mut().flat_map(|own| &mut own[joint]);
-            each.for_each(|own| *own /= mean);
+            each.for_each(|own| *own = if mean > 0.0 { *own / mean } else { 1.0 });
             mean
         });
         Self {
@@ -56,7 +57,7 @@ impl TurnedInertias {
     /// \[rad\] or \[m\]; `None` where it is stiff in the joint's model.
     pub(super) fn winding(&self, at: usize, joint: &ArmJoint) -> Option<Winding> {
         let prepared = &joint.prepared;
-        let mean = self.mean.get(at)?;
+        let mean = self.mean.get(at).filter(|mean| **mean > 0.0)?;
         let of_term = prepared.terms.iter().find_map(|term| {
             let sessions = prepared.sessions.iter().chain(&prepared.held_out);
             let wound = sessions.map(|own| term.effect.winding(&term.shape, &own.points));

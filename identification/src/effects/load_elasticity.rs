@@ -67,13 +67,23 @@ fn beyond_stiff(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
         *memory = [stiff / spring, 0.0, 1.0, 0.0];
     }
     let [wound, before, ..] = *memory;
-    let inertia = point.relative_links_inertia;
-    let felt = |momentum: f64| spring * wound + damper * momentum / inertia;
+    let mobility = mobility(spring, damper, point);
+    let felt = |momentum: f64| spring * wound + damper * (mobility * momentum);
     let driven = before + (point.load - felt(before)) * point.period;
     let momentum = slowed_by(friction, driven, point);
-    memory[WOUND] = wound + momentum / inertia * point.period;
+    memory[WOUND] = wound + mobility * momentum * point.period;
     memory[MOMENTUM] = momentum;
     felt(0.5 * (before + momentum)) - stiff
+}
+
+/// 1/ρ, no greater than steps of this length integrate.
+fn mobility(spring: f64, damper: f64, point: &Point) -> f64 {
+    if point.relative_links_inertia == 1.0 {
+        return 1.0;
+    }
+    // They do while (2ζω + ω² T/2) T/ρ is below 2.
+    let most = 1.9 / ((damper + 0.5 * spring * point.period) * point.period);
+    point.relative_links_inertia.recip().min(most)
 }
 
 /// ρ ẏ \[Nm s\] after a sample, where it would be `driven` without friction of the load, per share
@@ -243,6 +253,26 @@ mod tests {
         let expected = 2.0 / (INERTIA * (TAU * 5.0).powi(2));
         let travel = 0.01 * PERIOD * moves.unwrap() as f64;
         assert!((travel - expected).abs() < 3e-5, "{travel} rad");
+    }
+
+    /// In postures in which they nearly have no inertia, too, and at the highest frequency that samples
+    /// show: nothing grows without end.
+    #[test]
+    fn links_without_inertia_are_felt_as_stiff_ones() {
+        let mut points = points(5.0, 0.0);
+        for (at, own) in points.iter_mut().enumerate() {
+            own.relative_links_inertia = if at % 1000 < 500 { 0.0 } else { 2.0 };
+        }
+        let all = column(&[FASTEST_OF_SAMPLES / PERIOD, 0.2, 0.0], &points);
+        let most = |own: &mut dyn Iterator<Item = f64>| {
+            own.fold(0.0, |most, own| f64::max(most, own.abs()))
+        };
+        let beyond = most(&mut all.iter().copied());
+        let stiff = most(&mut points.iter().map(|own| own.load));
+        assert!(
+            all.iter().all(|own| own.is_finite()) && beyond < 0.1 * stiff,
+            "{beyond} of {stiff} Nm"
+        );
     }
 
     /// Of an arm's links, whose torque is given: nothing is asked of the joint's own inertia.

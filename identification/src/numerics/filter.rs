@@ -213,7 +213,25 @@ impl Kernel {
     /// Value at every sample.
     #[must_use]
     pub fn everywhere(&self, signal: &[f64]) -> Vec<f64> {
-        (0..signal.len()).map(|at| self.at(signal, at)).collect()
+        /// Samples side by side, all of which take a tap at once.
+        const SIDE: usize = 8;
+        let radius = self.taps.len() / 2;
+        let mut values = Vec::with_capacity(signal.len());
+        let first = 0..radius.min(signal.len());
+        values.extend(first.map(|at| self.at(signal, at)));
+        let windows = signal.windows(self.taps.len() + SIDE - 1);
+        for window in windows.step_by(SIDE) {
+            let mut sums = [0.0; SIDE];
+            for (tap, samples) in self.taps.iter().zip(window.windows(SIDE)) {
+                for lane in 0..SIDE {
+                    sums[lane] += tap * samples[lane];
+                }
+            }
+            values.extend(sums);
+        }
+        let rest = values.len()..signal.len();
+        values.extend(rest.map(|at| self.at(signal, at)));
+        values
     }
 
     /// Value at some samples.

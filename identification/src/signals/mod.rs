@@ -186,20 +186,24 @@ impl Signals {
         let raw = &self.raw;
         let [smooth, slope, curvature] = filters.state_kernels(filters.state, self.period);
         let [_, load_rate, load_jerk] = filters.state_kernels(filters.load, self.period);
+        let motion = [&smooth, &slope, &curvature].map(|own| own.everywhere(&raw.position));
+        let motor_torque = smooth.everywhere(&raw.motor_torque);
         let is_loaded = load.iter().any(|load| *load != 0.0);
+        let loads = is_loaded
+            .then(|| [&smooth, &load_rate, &load_jerk].map(|kernel| kernel.everywhere(load)));
         let derived = |(at, point): (usize, &Point)| {
-            let loads = match is_loaded {
-                true => [&smooth, &load_rate, &load_jerk].map(|kernel| kernel.at(load, at)),
-                false => [0.0; 3],
-            };
+            let loads = loads.as_ref();
+            let [load, load_rate, load_jerk] =
+                loads.map_or([0.0; 3], |own| own.each_ref().map(|own| own[at]));
+            let [position, velocity, acceleration] = motion.each_ref().map(|own| own[at]);
             Point {
-                position: smooth.at(&raw.position, at),
-                velocity: slope.at(&raw.position, at),
-                acceleration: curvature.at(&raw.position, at),
-                motor_torque: smooth.at(&raw.motor_torque, at),
-                load: loads[0],
-                load_rate: loads[1],
-                load_jerk: loads[2],
+                position,
+                velocity,
+                acceleration,
+                motor_torque: motor_torque[at],
+                load,
+                load_rate,
+                load_jerk,
                 ..*point
             }
         };
