@@ -22,7 +22,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from peers.arm_recordings import ACCEPTED, OF_THE_ARM, record
+from peers.arm_recordings import ACCEPTED, LATER, record
 from peers.rigid_body import files
 
 ROBOTS = ("panda", "ur5_robot", "xarm7", "ur10_robot", "ur3_robot")
@@ -37,7 +37,7 @@ def options():
     parser.add_argument("--strengths", default="1,0.5", help="1 is plain to see, 0.25 is hard")
     parser.add_argument("--nothing", type=int, default=60, help="arms that hide nothing")
     parser.add_argument("--robots", default=",".join(ROBOTS), help="names of URDF files, without their ending")
-    parser.add_argument("--hide", default="", help="only these effects")
+    parser.add_argument("--hide", default="", help=f"only these effects ({', '.join(LATER)}: only where it is asked for)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="arms at a time")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep the recordings there")
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -48,7 +48,7 @@ def options():
 def cases(asked):
     """Robot, effect, seed and strength of every arm."""
     robots = asked.robots.split(",")
-    effects = asked.hide.split(",") if asked.hide else [effect for effect in ACCEPTED if effect != "none"]
+    effects = asked.hide.split(",") if asked.hide else [effect for effect in ACCEPTED if effect not in ("none", *LATER)]
     hidden = [
         (effects[number % len(effects)], float(strength))
         for strength in asked.strengths.split(",")

@@ -67,22 +67,22 @@ fn beyond_stiff(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
         *memory = [stiff / spring, 0.0, 1.0, 0.0];
     }
     let [wound, before, ..] = *memory;
-    let mobility = mobility(spring, damper, point);
-    let felt = |momentum: f64| spring * wound + damper * (mobility * momentum);
-    let driven = before + (point.load - felt(before)) * point.period;
-    let momentum = slowed_by(friction, driven, point);
+    let mobility = mobility(spring, point);
+    // Half of what the damper takes of ρ ẏ in a sample: by the mean of before and after.
+    let half_damped = 0.5 * damper * mobility * point.period;
+    let driven = before * (1.0 - half_damped) + (point.load - spring * wound) * point.period;
+    let momentum = slowed_by(friction, driven / (1.0 + half_damped), point);
     memory[WOUND] = wound + mobility * momentum * point.period;
     memory[MOMENTUM] = momentum;
-    felt(0.5 * (before + momentum)) - stiff
+    spring * wound + damper * mobility * 0.5 * (before + momentum) - stiff
 }
 
-/// 1/ρ, no greater than steps of this length integrate.
-fn mobility(spring: f64, damper: f64, point: &Point) -> f64 {
+/// 1/ρ, no greater than steps of this length integrate: ω² T²/ρ is below 4.
+fn mobility(spring: f64, point: &Point) -> f64 {
     if point.relative_links_inertia == 1.0 {
         return 1.0;
     }
-    // They do while (2ζω + ω² T/2) T/ρ is below 2.
-    let most = 1.9 / ((damper + 0.5 * spring * point.period) * point.period);
+    let most = 3.5 / (spring * point.period * point.period);
     point.relative_links_inertia.recip().min(most)
 }
 

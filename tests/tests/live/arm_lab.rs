@@ -4,11 +4,12 @@ use ferntast_tests::{Session, ask_python, peer, run};
 use serde_json::{Value, json};
 
 /// Robot, effect, seed, strength. More of them: `tests/python/peers/arm_recordings.py`.
-const CASES: [(&str, &str, &str, &str); 4] = [
+const CASES: [(&str, &str, &str, &str); 5] = [
     ("ur5_robot", "none", "1", "1"),
     ("panda", "stribeck", "1", "1"),
     ("ur5_robot", "payload", "1", "1"),
     ("panda", "joint_coupling", "1", "1"),
+    ("ur5_robot", "load_elasticity", "1", "1"),
 ];
 
 #[test]
@@ -41,5 +42,8 @@ fn what_is_hidden_in_an_arm_is_named_with_its_joint() {
         if !hidden["partner"].is_null() {
             assert_eq!(first["partner"], hidden["partner"], "{name}: {told:#}");
         }
+        let mut all = told["candidates"].as_array().into_iter().flatten();
+        let only_there = all.all(|own| own["joint"] == hidden["joint"]);
+        assert!(only_there, "{name}: {told:#}");
     }
 }
