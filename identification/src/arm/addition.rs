@@ -9,6 +9,7 @@ use super::data::ArmDataset;
 use super::error::ArmError;
 use super::prepared::PreparedArm;
 use super::shared::weighted_decrease;
+use super::soft_gears::moves_links;
 use super::spec::ArmSpec;
 use super::term::ArmTerm;
 use super::trial::weights_of;
@@ -76,7 +77,7 @@ pub fn add(dataset: &ArmDataset, spec: &ArmSpec, term: &ArmTerm) -> Result<ArmAd
         joint: term.joint.clone(),
         held_out_before: decrease.before,
         held_out_after: decrease.after,
-        lowers_error: decrease.is_certain() && (!term.moves_links() || of_all.is_certain()),
+        lowers_error: decrease.is_certain() && (!moves_links(&term.effect) || of_all.is_certain()),
         decrease,
         parameters,
         not_excited,

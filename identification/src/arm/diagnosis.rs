@@ -19,6 +19,7 @@ use super::error::ArmError;
 use super::joint::ArmJoint;
 use super::prepared::PreparedArm;
 use super::shared::{SharedFit, weighted, weighted_decrease};
+use super::soft_gears::moves_links;
 use super::spec::ArmSpec;
 use super::term::ArmTerm;
 use super::trial::{Tried, try_all, try_one};
@@ -165,21 +166,23 @@ pub fn diagnose(
             }
             let more = with(spec, arm.term(winner.effect));
             let then = PreparedArm::new(dataset, &more)?;
-            candidates.extend(look_again(&told, &then, &each, &all, &mut helped, last)?);
+            candidates.extend(look_again(&told, &then, &each, &mut helped, last)?);
         }
         Some(Contender::Joint(winner)) => {
             let mut own = told.of_joint(winner, &each[winner]);
             let first = own.first().map(ArmCandidate::term);
-            let more = first.map(|first| (first.moves_links(), with(spec, first)));
+            let more = first.map(|first| (moves_links(&first.effect), with(spec, first)));
             let passing: Vec<&Tried> = tried.iter().filter(|own| own.passes(&weights)).collect();
             match &more {
                 Some((true, more)) => {
                     own.truncate(1);
                     candidates.append(&mut own);
                     let then = PreparedArm::new(dataset, more)?;
-                    let mut left = look_again(&told, &then, &each, &all, &mut helped, last)?;
+                    let mut left = look_again(&told, &then, &each, &mut helped, last)?;
                     // A second gear that is soft has to help the others, too.
-                    left.retain(|own| !own.term().moves_links() || helps(dataset, more, own));
+                    left.retain(|own| {
+                        !moves_links(&own.term().effect) || helps(dataset, more, own)
+                    });
                     candidates.append(&mut left);
                 }
                 _ => {
@@ -267,18 +270,16 @@ fn corrected(mut told: Diagnosis, joints: usize) -> Diagnosis {
     told
 }
 
-/// With what explains most in the model, `then`: what is left in those of the joints `which` where
-/// something is missing is a second effect, or nothing, and they were helped.
+/// With what explains most in the model, `then`: what is left in the joints where something was
+/// missing is a second effect, or nothing, and they were helped.
 fn look_again(
     told: &Told<'_>,
     then: &PreparedArm<'_>,
     each: &[Diagnosis],
-    which: &[usize],
     helped: &mut [bool],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<ArmCandidate>, ArmError> {
-    let open = which.iter().copied();
-    let open: Vec<usize> = open
+    let open: Vec<usize> = (0..each.len())
         .filter(|at| each[*at].verdict != Verdict::Complete)
         .collect();
     let left = look(then, &open, progress)?;

@@ -14,7 +14,7 @@ use super::motion::{Motion, States};
 use super::possible::{nearest_link, nearest_payload};
 use super::rigid_body::RigidBody;
 use super::shared::{self, ArmColumns};
-use super::soft_gears::{TurnedInertias, Winding};
+use super::soft_gears::{TurnedInertias, Winding, moves_links};
 use super::spec::ArmSpec;
 use super::term::ArmTerm;
 use crate::data::stated_filter::StatedFilter;
@@ -105,43 +105,56 @@ impl<'a> PreparedArm<'a> {
     /// Makes every joint's recordings and binds its model to them.
     fn bind(&mut self, names: &[String], filter: Option<StatedFilter>) -> Result<(), ArmError> {
         let torques = self.torques(&self.motion.states);
-        let joints = 0..names.len();
-        let joints = joints.map(|at| self.joint_of(at, names, filter, &torques));
-        self.joints = joints.collect::<Result<_, _>>()?;
-        self.bind_behind_soft_gears(names, filter)
+        let windings = self.windings(names, filter, &torques)?;
+        self.joints = if windings.is_empty() {
+            let joints = 0..names.len();
+            let joints = joints.map(|at| self.joint_of(at, names, filter, &torques));
+            joints.collect::<Result<_, _>>()?
+        } else {
+            self.joints_behind(&windings, names, filter)?
+        };
+        Ok(())
     }
 
-    /// The same, once more, of the joints that feel links behind the soft gears of others.
-    fn bind_behind_soft_gears(
-        &mut self,
+    /// How far gears that are soft in the models of their joints are wound up, where the links take
+    /// these torques.
+    fn windings(
+        &self,
         names: &[String],
         filter: Option<StatedFilter>,
-    ) -> Result<(), ArmError> {
-        let joints = self.joints.iter().enumerate();
-        let windings: Vec<Winding> = joints
-            .filter_map(|(at, joint)| self.inertias.winding(at, joint))
-            .collect();
-        if windings.is_empty() {
-            return Ok(());
-        }
-        let behind = self.motion.states_behind(&windings);
-        let torques = self.torques(&behind);
-        let mut joints = Vec::new();
+        torques: &[Vec<Vec<f64>>],
+    ) -> Result<Vec<Winding>, ArmError> {
+        let mut windings = Vec::new();
         for at in 0..names.len() {
-            let is_soft = windings.iter().any(|own| own.joint == at);
-            let torques = match is_soft {
-                // Moved with the motor from where the links are: what winds the gear up.
-                true => {
-                    let each = behind.iter().cloned().zip(&self.motion.states);
-                    let moved = each.map(|(links, motors)| links.with_motion_of(at, motors));
-                    &self.torques(&moved.collect::<Vec<_>>())
-                }
-                false => &torques,
-            };
-            joints.push(self.joint_of(at, names, filter, torques)?);
+            if (self.spec.of_joint(at, names)?.effects.iter()).any(moves_links) {
+                let joint = self.joint_of(at, names, filter, torques)?;
+                windings.extend(self.inertias.winding(at, &joint));
+            }
         }
-        self.joints = joints;
-        Ok(())
+        Ok(windings)
+    }
+
+    /// Every joint, with the links behind soft gears where these have wound up to.
+    fn joints_behind(
+        &self,
+        windings: &[Winding],
+        names: &[String],
+        filter: Option<StatedFilter>,
+    ) -> Result<Vec<ArmJoint>, ArmError> {
+        let behind = self.motion.states_behind(windings);
+        let torques = self.torques(&behind);
+        let joint = |at: usize| {
+            let is_soft = windings.iter().any(|own| own.joint == at);
+            if !is_soft {
+                return self.joint_of(at, names, filter, &torques);
+            }
+            // Moved with the motor from where the links are: what winds the gear up.
+            let each = behind.iter().cloned().zip(&self.motion.states);
+            let moved = each.map(|(links, motors)| links.with_motion_of(at, motors));
+            let torques = self.torques(&moved.collect::<Vec<_>>());
+            self.joint_of(at, names, filter, &torques)
+        };
+        (0..names.len()).map(joint).collect()
     }
 
     /// τ of each joint at every sample, by session.

@@ -9,6 +9,13 @@ use ferntast_model::rigid_body::Chain;
 
 use super::joint::ArmJoint;
 use super::motion::States;
+use crate::data::Term;
+use crate::effects;
+
+/// Whether an effect moves links from where the motors of their joints are, which the other joints feel.
+pub(super) fn moves_links(effect: &Term) -> bool {
+    effects::find(effect.name()).is_some_and(|own| own.row().of_unmeasured_load)
+}
 
 /// Inertias \[kg m²\] or \[kg\] of the links that each joint turns, the others held.
 pub(super) struct TurnedInertias {

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::data::{CustomEffect, Term};
-use crate::effects;
 
 /// An effect of an arm's model.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,12 +40,6 @@ impl ArmTerm {
                 }
             }
         }
-    }
-
-    /// Whether it moves links from where the motors of their joints are, which the other joints feel.
-    pub(super) fn moves_links(&self) -> bool {
-        let effect = effects::find(self.effect.name());
-        effect.is_some_and(|own| own.row().of_unmeasured_load)
     }
 
     /// As it is written in files: what [`of`](Self::of) reads.

@@ -60,14 +60,7 @@ fn links(s: &State, points: &[Point], gravity: [f64; 2]) -> [f64; 2] {
 fn recording(seed: u64, more: impl Fn(&State) -> [f64; 2]) -> ArmDataset {
     let mut noise = noise(2 * seed + 1);
     let sessions = (0..3).map(|k| {
-        let mut session = ArmSession {
-            name: format!("session {}", k + 1),
-            start: 100.0 * f64::from(k),
-            period: 0.005,
-            position: vec![Vec::new(); 2],
-            motor_torque: vec![Vec::new(); 2],
-            ..ArmSession::default()
-        };
+        let mut session = empty_session(k, 0.005);
         for i in 0..4000 {
             let t = 0.005 * f64::from(i);
             let mut s = State {
@@ -91,20 +84,50 @@ fn recording(seed: u64, more: impl Fn(&State) -> [f64; 2]) -> ArmDataset {
                 }
             }
             let (own, more) = (links(&s, &[FOREARM], GRAVITY), more(&s));
-            for joint in 0..2 {
-                let coulomb = [1.0, 0.4][joint] * s.qd[joint].signum();
-                let viscous = [0.8, 0.3][joint] * s.qd[joint];
-                let torque = own[joint] + ARMATURE[joint] * s.qdd[joint] + coulomb + viscous;
-                session.position[joint].push(s.q[joint] + 2e-6 * noise());
-                session.motor_torque[joint].push(torque + more[joint] + 0.03 * noise());
-            }
+            measure(
+                &mut session,
+                &s,
+                [own[0] + more[0], own[1] + more[1]],
+                &mut noise,
+            );
         }
         session
     });
+    dataset(sessions)
+}
+
+fn empty_session(number: u32, period: f64) -> ArmSession {
+    ArmSession {
+        name: format!("session {}", number + 1),
+        start: 100.0 * f64::from(number),
+        period,
+        position: vec![Vec::new(); 2],
+        motor_torque: vec![Vec::new(); 2],
+        ..ArmSession::default()
+    }
+}
+
+fn dataset(sessions: impl Iterator<Item = ArmSession>) -> ArmDataset {
     ArmDataset {
         joints: ["shoulder", "elbow"].map(str::to_owned).to_vec(),
         sessions: sessions.collect(),
         ..ArmDataset::default()
+    }
+}
+
+/// Adds a sample of motors with armature, Coulomb and viscous friction, which bear `load` \[Nm\].
+fn measure(
+    session: &mut ArmSession,
+    motors: &State,
+    load: [f64; 2],
+    noise: &mut impl FnMut() -> f64,
+) {
+    for joint in 0..2 {
+        let coulomb = [1.0, 0.4][joint] * motors.qd[joint].signum();
+        let viscous = [0.8, 0.3][joint] * motors.qd[joint];
+        let torque = load[joint] + ARMATURE[joint] * motors.qdd[joint] + coulomb + viscous;
+        session.position[joint].push(motors.q[joint] + 2e-6 * noise());
+        session.motor_torque[joint].push(torque + 0.03 * noise());
     }
 }
 

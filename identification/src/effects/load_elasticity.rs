@@ -37,10 +37,12 @@ row!(
     of_unmeasured_load: true,
 );
 
-/// Indices of the memory: y \[Nm s²\]; ρ ẏ half a sample before \[Nm s\]; whether begun.
+/// Indices of the memory: y at the next sample \[Nm s²\]; ρ ẏ half a sample before that \[Nm s\];
+/// whether begun; y at this sample.
 const WOUND: usize = 0;
 const MOMENTUM: usize = 1;
 const BEGUN: usize = 2;
+const WOUND_NOW: usize = 3;
 
 /// Slowest load \[Hz\]: what swings more slowly is another mechanism than a gear.
 const SLOWEST: f64 = 2.0;
@@ -74,6 +76,7 @@ fn beyond_stiff(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
     let momentum = slowed_by(friction, driven / (1.0 + half_damped), point);
     memory[WOUND] = wound + mobility * momentum * point.period;
     memory[MOMENTUM] = momentum;
+    memory[WOUND_NOW] = wound;
     spring * wound + damper * mobility * 0.5 * (before + momentum) - stiff
 }
 
@@ -160,7 +163,7 @@ impl Effect for LoadElasticity {
         let mut memory = Memory::default();
         let each = points.iter().map(|point| {
             beyond_stiff(shape, point, &mut memory);
-            memory[WOUND] - memory[MOMENTUM] / point.relative_links_inertia * point.period
+            memory[WOUND_NOW]
         });
         Some(each.collect())
     }
@@ -273,6 +276,9 @@ mod tests {
             all.iter().all(|own| own.is_finite()) && beyond < 0.1 * stiff,
             "{beyond} of {stiff} Nm"
         );
+        let shape = [FASTEST_OF_SAMPLES / PERIOD, 0.2, 0.0];
+        let wound = LoadElasticity::default().winding(&shape, &points).unwrap();
+        assert!(wound.iter().all(|own| own.is_finite()));
     }
 
     /// Of an arm's links, whose torque is given: nothing is asked of the joint's own inertia.

@@ -51,14 +51,7 @@ fn recording() -> ArmDataset {
     let (stiffness, damping) = (mean * omega * omega, 2.0 * DAMPING_RATIO * mean * omega);
     let session = |number: u32| {
         let mut noise = noise(u64::from(number) + 21);
-        let mut session = ArmSession {
-            name: format!("session {number}"),
-            start: 100.0 * f64::from(number),
-            period: PERIOD,
-            position: vec![Vec::new(); 2],
-            motor_torque: vec![Vec::new(); 2],
-            ..ArmSession::default()
-        };
+        let mut session = empty_session(number, PERIOD);
         let start = motors(number, 0.0);
         let mut place = start.q[0] - links(&start, &[FOREARM], GRAVITY)[0] / stiffness;
         let mut speed = start.qd[0];
@@ -75,24 +68,14 @@ fn recording() -> ArmDataset {
             link.qdd[0] = acceleration;
             if number_of_step % STEPS == 0 {
                 let load = [gear, links(&link, &[FOREARM], GRAVITY)[1]];
-                for joint in 0..2 {
-                    let friction = [1.0, 0.4][joint] * motor.qd[joint].signum()
-                        + [0.8, 0.3][joint] * motor.qd[joint];
-                    let torque = load[joint] + ARMATURE[joint] * motor.qdd[joint] + friction;
-                    session.position[joint].push(motor.q[joint] + 2e-6 * noise());
-                    session.motor_torque[joint].push(torque + 0.03 * noise());
-                }
+                measure(&mut session, &motor, load, &mut noise);
             }
             speed += step * acceleration;
             place += step * speed;
         }
         session
     };
-    ArmDataset {
-        joints: ["shoulder", "elbow"].map(str::to_owned).to_vec(),
-        sessions: (0..2).map(session).collect(),
-        ..ArmDataset::default()
-    }
+    dataset((0..2).map(session))
 }
 
 #[test]
