@@ -52,24 +52,30 @@ impl Motion {
         )
     }
 
-    /// Position over time that a session follows.
-    pub(super) fn programme(self, random: &mut Random) -> Programme {
+    /// Position over time that a session follows, which runs it so many `rounds`.
+    pub(super) fn programme(self, rounds: usize, random: &mut Random) -> Programme {
         let mut programme = Programme::default();
         programme.rest(0.3);
-        match self {
-            Motion::Standard | Motion::TemperatureSweep | Motion::DateSweep => {
-                standard(&mut programme, random);
-            }
-            Motion::FastUnloaded => fast(&mut programme, random),
-            Motion::SlowReversals => slow_reversals(&mut programme, random),
-            Motion::WideSpeedRange => wide_speeds(&mut programme),
-            Motion::WidePosition => wide_position(&mut programme),
-            Motion::LoadSteps => load_steps(&mut programme),
-            Motion::Accelerations => accelerations(&mut programme),
+        for _ in 0..rounds {
+            self.round(&mut programme, random);
+            programme.to(0.0, 0.25, 2.0);
         }
-        programme.to(0.0, 0.25, 2.0);
         programme.rest(0.3);
         programme
+    }
+
+    fn round(self, programme: &mut Programme, random: &mut Random) {
+        match self {
+            Motion::Standard | Motion::TemperatureSweep | Motion::DateSweep => {
+                standard(programme, random);
+            }
+            Motion::FastUnloaded => fast(programme, random),
+            Motion::SlowReversals => slow_reversals(programme, random),
+            Motion::WideSpeedRange => wide_speeds(programme),
+            Motion::WidePosition => wide_position(programme),
+            Motion::LoadSteps => load_steps(programme),
+            Motion::Accelerations => accelerations(programme),
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 
 use ferntast_emulation::random::Random;
 
+use super::effect::cold_start;
 use super::parameters::Transmission;
 use super::{Bench, BenchConfig, BenchError, HiddenEffect, Motion, sensors::POSITION_QUANTUM};
 use crate::bench::{Hideable, MILLISECONDS_A_LOG, Stream, named, random};
@@ -37,6 +38,9 @@ named! {
         /// a stiff gear, a third a soft one, with the load swinging at 4 to 12 Hz, a third a gap
         /// of 10 to 40 mrad.
         MotorOnly = "motor_only",
+        /// One session of minutes, from a cold start or a warm one, whose temperature nobody
+        /// measures: half of the joints warm up.
+        ColdStart = "cold_start",
     }
 }
 
@@ -47,6 +51,8 @@ pub(super) struct Surroundings {
     pub(super) log_milliseconds: usize,
     /// Where a model gives the load: what it makes of the true one, a gain and an offset \[Nm\].
     pub(super) modelled_load: Option<[f64; 2]>,
+    /// How often a session runs its motion.
+    pub(super) rounds: usize,
     /// Whether sessions are a routine in place of a motion of their own.
     pub(super) is_routine: bool,
     /// Where the drive ends.
@@ -70,6 +76,7 @@ impl Default for Surroundings {
         Self {
             log_milliseconds: MILLISECONDS_A_LOG,
             modelled_load: None,
+            rounds: 1,
             is_routine: false,
             drive: None,
             position_quantum: POSITION_QUANTUM,
@@ -100,7 +107,7 @@ impl RealLikeBench {
         let mut config = BenchConfig {
             seed,
             sessions: match kind {
-                RealLike::OneSession => 1,
+                RealLike::OneSession | RealLike::ColdStart => 1,
                 RealLike::LittleExcitation | RealLike::OtherRate | RealLike::MotorOnly => 3,
                 _ => 6,
             },
@@ -158,6 +165,13 @@ impl RealLikeBench {
                 here.log_milliseconds = one_of(&[1, 2, 4, 5], &mut random);
                 also_there = before_the_load(&mut bench, &mut random);
             }
+            RealLike::ColdStart => {
+                here.rounds = 5;
+                if random.chance(0.5) {
+                    bench.effects.push(cold_start::draw(&mut random));
+                    also_there = vec!["warm_up_coulomb", "warm_up_viscous"];
+                }
+            }
             RealLike::OneSession | RealLike::LimitedDrive | RealLike::UnnamedFriction => {}
         }
         Ok(Self {
@@ -190,6 +204,12 @@ fn hidden(kind: RealLike, random: &mut Random) -> Option<HiddenEffect> {
         }
         RealLike::LimitedDrive => own == HiddenEffect::CurrentSaturation,
         RealLike::MotorOnly => needs_a_torque_sensor(own),
+        RealLike::ColdStart => matches!(
+            own,
+            HiddenEffect::TemperatureCoulomb
+                | HiddenEffect::TemperatureViscous
+                | HiddenEffect::WearDrift
+        ),
         _ => false,
     };
     let all = HiddenEffect::ALL.iter().copied();

@@ -24,7 +24,7 @@ impl Bench {
         let mut moves = random(config.seed, Stream::Motion, index);
         let programme = match here.is_routine {
             true => motion::routine(&mut moves),
-            false => motion.programme(&mut moves),
+            false => motion.programme(here.rounds, &mut moves),
         };
         let mut scatter = random(config.seed, Stream::Session, index);
         let joint = self.joint.scattered(config.scatter, &mut scatter);

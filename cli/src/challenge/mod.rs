@@ -100,8 +100,8 @@ enum Action {
         /// model that is off (uncertain_load), a few moves over and over (little_excitation),
         /// one_session, a drive that ends within the motion or not (limited_drive),
         /// coarse_encoder, 100 to 1000 Hz (other_rate), friction that no catalogue has
-        /// (unnamed_friction), position and torque of the motor alone (motor_only); half of each
-        /// hide an effect
+        /// (unnamed_friction), position and torque of the motor alone (motor_only), a joint that
+        /// warms up unmeasured (cold_start); half of each hide an effect
         /// [default: 10; 0 with --hide, --contact, --intervals-only].
         #[arg(long, value_name = "COUNT")]
         real_like: Option<usize>,

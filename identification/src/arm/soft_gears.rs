@@ -5,6 +5,7 @@
 //! joints feel the links where they are, swings and all; the joint itself has the winding in its own
 //! model. Inertias are those of the links as they are believed, without the effects of the arm.
 
+use ferntast_model::friction::Unmeasured;
 use ferntast_model::rigid_body::Chain;
 
 use super::joint::ArmJoint;
@@ -14,7 +15,8 @@ use crate::effects;
 
 /// Whether an effect moves links from where the motors of their joints are, which the other joints feel.
 pub(super) fn moves_links(effect: &Term) -> bool {
-    effects::find(effect.name()).is_some_and(|own| own.row().of_unmeasured_load)
+    let own = effects::find(effect.name());
+    own.is_some_and(|own| own.row().of_unmeasured == Some(Unmeasured::Load))
 }
 
 /// Inertias \[kg m²\] or \[kg\] of the links that each joint turns, the others held.

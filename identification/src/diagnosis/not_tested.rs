@@ -28,6 +28,7 @@ impl NotTested {
             facts.no_temperature(),
             facts.too_few_temperatures(),
             facts.no_dates(),
+            facts.no_warm_up(),
             facts.no_load(),
             facts.no_torque_sensor(),
         ]

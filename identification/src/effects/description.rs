@@ -1,6 +1,6 @@
 //! How an effect describes itself.
 
-use ferntast_model::friction::{EffectParameter, Proposal, Row, Subject, Unit};
+use ferntast_model::friction::{EffectParameter, Proposal, Row, Subject, Unit, Unmeasured};
 use serde::Serialize;
 
 /// Name and unit of a parameter.
@@ -34,9 +34,9 @@ pub struct EffectDescription {
     pub excited_by: String,
     /// The recording that shows it best.
     pub shown_by: Proposal,
-    /// Whether it is about a load whose torque nobody measures.
-    #[serde(skip_serializing_if = "is_false")]
-    pub of_unmeasured_load: bool,
+    /// What it is about, where nobody measures that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub of_unmeasured: Option<Unmeasured>,
     /// Id of the effect that it is another one of the same kind as: it counts beside that alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub another: Option<String>,
@@ -44,11 +44,6 @@ pub struct EffectDescription {
     /// residual are similar.
     #[serde(rename = "taken_for")]
     pub confusable_with: Vec<String>,
-}
-
-/// Most effects do not say it.
-fn is_false(own: &bool) -> bool {
-    !own
 }
 
 impl EffectDescription {
@@ -72,7 +67,7 @@ impl EffectDescription {
             shows_as: row.shows_as.to_owned(),
             excited_by: row.excited_by.to_owned(),
             shown_by: row.shown_by,
-            of_unmeasured_load: row.of_unmeasured_load,
+            of_unmeasured: row.of_unmeasured,
             another: row.another.map(str::to_owned),
             confusable_with: row
                 .confusable_with

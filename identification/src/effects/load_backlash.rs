@@ -8,7 +8,7 @@
 //! slows down, before it turns back. Nordin and Gutman 2002, "Controlling mechanical systems with
 //! backlash – a survey", Automatica 38 (dead zone between two inertias, with stiff teeth).
 
-use ferntast_model::friction::{ANGLE, ONE, Proposal};
+use ferntast_model::friction::{ANGLE, ONE, Proposal, Unmeasured};
 
 use super::{Effect, Facts, Memory, Point, are_shares, combinations, free, logarithmic, row, sign};
 
@@ -25,7 +25,7 @@ row!(
     confusable_with: &["load_elasticity", "backlash", "presliding_hysteresis", "load_stribeck"],
     shows_at_reversals: true,
     needs_prediction: true,
-    of_unmeasured_load: true,
+    of_unmeasured: Some(Unmeasured::Load),
 );
 
 /// Indices of the memory: place in the gap \[rad\] from its middle; speed of the load \[rad/s\];

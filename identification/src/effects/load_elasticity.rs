@@ -11,7 +11,7 @@
 //! inertia, and with ρ the inertia in the posture over its mean (ρ ẏ)˙ + 2 ζ ω ẏ + ω² y = L: how the
 //! inertia changes acts on the speed of the links, not of the motor.
 
-use ferntast_model::friction::{ONE, Proposal, Unit};
+use ferntast_model::friction::{ONE, Proposal, Unit, Unmeasured};
 
 use super::{Effect, Facts, Memory, Point, are_shares, combinations, free, logarithmic, row, sign};
 
@@ -34,7 +34,7 @@ row!(
     shown_by: Proposal::Accelerations,
     confusable_with: &["load_backlash", "presliding_hysteresis", "channel_delay"],
     needs_prediction: true,
-    of_unmeasured_load: true,
+    of_unmeasured: Some(Unmeasured::Load),
 );
 
 /// Indices of the memory: y at the next sample \[Nm s²\]; ρ ẏ half a sample before that \[Nm s\];

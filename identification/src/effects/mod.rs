@@ -31,6 +31,9 @@ mod term;
 mod torque_sensor_calibration;
 mod torque_sensor_gain;
 mod torque_sensor_offset;
+mod warm_up;
+mod warm_up_coulomb;
+mod warm_up_viscous;
 
 use std::sync::Arc;
 
@@ -84,8 +87,7 @@ pub trait Effect: Send + Sync {
     /// Why its coefficients cannot be identified from recordings with these
     /// `facts`, in words; `None` where they can.
     fn unavailable(&self, facts: &Facts) -> Option<String> {
-        let is_measured = self.row().of_unmeasured_load && facts.joint_torque;
-        is_measured.then(|| "the torque of the load is given".to_owned())
+        self.row().of_unmeasured?.measured(facts)
     }
 
     /// Grid of shapes to try, one vector of shape parameters each; a single empty
@@ -246,6 +248,8 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(channel_delay::ChannelDelay::default()),
         Arc::new(clock_drift::ClockDrift::default()),
         Arc::new(current_saturation::CurrentSaturation::default()),
+        Arc::new(warm_up_coulomb::WarmUpCoulomb::default()),
+        Arc::new(warm_up_viscous::WarmUpViscous::default()),
         Arc::new(contact_compliance::ContactCompliance::default()),
     ]);
     effects

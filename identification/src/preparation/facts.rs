@@ -37,9 +37,11 @@ pub(super) struct Ranges {
     /// Whether it varies within sessions by more than the steps that it is read in.
     pub(super) temperature_is_resolved: bool,
     days: f64,
+    recording_length: f64,
     position: [f64; 2],
     speed: [f64; 2],
     motor_torque: f64,
+    friction_power: f64,
     common_torque: f64,
 }
 
@@ -49,12 +51,14 @@ impl Ranges {
         let mut positions = Vec::new();
         let mut speeds = Vec::new();
         let mut torques = Vec::new();
+        let mut power = 0.0;
         for signals in sessions {
             for &at in &signals.rows {
                 let point = &signals.points[at];
                 positions.push(point.position);
                 speeds.push(point.velocity.abs());
                 torques.push(point.motor_torque.abs());
+                power += (point.motor_torque - point.load) * point.velocity;
             }
         }
         let temperatures: Vec<f64> = dataset
@@ -68,6 +72,8 @@ impl Ranges {
             .iter()
             .map(|s| s.start / 86_400.0)
             .collect();
+        let ends = (dataset.sessions.iter()).map(|s| s.into_recording + s.len() as f64 * s.period);
+        let recording_length = ends.fold(0.0, f64::max);
         Self {
             temperature: dataset.sessions.iter().all(|s| s.temperature.is_some()),
             reference_temperature: temperatures.iter().sum::<f64>()
@@ -75,6 +81,7 @@ impl Ranges {
             temperature_range: span(&temperatures),
             temperature_is_resolved: is_resolved(dataset),
             days: span(&starts),
+            recording_length,
             position: [
                 quantile_or_zero(&mut positions, 0.02),
                 quantile_or_zero(&mut positions, 0.98),
@@ -84,6 +91,7 @@ impl Ranges {
                 quantile_or_zero(&mut speeds, 0.98),
             ],
             motor_torque: quantile_or_zero(&mut torques, 0.999),
+            friction_power: power / torques.len().max(1) as f64,
             common_torque: quantile_or_zero(&mut torques, 0.75),
         }
     }
@@ -137,9 +145,11 @@ pub(super) fn gather(
         temperature_range: ranges.temperature_range,
         sessions: dataset.sessions.len(),
         days: ranges.days,
+        recording_length: ranges.recording_length,
         position: ranges.position,
         speed: ranges.speed,
         motor_torque: ranges.motor_torque,
+        friction_power: ranges.friction_power,
         common_torque: ranges.common_torque,
         resolved: RESOLVED * filters.position_noise,
         loaded: dataset.joint.is_contact()

@@ -9,6 +9,7 @@ mod formulas;
 mod honesty;
 pub mod recordings;
 pub(crate) mod unmeasured_load;
+mod warm_up;
 
 use std::collections::BTreeMap;
 

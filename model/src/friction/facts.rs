@@ -118,12 +118,16 @@ pub struct Facts {
     pub sessions: usize,
     /// Days from the first session to the last.
     pub days: f64,
+    /// The longest recording \[s\], over the gaps within it.
+    pub recording_length: f64,
     /// Range of q \[rad\] (second to 98th percentile).
     pub position: [f64; 2],
     /// Second and 98th percentile of |q̇| while moving \[rad/s\].
     pub speed: [f64; 2],
     /// Top of |τ_m| \[Nm\].
     pub motor_torque: f64,
+    /// Mean power \[W\] that the motor gives and the load does not take, while moving.
+    pub friction_power: f64,
     /// |τ_m| \[Nm\] that one sample in four exceeds, of those away from rest.
     pub common_torque: f64,
     /// Travel \[rad\] that is seen for certain, for the position's noise.
@@ -188,6 +192,13 @@ impl Facts {
             "no load: neither a joint torque sensor nor gravity, spring, inertia or a formula of such in the model"
                 .to_owned()
         })
+    }
+
+    /// Why nothing can be said of how friction changes within a recording, if nothing can.
+    #[must_use]
+    pub fn no_warm_up(&self) -> Option<String> {
+        (self.recording_length < 60.0)
+            .then(|| "recordings of less than a minute: a joint takes longer to warm up".to_owned())
     }
 
     /// Why nothing can be said of dates, if nothing can.

@@ -28,7 +28,7 @@ pub use preset::{PRESETS, Preset};
 pub use proposal::{Contrast, Proposal};
 pub use row::{
     ANGLE, AtReversal, ConstantOf, DAY, Direction, EffectParameter, Exact, ONE, OwnSignals, Part,
-    Row, SPEED, STIFFNESS, TORQUE, Unit,
+    Row, SPEED, STIFFNESS, TORQUE, Unit, Unmeasured,
 };
 pub use static_effect::{FrictionState, Signal, StaticEffect, logarithmic, sign};
 pub use sum::{Friction, FrictionParameters, FrictionTerm, FrictionTorque};

@@ -1,6 +1,6 @@
 //! What an effect of the catalogue is, as data.
 
-use super::facts::{JointType, Subject};
+use super::facts::{Facts, JointType, Subject};
 use super::proposal::{Contrast, Proposal};
 use serde::Serialize;
 
@@ -119,6 +119,31 @@ pub enum Direction {
     Opposite,
     /// Either.
     Either,
+}
+
+/// What an effect can be about that recordings do not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Unmeasured {
+    /// The torque of the load behind a gear.
+    Load,
+    /// The temperature.
+    Temperature,
+}
+
+impl Unmeasured {
+    /// Why nothing can be said of it as of something that is not measured: it is.
+    #[must_use]
+    pub fn measured(self, facts: &Facts) -> Option<String> {
+        let (is_measured, why) = match self {
+            Self::Load => (facts.joint_torque, "the torque of the load is given"),
+            Self::Temperature => (
+                facts.no_temperature().is_none(),
+                "the temperature is measured",
+            ),
+        };
+        is_measured.then(|| why.to_owned())
+    }
 }
 
 /// Signals over which the shape of an effect is fixed: a residual that still
@@ -250,9 +275,9 @@ pub struct Row {
     /// It is a channel whose time stamps are late, which smooths as a filter does: noise may look
     /// like it.
     pub is_lateness: bool,
-    /// It is between the motor and a load whose torque nobody measures: where a sensor gives that
-    /// torque, another effect is what this one is there.
-    pub of_unmeasured_load: bool,
+    /// It is about something that nobody measures: where a sensor gives that, another effect is
+    /// what this one is there.
+    pub of_unmeasured: Option<Unmeasured>,
     /// Numbers that it is free to choose, where these are not its coefficients
     /// and its shape. The fewer, the simpler.
     pub freedom: Option<usize>,
@@ -290,7 +315,7 @@ impl Row {
         needs_prediction: false,
         acts_on_channels: false,
         is_lateness: false,
-        of_unmeasured_load: false,
+        of_unmeasured: None,
         freedom: None,
     };
 

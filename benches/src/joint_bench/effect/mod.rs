@@ -15,6 +15,7 @@ mod cable_spring;
 mod channel;
 mod channel_delay;
 mod clock_drift;
+pub(super) mod cold_start;
 mod current_saturation;
 mod elasticity;
 mod equation_4;

@@ -391,7 +391,7 @@ fn describe(custom: &CustomEffect, of: Subject) -> EffectDescription {
         shows_as: "as the expression says".to_owned(),
         excited_by: "motion over which the expression varies".to_owned(),
         shown_by,
-        of_unmeasured_load: false,
+        of_unmeasured: None,
         another: None,
         confusable_with: Vec::new(),
     }

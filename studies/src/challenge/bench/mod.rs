@@ -168,10 +168,10 @@ mod tests {
             (Subject::Joint, truths::<joint_bench::HiddenEffect>()),
             (Subject::Contact, truths::<contact_bench::HiddenEffect>()),
         ] {
-            // A second one of a kind is hidden where the first is known, and what shows only
-            // where no torque sensor is in recordings without one: in tests of the lab.
+            // A second one of a kind is hidden where the first is known, and what shows only where
+            // something is not measured in recordings without that: in tests of the lab.
             let first = |own: &EffectDescription| {
-                own.of == subject && own.another.is_none() && !own.of_unmeasured_load
+                own.of == subject && own.another.is_none() && own.of_unmeasured.is_none()
             };
             let own = catalogue().into_iter().filter(first);
             let mut own: Vec<String> = own.map(|own| own.id).collect();

@@ -109,6 +109,10 @@ fn answer(case: &RealCase) -> Result<RealAnswer, String> {
         session.torque_is_modelled = case.kind == RealLike::UncertainLoad;
     }
     let mut believed = HiddenEffect::model(&recording);
+    if case.kind == RealLike::ColdStart {
+        let sessions = data.sessions.iter_mut();
+        sessions.for_each(|session| session.temperature = None);
+    }
     if case.kind == RealLike::MotorOnly {
         let sessions = data.sessions.iter_mut();
         sessions.for_each(|session| session.joint_torque = None);
