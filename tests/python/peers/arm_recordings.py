@@ -22,6 +22,8 @@ import soft_joint  # noqa: E402
 
 RATE = 200.0
 SECONDS = 30.0
+# Of a joint that warms up, which takes longer.
+WARM_UP_SECONDS = 120.0
 SESSIONS = 3
 # What a name is accepted for; nothing where no name is right.
 ACCEPTED = {
@@ -37,10 +39,11 @@ ACCEPTED = {
     "ripple": ["ripple"],
     "unknown_product": [],
     "load_elasticity": ["load_elasticity"],
+    "warm_up_viscous": ["warm_up_coulomb", "warm_up_viscous"],
 }
 OF_THE_ARM = ("payload", "base_tilt")
 # These came after seeds had been published: they count behind the others, and are drawn where they are asked for.
-LATER = ("load_elasticity",)
+LATER = ("load_elasticity", "warm_up_viscous")
 
 
 def readable(urdf):
@@ -144,6 +147,15 @@ def load(random, model, strength):
     return {"payload.mass": mass} | {f"payload.{axis}": float(own) for axis, own in zip("xyz", place, strict=True)}
 
 
+def warmth(power, time_constant):
+    """How warm a joint is that friction heats with `power`, from cold; 1 at its mean power after a long time."""
+    share, mean = 1.0 / RATE / time_constant, numpy.mean(power)
+    warm = numpy.zeros(len(power))
+    for at in range(1, len(power)):
+        warm[at] = warm[at - 1] + share * (power[at - 1] / mean - warm[at - 1])
+    return warm
+
+
 def record(urdf, folder, effect, seed, strength):
     """One recording: the path of its files, without their endings."""
     numbers = [*sorted(set(ACCEPTED) - set(LATER)), *LATER]
@@ -184,7 +196,8 @@ def record(urdf, folder, effect, seed, strength):
             torque = gear.torques(believed, all_joints, joint)[:, :count]
             torque += armature * all_joints[2][:, :count]
         else:
-            t, *all_joints = trajectory(random, model, int(SECONDS * RATE))
+            seconds = WARM_UP_SECONDS if effect == "warm_up_viscous" else SECONDS
+            t, *all_joints = trajectory(random, model, int(seconds * RATE))
             torque = bodies(model, *all_joints)[:, :count]
         q, v, a = all_joints
         q, v, a = q[:, :count], v[:, :count], a[:, :count]
@@ -229,6 +242,13 @@ def record(urdf, folder, effect, seed, strength):
         elif effect == "unknown_product":
             third = int(numpy.floor(shape[0] * count)) % count
             torque[:, joint] += 0.6 * own * q[:, other] * (q[:, third] if shape[1] < 0.5 else v[:, joint])
+        elif effect == "warm_up_viscous":
+            # Grease gets thinner by e^-1 of what it can for each warmth of 1; in half of the joints seals give way, too.
+            friction = coulomb[joint] * abs(v[:, joint]) + viscous[joint] * v[:, joint] ** 2
+            thinner = strength * (1.0 - numpy.exp(-warmth(friction, 20.0 + 60.0 * shape[0])))
+            seals = 0.15 * coulomb[joint] if shape[1] < 0.5 else 0.0
+            change = 0.6 * viscous[joint] * v[:, joint] + seals * numpy.sign(v[:, joint])
+            torque[:, joint] -= thinner * change
         noise = 0.012 * numpy.sqrt(numpy.mean((torque - torque.mean(axis=0)) ** 2, axis=0) + 0.1 * coulomb**2)
         torque += noise * random.standard_normal(torque.shape)
         q = numpy.round(q / 1e-5) * 1e-5
