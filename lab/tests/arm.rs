@@ -98,6 +98,54 @@ fn refused(folder: &TempDir, text: &str) -> String {
         .to_string()
 }
 
+/// A recording whose elbow counts the other way round, from a quarter of a turn, and whose shoulder has its
+/// torque the other way round: what is told of it is what mends it.
+#[test]
+fn joints_that_count_otherwise_are_told_with_the_lines_that_mend_them() {
+    let folder = folder(false);
+    let run = folder.path().join("run.csv");
+    let text = fs::read_to_string(&run).unwrap();
+    let mut lines = text.lines();
+    let mut turned = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let own: Vec<f64> = line.split(',').map(|own| own.parse().unwrap()).collect();
+        let [t, shoulder, elbow, torque, of_elbow] = own[..] else {
+            panic!("{line}");
+        };
+        let elbow = 0.25 * TAU - elbow;
+        writeln!(turned, "{t},{shoulder},{elbow},{},{}", -torque, -of_elbow).unwrap();
+    }
+    fs::write(&run, turned).unwrap();
+    let opened = open(&folder, &format!("{ARM}{SIGNALS}{MODEL}"));
+    let told = opened.diagnose(&mut |_| ()).unwrap();
+    assert_eq!(told.verdict, Verdict::Unexplained);
+    let told = opened.tell_misread(&told.misread);
+    let mends =
+        "reversed = [\"elbow\"]  torque_reversed = [\"shoulder\"]  zero = { elbow = 1.570796 }";
+    assert!(
+        told.last().is_some_and(|line| line.ends_with(mends)),
+        "{told:#?}"
+    );
+    assert!(
+        told[0].starts_with("shoulder: the torque counts the other way round; "),
+        "{told:#?}"
+    );
+    let elbow = "elbow: position and torque count the other way round, and the position lacks +90 degrees; ";
+    assert!(told[1].starts_with(elbow), "{told:#?}");
+    let mended = format!("{ARM}{}\n{SIGNALS}{MODEL}", mends.replace("  ", "\n"));
+    let opened = open(&folder, &mended);
+    let told = opened.diagnose(&mut |_| ()).unwrap();
+    assert_eq!(told.verdict, Verdict::Complete, "{told:#?}");
+    assert!(told.misread.is_empty());
+
+    let other = mended.replace("reversed = [\"elbow\"]", "reversed = [\"wrist\"]");
+    let error = refused(&folder, &other);
+    assert!(
+        error.contains("\"wrist\" is no joint of the arm: they are shoulder, elbow"),
+        "{error}"
+    );
+}
+
 #[test]
 fn armatures_that_are_not_given_are_fitted_with_friction_joint_by_joint() {
     let folder = folder(false);

@@ -6,7 +6,9 @@ use ferntast_identification::{
     Term,
     arm::{ArmComparison, ArmDiagnosis, ArmTerm},
 };
-use ferntast_lab::work::{self, AddedToArm, ArmAutoEvent, AutoOptions, InUnit, OpenedArm};
+use ferntast_lab::work::{
+    self, AddedToArm, ArmAutoEvent, AutoOptions, InUnit, OpenedArm, tell_misread,
+};
 use indicatif::ProgressBar;
 
 use super::{
@@ -48,7 +50,8 @@ pub fn diagnose(opened: &OpenedArm, json: bool) -> Result<ExitCode, Failure> {
         print_json(&InUnit { unit, result })?;
     } else {
         println!("{}", opened.experiment.title);
-        print_diagnosis(&result, unit);
+        let misread = opened.tell_misread(&result.misread);
+        print_diagnosis(&result, &misread, unit);
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -115,10 +118,12 @@ pub fn add(
 pub fn auto(path: &Path, options: &AutoOptions, json: bool) -> Result<Option<ExitCode>, Failure> {
     let mut bar = ProgressBar::hidden();
     let mut unit = "";
+    let mut table = None;
     let mut tell = |event: ArmAutoEvent<'_>| match event {
         ArmAutoEvent::Opened(opened) => {
             tell_notes(opened);
             unit = opened.torque_unit();
+            table.clone_from(&opened.experiment.arm);
             bar = open::bar("diagnose");
         }
         ArmAutoEvent::Share(share) => bar.set_position((share * 1000.0) as u64),
@@ -132,7 +137,11 @@ pub fn auto(path: &Path, options: &AutoOptions, json: bool) -> Result<Option<Exi
     };
     match json {
         true => print_json(&found)?,
-        false => print_diagnosis(&found.last, unit),
+        false => {
+            let misread = &found.last.misread;
+            let told = table.map(|arm| tell_misread(&arm, misread, unit));
+            print_diagnosis(&found.last, &told.unwrap_or_default(), unit);
+        }
     }
     Ok(Some(ExitCode::SUCCESS))
 }
@@ -180,6 +189,7 @@ fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
         table::parameters(parameters, &[]);
     }
     tell_held(&comparison.held_possible);
+    tell_misread_joints(&opened.tell_misread(&comparison.misread));
     table::varies_together(&comparison.varies_together);
     for name in &opened.dataset.joints {
         if let Some(own) = comparison.joints.get(name) {
@@ -190,6 +200,19 @@ fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
     }
 }
 
+/// Joints that are read otherwise than the model has them.
+fn tell_misread_joints(told: &[String]) {
+    if !told.is_empty() {
+        println!();
+        println!(
+            "warning: joints are read otherwise than the model has them, so that nothing else is named:"
+        );
+    }
+    for line in told {
+        println!("  {line}");
+    }
+}
+
 /// Effects whose free fit is no body.
 fn tell_held(names: &[String]) {
     for name in names {
@@ -197,8 +220,10 @@ fn tell_held(names: &[String]) {
     }
 }
 
-fn print_diagnosis(diagnosis: &ArmDiagnosis, unit: &str) {
+/// `misread`: what is said of joints that are read otherwise than the model has them.
+fn print_diagnosis(diagnosis: &ArmDiagnosis, misread: &[String], unit: &str) {
     println!("{}", diagnosis.verdict.name());
+    tell_misread_joints(misread);
     println!("{} variants tried", diagnosis.tried);
     table::varies_together(&diagnosis.varies_together);
     println!();

@@ -72,6 +72,7 @@ export function diagnosis(parent, { diagnosis: found, results, view }, actions) 
     make("h2", { textContent: "Diagnosis of the arm" }),
     make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict }, make("b", { textContent: VERDICTS[found.verdict] })),
     make("p", { className: "quiet small", textContent: `${found.tried} variants tried in ${view.joints.length} joints and in the arm.` }),
+    found.told_misread.map((text) => make("p", { className: "note warning misread", textContent: text })),
     found.candidates.length ? ranking(found.candidates, {
       unitOf: ({ joint }) => view.joints.find((own) => own.title === joint)?.unit ?? results.unit,
       nameOf: (_, rank) => found.names[rank],

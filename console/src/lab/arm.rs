@@ -94,6 +94,7 @@ pub async fn compare(State(lab): State<Arc<Lab>>, Json(at): Json<At>) -> Respons
             let together = found.varies_together.iter().map(VariesTogether::text);
             let held = found.held_possible.iter();
             let held = held.map(|effect| work::held_possible(effect));
+            let misread = opened.tell_misread(&found.misread);
             Ok(Compared {
                 title: opened.experiment.title.clone(),
                 unit: opened.torque_unit(),
@@ -101,7 +102,7 @@ pub async fn compare(State(lab): State<Arc<Lab>>, Json(at): Json<At>) -> Respons
                 used: found.used,
                 rms: found.rms,
                 joints: joints.collect(),
-                warnings: together.chain(held).collect(),
+                warnings: misread.into_iter().chain(together).chain(held).collect(),
                 notes: opened.notes.clone(),
                 arm: found.arm,
             })
@@ -116,6 +117,8 @@ struct Diagnosed {
     diagnosis: ArmDiagnosis,
     /// One for each candidate.
     names: Vec<String>,
+    /// Joints that are read otherwise than the model has them, in words.
+    told_misread: Vec<String>,
 }
 
 /// Tells which effect is missing, in which joint or in the arm.
@@ -126,6 +129,7 @@ pub async fn diagnose(State(lab): State<Arc<Lab>>, Json(at): Json<At>) -> Respon
             let candidates = diagnosis.candidates.iter();
             Ok(Diagnosed {
                 names: candidates.map(|own| own.term().to_string()).collect(),
+                told_misread: opened.tell_misread(&diagnosis.misread),
                 diagnosis,
             })
         })

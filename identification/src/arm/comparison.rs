@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::data::{ArmDataset, ArmSession};
 use super::error::ArmError;
 use super::joint::ArmJoint;
+use super::misread::{self, Misread};
 use super::prepared::PreparedArm;
 use super::shared::{self, SharedFit, weighted};
 use super::spec::ArmSpec;
@@ -33,6 +34,9 @@ pub struct ArmComparison {
     /// Those of them whose free fit is no body that can exist (negative mass, or an inertia
     /// that no shape has): they are at the nearest that can.
     pub held_possible: Vec<String>,
+    /// Joints that are read otherwise than the model has them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub misread: Vec<Misread>,
     /// Signals and conditions that vary together from session to session.
     pub varies_together: Vec<VariesTogether>,
     /// Every joint.
@@ -59,6 +63,7 @@ pub fn compare(dataset: &ArmDataset, spec: &ArmSpec) -> Result<ArmComparison, Ar
         rms: rms(&fit),
         arm: of_arm(&arm),
         held_possible: arm.held_possible(),
+        misread: misread::find(&arm),
         varies_together: varies_together(&arm.joints),
         joints,
     })
@@ -103,7 +108,7 @@ pub(super) fn of_arm(arm: &PreparedArm<'_>) -> BTreeMap<String, BTreeMap<String,
     let each = arm.corrections.iter().map(|own| {
         let name = arm.term(own.effect).to_string();
         let covariance = (&own.covariance, shared::freedom(&arm.joints));
-        let parameters = trial::parameters(own.effect, &own.value, covariance);
+        let parameters = trial::parameters(arm, own.effect, &own.value, covariance);
         (name, parameters)
     });
     each.collect()

@@ -17,12 +17,13 @@ use super::data::ArmDataset;
 use super::effects::ArmEffect;
 use super::error::ArmError;
 use super::joint::ArmJoint;
+use super::misread::{self, Misread};
 use super::prepared::PreparedArm;
 use super::shared::{SharedFit, weighted, weighted_decrease};
 use super::soft_gears::moves_links;
 use super::spec::ArmSpec;
 use super::term::ArmTerm;
-use super::trial::{Tried, try_all, try_one};
+use super::trial::{Tried, try_all, try_one, weights_of};
 use crate::comparison::{Usage, VariesTogether, noise_floor::NoiseFloor};
 use crate::data::Term;
 use crate::diagnosis::dependence::Dependence;
@@ -113,6 +114,10 @@ pub struct ArmDiagnosis {
     pub verdict: Verdict,
     /// Errors over all joints, each weighted by its noise \[Nm\].
     pub rms: Rms,
+    /// Joints that are read otherwise than the model has them: then nothing is named, since anything
+    /// may look as if it were missing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub misread: Vec<Misread>,
     /// Effects that pass all tests, best first.
     pub candidates: Vec<ArmCandidate>,
     /// Effects that show between sessions, where nothing passes.
@@ -148,6 +153,13 @@ pub fn diagnose(
     let all: Vec<usize> = (0..arm.joints.len()).collect();
     let each = look(&arm, &all, &mut |done| progress(FIRST_LOOK * done))?;
     let before = fit(&arm);
+    let misread = misread::find(&arm);
+    if !misread.is_empty() {
+        progress(1.0);
+        let weights = weights_of(&before.held_out());
+        let told = told_of(dataset, &arm, &each, (&before, &weights));
+        return Ok(ArmDiagnosis { misread, ..told });
+    }
     let tried = try_all(&arm, &before, &mut |done| progress(FIRST_LOOK + 0.2 * done));
     let contest = Contest::new(&arm, &each, &tried);
     let weights = contest.weights.clone();
@@ -211,26 +223,46 @@ pub fn diagnose(
         true => Verdict::Complete,
     };
     progress(1.0);
+    let all = told_of(dataset, &arm, &each, (&before, &weights));
     Ok(ArmDiagnosis {
-        samples: samples(dataset),
-        used: used(&arm.joints),
         verdict,
-        rms: Rms {
-            train: weighted(&before.train, &weights),
-            held_out: weighted(&before.held_out(), &weights),
-        },
         suspected: match candidates.is_empty() {
-            true => suspected(&arm, &each),
+            true => all.suspected,
             false => Vec::new(),
         },
         candidates,
-        residual_depends_on: depends_on(&arm, &each),
-        varies_together: varies_together(&arm.joints),
         joints,
+        tried: all.tried + tried.len(),
+        ..all
+    })
+}
+
+/// What is told of the joints as each is by itself, before anything is named; `before` is the fit
+/// of the model, with the weights of the joints.
+fn told_of(
+    dataset: &ArmDataset,
+    arm: &PreparedArm<'_>,
+    each: &[Diagnosis],
+    (before, weights): (&SharedFit, &[f64]),
+) -> ArmDiagnosis {
+    ArmDiagnosis {
+        samples: samples(dataset),
+        used: used(&arm.joints),
+        verdict: Verdict::Unexplained,
+        rms: Rms {
+            train: weighted(&before.train, weights),
+            held_out: weighted(&before.held_out(), weights),
+        },
+        misread: Vec::new(),
+        suspected: suspected(arm, each),
+        candidates: Vec::new(),
+        residual_depends_on: depends_on(arm, each),
+        varies_together: varies_together(&arm.joints),
+        joints: joints(arm, each, &vec![false; each.len()]),
         // Every joint has the same sessions, and the links' torque for a load.
         not_tested: (each.first()).map_or_else(NotTested::default, |own| own.not_tested.clone()),
-        tried: each.iter().map(|own| own.tried).sum::<usize>() + tried.len(),
-    })
+        tried: each.iter().map(|own| own.tried).sum::<usize>(),
+    }
 }
 
 /// Diagnoses these joints one by one.
@@ -425,7 +457,7 @@ impl Told<'_> {
                 p_value: tried.p_value(),
                 share: decrease.mean_square / square,
                 share_std_error: decrease.std_error / square,
-                parameters: tried.parameters(),
+                parameters: tried.parameters(self.arm),
                 indistinguishable_from: (alike.iter())
                     .map(|own| self.arm.term(own.effect).to_string())
                     .collect(),

@@ -1,5 +1,8 @@
 //! Effects of an arm: what changes the torques of its links, of all joints together.
 
+use std::ops::Range;
+
+use ferntast_model::friction::{ANGLE, JointType};
 use ferntast_model::rigid_body::{LINK_PARAMETERS, Matrix3, Vector3};
 use nalgebra::{DMatrix, DVector};
 
@@ -11,6 +14,8 @@ use crate::data::Term;
 
 /// An effect of the arm. Its coefficients enter τ nonlinearly only to second order: it is
 /// linearised around the coefficients reached.
+///
+/// A joint's zero is what its position has to be raised by to be that of the links.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmEffect {
     /// A point mass on the last link: mass m and first moment m c in the link's frame.
@@ -19,6 +24,10 @@ pub enum ArmEffect {
     BaseTilt,
     /// The ten inertial parameters of one link.
     LinkInertia(usize),
+    /// One joint is elsewhere than its position says, by as much everywhere.
+    JointZero(usize),
+    /// All of so many joints are, each by its own: the arm is not calibrated.
+    JointZeros(usize),
 }
 
 const PAYLOAD: [(&str, &str); 4] = [("mass", "kg"), ("x", "m"), ("y", "m"), ("z", "m")];
@@ -41,35 +50,38 @@ impl ArmEffect {
     #[must_use]
     pub fn all(joints: usize) -> Vec<Self> {
         let links = (0..joints).map(Self::LinkInertia);
-        [Self::Payload, Self::BaseTilt]
-            .into_iter()
-            .chain(links)
-            .collect()
+        let zeros = (0..joints).map(Self::JointZero);
+        let first = [Self::Payload, Self::BaseTilt].into_iter();
+        let all = first.chain(links).chain(zeros);
+        all.chain([Self::JointZeros(joints)]).collect()
     }
 
     /// Ids of the effects of an arm.
     #[must_use]
-    pub const fn ids() -> [&'static str; 3] {
-        ["payload", "base_tilt", "link_inertia"]
+    pub const fn ids() -> [&'static str; 5] {
+        let [payload, tilt] = ["payload", "base_tilt"];
+        [payload, tilt, "link_inertia", "joint_zero", "joint_zeros"]
     }
 
     /// Its id in files and results.
     #[must_use]
     pub const fn id(self) -> &'static str {
-        let [payload, tilt, link] = Self::ids();
+        let [payload, tilt, link, zero, zeros] = Self::ids();
         match self {
             Self::Payload => payload,
             Self::BaseTilt => tilt,
             Self::LinkInertia(_) => link,
+            Self::JointZero(_) => zero,
+            Self::JointZeros(_) => zeros,
         }
     }
 
-    /// The joint that carries its link, where it is of one.
+    /// Its joint, or the one that carries its link, where it is of one.
     #[must_use]
     pub const fn joint(self) -> Option<usize> {
         match self {
-            Self::LinkInertia(link) => Some(link),
-            Self::Payload | Self::BaseTilt => None,
+            Self::LinkInertia(at) | Self::JointZero(at) => Some(at),
+            Self::Payload | Self::BaseTilt | Self::JointZeros(_) => None,
         }
     }
 
@@ -89,6 +101,8 @@ impl ArmEffect {
             Self::Payload => "τ of a point mass on the last link",
             Self::BaseTilt => "τ in a gravity that is turned about two axes across it",
             Self::LinkInertia(_) => "τ of other inertial parameters of a link",
+            Self::JointZero(_) => "τ of links whose joint is elsewhere than it says: q + zero",
+            Self::JointZeros(_) => "τ of links whose joints all are elsewhere than they say",
         }
     }
 
@@ -99,6 +113,9 @@ impl ArmEffect {
             Self::Payload => "the same motion without the payload, or with one that is weighed",
             Self::BaseTilt => "slow motion with the first joint turned by a quarter and by a half",
             Self::LinkInertia(_) => "fast motion of the joints before the link, in many postures",
+            Self::JointZero(_) | Self::JointZeros(_) => {
+                "slow motion of the joint and of those before it, in many postures"
+            }
         }
     }
 
@@ -113,23 +130,31 @@ impl ArmEffect {
                 reason,
             })
         };
-        let [payload, tilt, link] = Self::ids();
-        match (id.as_str(), &term.joint) {
-            (id, Some(_)) if id == payload || id == tilt => {
-                place("it is one of the arm: leave the joint out")
-            }
-            (id, None) if id == payload => Ok(Some(Self::Payload)),
-            (id, None) if id == tilt => Ok(Some(Self::BaseTilt)),
-            (id, None) if id == link => place("say of which link: link_inertia@JOINT"),
-            (id, Some(joint)) if id == link => match joints.iter().position(|own| own == joint) {
-                Some(at) => Ok(Some(Self::LinkInertia(at))),
+        let [payload, tilt, link, zero, zeros] = Self::ids();
+        let of_arm = match id.as_str() {
+            id if id == payload => Some(Self::Payload),
+            id if id == tilt => Some(Self::BaseTilt),
+            id if id == zeros => Some(Self::JointZeros(joints.len())),
+            _ => None,
+        };
+        let of_joint: Option<fn(usize) -> Self> = match id.as_str() {
+            id if id == link => Some(Self::LinkInertia),
+            id if id == zero => Some(Self::JointZero),
+            _ => None,
+        };
+        match (of_arm, of_joint, &term.joint) {
+            (Some(_), _, Some(_)) => place("it is one of the arm: leave the joint out".to_owned()),
+            (Some(own), _, None) => Ok(Some(own)),
+            (_, Some(_), None) => place(format!("say of which joint: {id}@JOINT")),
+            (_, Some(of), Some(joint)) => match joints.iter().position(|own| own == joint) {
+                Some(at) => Ok(Some(of(at))),
                 None => Err(ArmError::UnknownJoint {
-                    effect: id.to_owned(),
+                    effect: id.clone(),
                     joint: joint.clone(),
                     known: joints.join(", "),
                 }),
             },
-            _ => Ok(None),
+            (None, None, _) => Ok(None),
         }
     }
 
@@ -140,10 +165,12 @@ impl ArmEffect {
             Self::Payload => PAYLOAD.len(),
             Self::BaseTilt => TILT.len(),
             Self::LinkInertia(_) => LINK.len(),
+            Self::JointZero(_) => 1,
+            Self::JointZeros(joints) => joints,
         }
     }
 
-    /// Changes links and gravity as the coefficients `value` say.
+    /// Changes links, zeros and gravity as the coefficients `value` say.
     pub(super) fn apply(self, body: &mut RigidBody<'_>, value: &[f64]) {
         match (self, value) {
             (Self::Payload, &[mass, x, y, z]) => {
@@ -160,6 +187,14 @@ impl ArmEffect {
                 let own = body.parameters.iter_mut().skip(RigidBody::first_of(link));
                 own.zip(changes).for_each(|(own, change)| *own += change);
             }
+            (Self::JointZero(joint), &[zero]) => {
+                let own = body.zeros.get_mut(joint).into_iter();
+                own.for_each(|own| *own += zero);
+            }
+            (Self::JointZeros(_), zeros) => {
+                let own = body.zeros.iter_mut().zip(zeros);
+                own.for_each(|(own, zero)| *own += zero);
+            }
             _ => {}
         }
     }
@@ -172,20 +207,24 @@ impl ArmEffect {
         value: &[f64],
         states: &States,
     ) -> Vec<Vec<Vec<f64>>> {
+        if let Self::JointZero(_) | Self::JointZeros(_) = self {
+            let mut around = body.clone();
+            self.apply(&mut around, value);
+            let which = match self {
+                Self::JointZero(joint) => joint..joint + 1,
+                _ => 0..body.joints(),
+            };
+            return by_zeros(&around, which, states);
+        }
+        if let Self::BaseTilt = self {
+            let each = self.turns(body, value);
+            let each = each.iter().map(|turn| body.weights(states, turn));
+            return by_joint(body.joints(), each);
+        }
         let count = self.columns();
         let mut all = vec![vec![Vec::with_capacity(states.len()); count]; body.joints()];
         let changes = self.changes(value);
-        let turns = self.turns(body, value);
         for at in 0..states.len() {
-            if let Self::BaseTilt = self {
-                for (column, turn) in turns.iter().enumerate() {
-                    let torques = body.weight(states, at, turn);
-                    for (own, torque) in all.iter_mut().zip(torques) {
-                        own[column].push(torque);
-                    }
-                }
-                continue;
-            }
             let link = self.joint().unwrap_or(body.joints().saturating_sub(1));
             let first = RigidBody::first_of(link);
             let rows = body.regressor(states, at, &body.gravity);
@@ -239,23 +278,36 @@ impl ArmEffect {
         ]
     }
 
-    /// Names and units of its parameters as reported, with values and covariance: of a
-    /// payload the place in place of the first moment.
-    pub(super) fn reported(
-        self,
-        value: &[f64],
-        covariance: &DMatrix<f64>,
-    ) -> Vec<(&'static str, &'static str, f64, f64)> {
-        let names: &[(&str, &str)] = match self {
+    /// Names and units of its coefficients; `joint` names one by its number, and says its kind.
+    fn names(self, joint: impl Fn(usize) -> (String, JointType)) -> Vec<(String, &'static str)> {
+        let names: &[(&str, &'static str)] = match self {
             Self::Payload => &PAYLOAD,
             Self::BaseTilt => &TILT,
             Self::LinkInertia(_) => &LINK,
+            Self::JointZero(at) => return vec![("zero".to_owned(), ANGLE.of(joint(at).1))],
+            Self::JointZeros(joints) => {
+                let each = (0..joints).map(joint);
+                return each.map(|(name, kind)| (name, ANGLE.of(kind))).collect();
+            }
         };
+        let each = names.iter();
+        each.map(|(name, unit)| ((*name).to_owned(), *unit))
+            .collect()
+    }
+
+    /// Names and units of its parameters as reported, with values and standard errors: of a payload the
+    /// place in place of the first moment. `joint` names one by its number, and says its kind.
+    pub(super) fn reported(
+        self,
+        joint: impl Fn(usize) -> (String, JointType),
+        value: &[f64],
+        covariance: &DMatrix<f64>,
+    ) -> Vec<(String, &'static str, f64, f64)> {
         let mass = match self {
             Self::Payload => value.first().copied().unwrap_or(0.0),
             _ => 0.0,
         };
-        let each = names.iter().zip(value).enumerate();
+        let each = self.names(joint).into_iter().zip(value).enumerate();
         each.map(|(at, ((name, unit), own))| {
             let mut gradient = DVector::zeros(value.len());
             let (value, scale) = match (self, at) {
@@ -267,10 +319,50 @@ impl ArmEffect {
                 gradient[0] = -value / mass;
             }
             let variance = (gradient.transpose() * covariance * &gradient)[(0, 0)];
-            (*name, *unit, value, variance.max(0.0).sqrt())
+            (name, unit, value, variance.max(0.0).sqrt())
         })
         .collect()
     }
+}
+
+/// Derivatives of every joint's τ by the zeros of `which`, by joint, zero and sample. Zeros that turn
+/// the arm about gravity change nothing that is not of rounded axes: their columns are zero.
+fn by_zeros(body: &RigidBody<'_>, which: Range<usize>, states: &States) -> Vec<Vec<Vec<f64>>> {
+    const NUDGE: f64 = 1e-5;
+    /// Smallest share of a joint's torque that a radian changes.
+    const LEAST: f64 = 1e-3;
+    let size = |values: &[f64]| values.iter().map(|own| own * own).sum::<f64>().sqrt();
+    let here = body.torques(states);
+    let each = which.map(|joint| {
+        let at = |nudge: f64| {
+            let mut own = body.clone();
+            own.zeros[joint] += nudge;
+            own.torques(states)
+        };
+        let both = at(NUDGE).into_iter().zip(at(-NUDGE));
+        let slopes = both.map(|(plus, minus)| {
+            let each = plus.iter().zip(&minus);
+            let each = each.map(|(plus, minus)| (plus - minus) / (2.0 * NUDGE));
+            each.collect::<Vec<f64>>()
+        });
+        let mut slopes: Vec<Vec<f64>> = slopes.collect();
+        let mut each = slopes.iter().zip(&here);
+        if each.all(|(slope, torque)| size(slope) <= LEAST * size(torque)) {
+            slopes.iter_mut().for_each(|slope| slope.fill(0.0));
+        }
+        slopes
+    });
+    by_joint(body.joints(), each)
+}
+
+/// Columns, each by joint and sample, as [`ArmEffect::derivatives`] gives them.
+fn by_joint(joints: usize, columns: impl Iterator<Item = Vec<Vec<f64>>>) -> Vec<Vec<Vec<f64>>> {
+    let mut all = vec![Vec::new(); joints];
+    for column in columns {
+        let each = all.iter_mut().zip(column);
+        each.for_each(|(own, column)| own.push(column));
+    }
+    all
 }
 
 /// The rotational inertia of a point mass about the frame's origin, in the order of a

@@ -39,7 +39,7 @@ pub enum ArmError {
         /// The effect.
         effect: String,
         /// What is wrong with it.
-        reason: &'static str,
+        reason: String,
     },
     /// The same effect is there already.
     #[error("{0} is in the model already")]

@@ -18,7 +18,7 @@ use super::soft_gears::{TurnedInertias, Winding, moves_links};
 use super::spec::ArmSpec;
 use super::term::ArmTerm;
 use crate::data::stated_filter::StatedFilter;
-use crate::data::{Dataset, RecordedSession};
+use crate::data::{Dataset, JointType, RecordedSession};
 use crate::effects::{LOAD_OF, POSITION_OF, VELOCITY_OF};
 use crate::numerics::gram::pseudo_inverse;
 use crate::preparation::prepare;
@@ -247,6 +247,12 @@ impl<'a> PreparedArm<'a> {
         ArmColumns::new(&self.joints, &self.motion, effects, without)
     }
 
+    /// Name and kind of joint number `at`.
+    pub(super) fn joint_named(&self, at: usize) -> (String, JointType) {
+        let name = self.joints.get(at).map(|own| own.name.clone());
+        (name.unwrap_or_default(), self.spec.joint_type(at))
+    }
+
     /// The effect as it is named in files.
     pub(super) fn term(&self, effect: ArmEffect) -> ArmTerm {
         effect.term(|at| self.joints.get(at).map(|joint| &joint.name))
@@ -301,7 +307,9 @@ impl<'a> PreparedArm<'a> {
             let first = at;
             at += count;
             let link = match effect {
-                ArmEffect::BaseTilt => continue,
+                ArmEffect::BaseTilt | ArmEffect::JointZero(_) | ArmEffect::JointZeros(_) => {
+                    continue;
+                }
                 ArmEffect::Payload => self.joints.len().saturating_sub(1),
                 ArmEffect::LinkInertia(link) => link,
             };

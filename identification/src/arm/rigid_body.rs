@@ -1,11 +1,12 @@
-//! The torques that an arm's links take, with what effects of the arm change.
+//! The torques that an arm's links take, with what effects of the arm change in bodies, gravity and
+//! where joints are.
 
 use ferntast_model::Joints;
 use ferntast_model::rigid_body::{Chain, LINK_PARAMETERS, LinkInertia, Regressor, Vector3};
 
 use super::motion::States;
 
-/// Links and gravity, corrected.
+/// Links, zeros of joints and gravity, corrected.
 #[derive(Clone)]
 pub(super) struct RigidBody<'a> {
     chain: &'a Chain,
@@ -13,6 +14,8 @@ pub(super) struct RigidBody<'a> {
     pub(super) gravity: Vector3<f64>,
     /// Ten inertial parameters for each link, from the base on.
     pub(super) parameters: Vec<f64>,
+    /// What is added to each joint's position \[rad\] or \[m\].
+    pub(super) zeros: Vec<f64>,
 }
 
 impl<'a> RigidBody<'a> {
@@ -22,6 +25,7 @@ impl<'a> RigidBody<'a> {
             chain,
             gravity,
             parameters: inertias.iter().flat_map(|own| own.parameters()).collect(),
+            zeros: vec![0.0; chain.count().get()],
         }
     }
 
@@ -37,35 +41,61 @@ impl<'a> RigidBody<'a> {
         at: usize,
         gravity: &Vector3<f64>,
     ) -> Regressor {
-        let (q, qd, qdd) = (&states.q[at], &states.qd[at], &states.qdd[at]);
-        self.chain.torque_regressor(q, qd, qdd, gravity)
+        let (q, qd, qdd) = (
+            farther(&states.q[at], &self.zeros),
+            &states.qd[at],
+            &states.qdd[at],
+        );
+        self.chain.torque_regressor(&q, qd, qdd, gravity)
     }
 
-    /// What `gravity` alone takes of each joint, at rest \[Nm\].
-    pub(super) fn weight(&self, states: &States, at: usize, gravity: &Vector3<f64>) -> Vec<f64> {
+    /// What `gravity` alone takes of each joint, at rest at every sample \[Nm\].
+    pub(super) fn weights(&self, states: &States, gravity: &Vector3<f64>) -> Vec<Vec<f64>> {
         let rest = Joints::filled(self.chain.count(), 0.0);
-        let rows = (self.chain).torque_regressor(&states.q[at], &rest, &rest, gravity);
-        self.torque_of(&rows)
-    }
-
-    fn torque_of(&self, rows: &Regressor) -> Vec<f64> {
-        let of = |joint: usize| {
-            let parameters = self.parameters.iter().enumerate();
-            parameters.map(|(at, own)| rows[(joint, at)] * own).sum()
-        };
-        (0..self.joints()).map(of).collect()
+        self.taken(states, gravity, |_| (&rest, &rest))
     }
 
     /// τ of each joint at every sample, without armatures \[Nm\].
     pub(super) fn torques(&self, states: &States) -> Vec<Vec<f64>> {
+        self.taken(states, &self.gravity, |at| {
+            (&states.qd[at], &states.qdd[at])
+        })
+    }
+
+    /// What the links take of each joint where they are, with the velocities and accelerations of `motion`.
+    fn taken<'s>(
+        &self,
+        states: &States,
+        gravity: &Vector3<f64>,
+        motion: impl Fn(usize) -> (&'s Joints<f64>, &'s Joints<f64>),
+    ) -> Vec<Vec<f64>> {
         let mut torques = vec![Vec::with_capacity(states.len()); self.joints()];
+        let ready = Ready {
+            gravity: *gravity,
+            ..self.ready()
+        };
         for at in 0..states.len() {
-            let rows = self.regressor(states, at, &self.gravity);
-            for (torque, own) in torques.iter_mut().zip(self.torque_of(&rows)) {
-                torque.push(own);
+            let (qd, qdd) = motion(at);
+            let own = ready.torques_at(&states.q[at], qd, qdd);
+            for (torque, own) in torques.iter_mut().zip(own.iter()) {
+                torque.push(*own);
             }
         }
         torques
+    }
+
+    /// With these links and no armatures.
+    pub(super) fn ready(&self) -> Ready<'_> {
+        let count = self.chain.count();
+        let links = Joints::from_fn(count, |at| self.link(at));
+        let chain = self.chain.clone().with_inertias(&links);
+        let chain = chain.and_then(|own| own.with_armature(&Joints::filled(count, 0.0)));
+        Ready {
+            // There is one of each for every joint.
+            chain: chain.unwrap_or_else(|_| self.chain.clone()),
+            gravity: self.gravity,
+            zeros: &self.zeros,
+        }
     }
 
     /// One link.
@@ -80,4 +110,32 @@ impl<'a> RigidBody<'a> {
     pub(super) const fn first_of(link: usize) -> usize {
         LINK_PARAMETERS * link
     }
+}
+
+/// Links and gravity as they are, to be moved.
+pub(super) struct Ready<'a> {
+    chain: Chain,
+    gravity: Vector3<f64>,
+    zeros: &'a [f64],
+}
+
+impl Ready<'_> {
+    /// What the links take of each joint in one motion \[Nm\].
+    pub(super) fn torques_at(
+        &self,
+        q: &Joints<f64>,
+        qd: &Joints<f64>,
+        qdd: &Joints<f64>,
+    ) -> Joints<f64> {
+        let q = farther(q, self.zeros);
+        self.chain.inverse_dynamics(&q, qd, qdd, &self.gravity)
+    }
+}
+
+/// Where joints are whose positions say q \[rad\] or \[m\].
+fn farther(q: &Joints<f64>, zeros: &[f64]) -> Joints<f64> {
+    let mut q = *q;
+    let each = q.iter_mut().zip(zeros);
+    each.for_each(|(own, zero)| *own += zero);
+    q
 }

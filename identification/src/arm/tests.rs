@@ -23,6 +23,7 @@ type Point = (f64, [f64; 2]);
 const SHOULDER_MASS: f64 = 1.5;
 const FOREARM: Point = (0.8, [0.3, 0.0]);
 
+#[derive(Clone, Copy)]
 struct State {
     q: [f64; 2],
     qd: [f64; 2],
@@ -250,9 +251,141 @@ fn a_base_that_leans_is_told_from_a_payload() {
     });
     let told = ask(&dataset, &PLAIN);
     let first = &told.candidates[0];
-    assert_eq!(first.named.effect, "base_tilt", "{:#?}", told.candidates);
+    // In a plane that is no other than a first joint whose zero is elsewhere, which is simpler.
+    let place = (first.named.effect.as_str(), first.joint.as_deref());
+    assert_eq!(place, ("joint_zero", Some("shoulder")), "{told:#?}");
+    let alike = &first.named.indistinguishable_from;
+    assert!(alike.contains(&"base_tilt".to_owned()), "{alike:?}");
+    assert!(!alike.contains(&"payload".to_owned()), "{alike:?}");
     let more = [&PLAIN[..], &["base_tilt"]].concat();
     all_complete(&ask(&dataset, &more));
+}
+
+/// What links take more that are farther by `zeros` \[rad\] than the joints say.
+fn links_farther(s: &State, zeros: [f64; 2]) -> [f64; 2] {
+    let mut farther = *s;
+    farther.q = [s.q[0] + zeros[0], s.q[1] + zeros[1]];
+    let (then, now) = (
+        links(&farther, &[FOREARM], GRAVITY),
+        links(s, &[FOREARM], GRAVITY),
+    );
+    [then[0] - now[0], then[1] - now[1]]
+}
+
+#[test]
+fn a_joint_whose_zero_is_elsewhere_is_named_with_it() {
+    let zero = 2.0 * PI / 180.0;
+    let dataset = recording(8, |s| links_farther(s, [0.0, zero]));
+    let told = ask(&dataset, &PLAIN);
+    let first = &told.candidates[0];
+    let place = (first.named.effect.as_str(), first.joint.as_deref());
+    assert_eq!(place, ("joint_zero", Some("elbow")), "{told:#?}");
+    let more = [&PLAIN[..], &["joint_zero@elbow"]].concat();
+    all_complete(&ask(&dataset, &more));
+    // A third of a turn, too, which one linear step does not reach.
+    for zero in [zero, PI / 3.0] {
+        let dataset = recording(8, |s| links_farther(s, [0.0, zero]));
+        let found = compare(&dataset, &model(&more)).unwrap();
+        let found = &found.arm["joint_zero@elbow"]["zero"];
+        assert!((found.value - zero).abs() < 1e-3, "{found:?}");
+        assert_eq!(found.unit, "rad");
+    }
+}
+
+#[test]
+fn an_arm_that_is_not_calibrated_is_in_one_step() {
+    let zeros = [0.15, -0.2];
+    let dataset = recording(9, |s| links_farther(s, zeros));
+    let told = ask(&dataset, &PLAIN);
+    let first = &told.candidates[0];
+    assert_eq!(first.named.effect, "joint_zeros", "{told:#?}");
+    assert_eq!((&first.joint, told.candidates.len()), (&None, 1));
+    let added = add(&dataset, &model(&PLAIN), &ArmTerm::parse("joint_zeros")).unwrap();
+    assert!(added.lowers_error);
+    for (joint, zero) in ["shoulder", "elbow"].into_iter().zip(zeros) {
+        let found = added.parameters[&format!("joint_zeros.{joint}")].value;
+        assert!((found - zero).abs() < 1e-3, "{joint}: {found}");
+    }
+    let more = [&PLAIN[..], &["joint_zeros"]].concat();
+    all_complete(&ask(&dataset, &more));
+}
+
+/// The same recording with joints read otherwise: `(joint, position, torque)` changes each sample.
+fn read_otherwise(
+    mut dataset: ArmDataset,
+    joint: usize,
+    position: impl Fn(f64) -> f64,
+    torque: impl Fn(f64) -> f64,
+) -> ArmDataset {
+    for session in &mut dataset.sessions {
+        for own in &mut session.position[joint] {
+            *own = position(*own);
+        }
+        for own in &mut session.motor_torque[joint] {
+            *own = torque(*own);
+        }
+    }
+    dataset
+}
+
+/// What is said of joints of `dataset` that are read otherwise than the model has them: nothing else is
+/// named then.
+fn misread(dataset: &ArmDataset) -> Vec<(String, bool, bool, f64)> {
+    let told = ask(dataset, &PLAIN);
+    assert_eq!(told.verdict, Verdict::Unexplained);
+    assert!(told.candidates.is_empty(), "{:#?}", told.candidates);
+    assert_eq!(
+        compare(dataset, &model(&PLAIN)).unwrap().misread,
+        told.misread
+    );
+    let each = told.misread.iter().map(|own| {
+        assert!(own.error_after < 0.2 * own.error_before, "{own:?}");
+        (
+            own.joint.clone(),
+            own.reversed,
+            own.torque_reversed,
+            own.zero,
+        )
+    });
+    each.collect()
+}
+
+#[test]
+fn joints_that_are_read_the_other_way_round_are_told_before_anything_is_named() {
+    let right = || recording(10, |_| [0.0; 2]);
+    let elbow = |reversed, torque, zero| vec![("elbow".to_owned(), reversed, torque, zero)];
+    let turned = |own: f64| -own;
+    let flipped = read_otherwise(right(), 1, |own| own, turned);
+    assert_eq!(misread(&flipped), elbow(false, true, 0.0));
+    let reversed = read_otherwise(right(), 1, turned, turned);
+    assert_eq!(misread(&reversed), elbow(true, false, 0.0));
+    let position = read_otherwise(right(), 1, turned, |own| own);
+    assert_eq!(misread(&position), elbow(true, true, 0.0));
+    let quarter = read_otherwise(right(), 1, |own| 0.5 * PI - own, turned);
+    assert_eq!(misread(&quarter), elbow(true, false, 0.5 * PI));
+}
+
+#[test]
+fn the_other_order_of_two_joints_is_told() {
+    let mut dataset = recording(11, |_| [0.0; 2]);
+    for session in &mut dataset.sessions {
+        session.motor_torque.swap(0, 1);
+    }
+    let told = ask(&dataset, &PLAIN).misread;
+    let whose: Vec<Option<&str>> = told
+        .iter()
+        .map(|own| own.torque_is_read_as.as_deref())
+        .collect();
+    assert_eq!(whose, [Some("elbow"), Some("shoulder")], "{told:?}");
+}
+
+/// What is missing, however much it is, is no other way to read a joint.
+#[test]
+fn a_heavy_payload_is_no_misreading() {
+    let dataset = recording(12, |s| links_of(s, (2.0, [0.35, 0.1])));
+    let told = ask(&dataset, &PLAIN);
+    assert_eq!(told.misread, []);
+    assert_eq!(told.candidates[0].named.effect, "payload");
 }
 
 #[test]

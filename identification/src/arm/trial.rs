@@ -16,6 +16,8 @@ use crate::validation::{Score, gain_of_folds};
 const ROUNDS: usize = 3;
 /// Smallest share of the weighted mean square that an effect of the arm explains.
 const MIN_SHARE: f64 = 0.02;
+/// Smallest of them, linearised where it is nothing, for it to be linearised again.
+const MIN_PROMISE: f64 = 0.005;
 /// Smallest certainty of its prediction of rows left out, in standard errors.
 const MIN_CERTAINTY: f64 = 3.0;
 /// Probability of a false alarm over all that are tried.
@@ -64,13 +66,16 @@ pub(super) fn try_one(
     effects.push((effect, vec![0.0; effect.columns()]));
     let rounds = match effect {
         ArmEffect::LinkInertia(_) => 1,
-        ArmEffect::Payload | ArmEffect::BaseTilt => ROUNDS,
+        _ => ROUNDS,
     };
     let mut weights: Vec<f64> = weights_of(&before.held_out());
     let mut columns = arm.columns(&effects);
     let mut fit = shared::fit(&arm.joints, &columns, &weights);
     let own = |fit: &SharedFit| fit.shared.rows(known, effect.columns()).into_owned();
     for _ in 1..rounds {
+        if explained_share(&fit, before, &weights) < MIN_PROMISE {
+            break;
+        }
         // The derivatives half-way make the chord right to second order.
         let half = own(&fit) * 0.5;
         if let Some((_, value)) = effects.last_mut() {
@@ -99,6 +104,12 @@ pub(super) fn try_one(
         fit,
         tried,
     }
+}
+
+/// Share of the weighted mean square that `before` leaves which it explains.
+fn explained_share(fit: &SharedFit, before: &SharedFit, weights: &[f64]) -> f64 {
+    let all = weighted_decrease(&fit.decreases_from(before), weights);
+    all.mean_square / all.before.powi(2).max(1e-300)
 }
 
 /// One over mean squares.
@@ -139,8 +150,9 @@ impl Tried {
     }
 
     /// Its parameters with standard errors.
-    pub(super) fn parameters(&self) -> BTreeMap<String, Parameter> {
+    pub(super) fn parameters(&self, arm: &PreparedArm<'_>) -> BTreeMap<String, Parameter> {
         parameters(
+            arm,
             self.effect,
             &self.value,
             (&self.covariance, self.fit.freedom),
@@ -151,14 +163,17 @@ impl Tried {
 /// Parameters of an effect of the arm as reported; its covariance has so many degrees of
 /// `freedom`.
 pub(super) fn parameters(
+    arm: &PreparedArm<'_>,
     effect: ArmEffect,
     value: &[f64],
     (covariance, freedom): (&DMatrix<f64>, f64),
 ) -> BTreeMap<String, Parameter> {
-    let each = effect.reported(value, covariance).into_iter();
+    let each = effect
+        .reported(|at| arm.joint_named(at), value, covariance)
+        .into_iter();
     each.map(|(name, unit, value, error)| {
         let parameter = Parameter::measured(value, (error, freedom), unit, effect.id());
-        (name.to_owned(), parameter)
+        (name, parameter)
     })
     .collect()
 }

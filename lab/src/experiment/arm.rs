@@ -8,6 +8,9 @@
 //! armature = [0.6, 0.6]                       # kg m², motor and gear of each joint; else fitted
 //! gravity = [0.0, 0.0, -9.81]                 # m/s², in the base's frame; this is the default
 //! gear_ratio = [100, 100]                     # optional
+//! reversed = ["panda_joint2"]                 # optional: whose position and torque count the other way round
+//! torque_reversed = []                        # optional: whose torque does
+//! zero = { panda_joint2 = 1.5708 }            # optional, rad: what is added to positions
 //! [signals]                                   # arrays by joint name, or one path or column each:
 //! position = "/joint_states.position"         # ["q1", { column = "q2", unit = "deg" }], "q_{joint}"
 //! motor_torque = "/joint_states.effort"
@@ -20,6 +23,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 use ferntast_identification::JointType;
 use ferntast_urdf::{Arm, JointType as UrdfJointType, Robot};
 
+use super::joint_readings::{self, JointReading};
 use super::{Experiment, ExperimentError, Signals, file};
 use crate::unit::{Quantity, Unit};
 
@@ -42,6 +46,8 @@ pub struct ArmTable {
     pub gravity: [f64; 3],
     /// Gear ratio of each joint.
     pub gear_ratio: Option<Vec<f64>>,
+    /// How position and torque of each joint are read.
+    pub readings: Vec<JointReading>,
 }
 
 /// What the table says is what the file says.
@@ -50,6 +56,7 @@ impl PartialEq for ArmTable {
         (self.urdf == other.urdf && self.arm.joints == other.arm.joints)
             && (self.armature == other.armature && self.gravity == other.gravity)
             && self.gear_ratio == other.gear_ratio
+            && self.readings == other.readings
     }
 }
 
@@ -127,8 +134,10 @@ pub(super) fn table(
         let reason = format!("{gravity:?} is no acceleration within 100 m/s²");
         return Err(refuse("arm.gravity", reason));
     }
+    let readings = joint_readings::readings(&table, &arm.joints, refuse)?;
     Ok(ArmTable {
         urdf,
+        readings,
         arm,
         armature: table.armature,
         gravity,
@@ -273,7 +282,7 @@ fn places(
 }
 
 impl Experiment {
-    /// Of what was read, positions and torques of all joints, session by session.
+    /// Of what was read, positions and torques of all joints as the URDF counts them, session by session.
     pub(crate) fn of_joints(
         &self,
         position: &[f64],
@@ -288,7 +297,13 @@ impl Experiment {
                 .chain(others)
                 .collect()
         };
-        Some([all(position, POSITION)?, all(motor_torque, MOTOR_TORQUE)?])
+        let (mut positions, mut torques) =
+            (all(position, POSITION)?, all(motor_torque, MOTOR_TORQUE)?);
+        let readings = self.arm.as_ref()?.readings.iter();
+        for ((reading, position), torque) in readings.zip(&mut positions).zip(&mut torques) {
+            reading.apply(position, torque);
+        }
+        Some([positions, torques])
     }
 
     /// What the signals of an arm's first joint are called where each joint has one: `position@elbow`.

@@ -200,6 +200,12 @@ pub(super) struct Arm {
     pub(super) armature: Option<Vec<f64>>,
     pub(super) gravity: Option<[f64; 3]>,
     pub(super) gear_ratio: Option<Vec<f64>>,
+    /// Joints that count the other way round, …
+    pub(super) reversed: Option<Vec<String>>,
+    /// … whose torque does, …
+    pub(super) torque_reversed: Option<Vec<String>>,
+    /// … and what is added to positions.
+    pub(super) zero: Option<BTreeMap<String, f64>>,
 }
 
 #[derive(Debug, Deserialize)]

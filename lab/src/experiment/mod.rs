@@ -68,6 +68,7 @@ mod contact;
 mod date;
 mod error;
 mod file;
+mod joint_readings;
 mod lineage;
 mod mapping;
 #[cfg(test)]
@@ -94,6 +95,7 @@ pub use arm::{ArmTable, units_of_joint};
 pub use change::{Change, Changed};
 pub use contact::Contour;
 pub use error::{ExperimentError, WriteError};
+pub use joint_readings::JointReading;
 pub use lineage::{FittedParameter, HistoryStep, Lineage, data_hash, history};
 pub use mapping::{ArmPart, Mapped, Mapping, Place};
 pub use own::RECORD;

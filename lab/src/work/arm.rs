@@ -9,7 +9,7 @@ use ferntast_identification::{
     Dataset, Inertia, RecordedSession, Term,
     arm::{
         self, ArmComparison, ArmDataset, ArmDiagnosis, ArmDiscovery, ArmParts, ArmSession, ArmSpec,
-        ArmTerm, PreparedArm,
+        ArmTerm, Misread, PreparedArm,
     },
     comparison::parts::Says,
     fit::Parameter,
@@ -17,7 +17,7 @@ use ferntast_identification::{
 use ferntast_model::rigid_body::Vector3;
 use serde::Serialize;
 
-use super::{Opened, WorkError, add::fitted};
+use super::{Opened, WorkError, add::fitted, misread::tell_misread};
 use crate::{
     experiment::{self, ArmTable, Experiment, NextStep, write_child},
     recording::{self, Tally},
@@ -132,6 +132,15 @@ impl OpenedArm {
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
         self.experiment.force_unit()
+    }
+
+    /// What is said of joints that are read otherwise than the model has them, and how to mend it.
+    #[must_use]
+    pub fn tell_misread(&self, misread: &[Misread]) -> Vec<String> {
+        let arm = self.experiment.arm.as_ref();
+        arm.map_or_else(Vec::new, |arm| {
+            tell_misread(arm, misread, self.torque_unit())
+        })
     }
 
     /// The model against the recordings, joint by joint.

@@ -259,6 +259,21 @@ impl Chain {
         &self.limits
     }
 
+    /// The same arm with other links, each in its own frame; a model that is being identified may
+    /// have some that cannot exist.
+    ///
+    /// # Errors
+    ///
+    /// [`ChainError::JointCount`] where there is not one for each joint.
+    pub fn with_inertias(mut self, inertias: &Joints<LinkInertia>) -> Result<Chain, ChainError> {
+        if inertias.len() != self.links.len() {
+            return Err(ChainError::JointCount(inertias.len()));
+        }
+        let each = self.links.iter_mut().zip(inertias.iter());
+        each.for_each(|(link, inertia)| link.inertia = *inertia);
+        Ok(self)
+    }
+
     /// The links' inertias, each in its link's frame.
     pub fn inertias(&self) -> Joints<LinkInertia> {
         self.links.map(|link| link.inertia)

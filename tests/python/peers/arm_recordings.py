@@ -40,10 +40,12 @@ ACCEPTED = {
     "unknown_product": [],
     "load_elasticity": ["load_elasticity"],
     "warm_up_viscous": ["warm_up_coulomb", "warm_up_viscous"],
+    "joint_zero": ["joint_zero"],
+    "joint_zeros": ["joint_zeros"],
 }
-OF_THE_ARM = ("payload", "base_tilt")
+OF_THE_ARM = ("payload", "base_tilt", "joint_zeros")
 # These came after seeds had been published: they count behind the others, and are drawn where they are asked for.
-LATER = ("load_elasticity", "warm_up_viscous")
+LATER = ("load_elasticity", "warm_up_viscous", "joint_zero", "joint_zeros")
 
 
 def readable(urdf):
@@ -179,7 +181,7 @@ def record(urdf, folder, effect, seed, strength):
         truth = load(random, model, strength)
     if effect == "base_tilt":
         truth = tilt(random, model, strength)
-    heavy = range(1, count - 2) if effect == "load_coulomb" else range(count)
+    heavy = range(1, count - 2) if effect in ("load_coulomb", "joint_zero") else range(count)
     joint = None if effect in OF_THE_ARM or effect == "none" else int(random.choice(heavy))
     other = None
     if joint is not None:
@@ -190,6 +192,14 @@ def record(urdf, folder, effect, seed, strength):
         truth |= {f"b0@{name}": coulomb[own_joint], f"b1@{name}": viscous[own_joint]}
     rows = []
     gear = soft_joint.Gear(random, strength) if effect == "load_elasticity" else None
+    zeros = numpy.zeros(count)
+    if effect == "joint_zero":
+        zeros[joint] = strength * math.radians(0.5 + 2.5 * shape[0]) * (1.0 if shape[1] < 0.5 else -1.0)
+        truth[f"joint_zero@{names[joint]}.zero"] = zeros[joint]
+    if effect == "joint_zeros":
+        zeros[:] = strength * numpy.radians(random.uniform(-5.0, 5.0, count))
+        # The first joint turns all about the vertical, which no torque tells.
+        truth |= {f"joint_zeros.{name}": zero for name, zero in list(zip(names, zeros, strict=True))[1:]}
     for session in range(SESSIONS):
         if gear:
             t, *all_joints = soft_joint.strokes(random, model, hinges(model), int(SECONDS * soft_joint.RATE))
@@ -251,7 +261,8 @@ def record(urdf, folder, effect, seed, strength):
             torque[:, joint] -= thinner * change
         noise = 0.012 * numpy.sqrt(numpy.mean((torque - torque.mean(axis=0)) ** 2, axis=0) + 0.1 * coulomb**2)
         torque += noise * random.standard_normal(torque.shape)
-        q = numpy.round(q / 1e-5) * 1e-5
+        # A joint is where it says and its zero.
+        q = numpy.round((q - zeros) / 1e-5) * 1e-5
         rows.append(numpy.column_stack([t + 600.0 * session, q, torque]))
     if gear:
         truth |= {f"{name}@{names[joint]}": value for name, value in gear.truth().items()}

@@ -4,13 +4,14 @@ use ferntast_tests::{Session, ask_python, peer, run};
 use serde_json::{Value, json};
 
 /// Robot, effect, seed, strength. More of them: `tests/python/peers/arm_recordings.py`.
-const CASES: [(&str, &str, &str, &str); 6] = [
+const CASES: [(&str, &str, &str, &str); 7] = [
     ("ur5_robot", "none", "1", "1"),
     ("panda", "stribeck", "1", "1"),
     ("ur5_robot", "payload", "1", "1"),
     ("panda", "joint_coupling", "1", "1"),
     ("ur5_robot", "load_elasticity", "1", "1"),
     ("ur5_robot", "warm_up_viscous", "1", "1"),
+    ("panda", "joint_zeros", "1", "1"),
 ];
 
 #[test]

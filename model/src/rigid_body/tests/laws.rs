@@ -102,6 +102,20 @@ proptest! {
         prop_assert!((held - slope).abs() < 1e-6 * (1.0 + held.abs() + gravity.norm()));
     }
 
+    /// Links of half the inertia take half the torques.
+    #[test]
+    fn torques_are_those_of_the_links_given((chain, (q, qd, qdd, gravity)) in any_chain_and_state()) {
+        let bare = chain.clone().with_armature(&Joints::filled(chain.count(), 0.0)).unwrap();
+        let half = bare.inertias().map(|whole| {
+            crate::rigid_body::LinkInertia::from_parameters(&whole.parameters().map(|value| 0.5 * value))
+        });
+        let light = bare.clone().with_inertias(&half).unwrap();
+        let each = |chain: &Chain| chain.inverse_dynamics(&q, &qd, &qdd, &gravity);
+        for (whole, half) in each(&bare).iter().zip(each(&light).iter()) {
+            prop_assert!((0.5 * whole - half).abs() < 1e-12 * (1.0 + whole.abs()));
+        }
+    }
+
     /// A link that is cut in two, with its halves fixed to each other, is the same link.
     #[test]
     fn what_is_fixed_together_moves_as_one((chain, (q, qd, qdd, gravity)) in any_chain_and_state()) {

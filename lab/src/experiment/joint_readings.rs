@@ -1,0 +1,146 @@
+//! Joints of an arm that count otherwise than their URDF: the other way round, from another zero.
+//!
+//! ```toml
+//! [arm]
+//! reversed = ["elbow"]          # position and torque count the other way round
+//! torque_reversed = ["wrist"]   # the torque does, or does not where the joint is reversed
+//! zero = { elbow = 1.5708 }     # rad or m, added to the position
+//! ```
+
+use ferntast_identification::arm::Misread;
+
+use super::{ExperimentError, file};
+
+/// How position and torque of a joint are read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointReading {
+    /// Whether both count the other way round.
+    pub reversed: bool,
+    /// Whether the torque does, or does not where the joint is reversed.
+    pub torque_reversed: bool,
+    /// What is added to the position \[rad\] or \[m\].
+    pub zero: f64,
+}
+
+impl JointReading {
+    const AS_IN_URDF: Self = Self {
+        reversed: false,
+        torque_reversed: false,
+        zero: 0.0,
+    };
+
+    /// Changes position and torque as recorded into those of the URDF's joint.
+    pub(crate) fn apply(&self, position: &mut [f64], torque: &mut [f64]) {
+        let turned = |reversed: bool| if reversed { -1.0 } else { 1.0 };
+        if *self == Self::AS_IN_URDF {
+            return;
+        }
+        let direction = turned(self.reversed);
+        for own in position {
+            *own = direction * *own + self.zero;
+        }
+        let direction = turned(self.reversed != self.torque_reversed);
+        torque.iter_mut().for_each(|own| *own *= direction);
+    }
+
+    /// What was read so, read once more.
+    pub(crate) fn then(self, next: &Misread) -> Self {
+        let direction = if next.reversed { -1.0 } else { 1.0 };
+        let turns = std::f64::consts::TAU;
+        let zero = direction * self.zero + next.zero;
+        Self {
+            reversed: self.reversed != next.reversed,
+            torque_reversed: self.torque_reversed != next.torque_reversed,
+            // The nearest of those that are the same place.
+            zero: zero - turns * (zero / turns).round(),
+        }
+    }
+}
+
+/// Of each of `joints`, as the table says.
+pub(super) fn readings(
+    table: &file::Arm,
+    joints: &[String],
+    refuse: &impl Fn(&str, String) -> ExperimentError,
+) -> Result<Vec<JointReading>, ExperimentError> {
+    let none: Vec<String> = Vec::new();
+    let reversed = table.reversed.as_ref().unwrap_or(&none);
+    let torque_reversed = table.torque_reversed.as_ref().unwrap_or(&none);
+    let zeros = table.zero.as_ref();
+    let known = |key: &str, name: &String| match joints.contains(name) {
+        true => Ok(()),
+        false => {
+            let reason = format!(
+                "{name:?} is no joint of the arm: they are {}",
+                joints.join(", ")
+            );
+            Err(refuse(key, reason))
+        }
+    };
+    for (key, names) in [
+        ("arm.reversed", reversed),
+        ("arm.torque_reversed", torque_reversed),
+    ] {
+        names.iter().try_for_each(|name| known(key, name))?;
+    }
+    for (name, zero) in zeros.into_iter().flatten() {
+        known("arm.zero", name)?;
+        if zero.is_nan() || zero.abs() > 100.0 {
+            let reason = format!("{zero} of {name} is not within 100 rad or m");
+            return Err(refuse("arm.zero", reason));
+        }
+    }
+    let each = joints.iter().map(|joint| JointReading {
+        reversed: reversed.contains(joint),
+        torque_reversed: torque_reversed.contains(joint),
+        zero: zeros.and_then(|own| own.get(joint)).copied().unwrap_or(0.0),
+    });
+    Ok(each.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OWN: JointReading = JointReading {
+        reversed: true,
+        torque_reversed: true,
+        zero: 0.5,
+    };
+
+    #[test]
+    fn positions_and_torques_are_turned_as_it_says() {
+        let (mut position, mut torque) = ([0.2], [3.0]);
+        OWN.apply(&mut position, &mut torque);
+        assert_eq!((position, torque), ([0.3], [3.0]));
+        let plain = JointReading {
+            torque_reversed: false,
+            zero: 0.0,
+            ..OWN
+        };
+        plain.apply(&mut position, &mut torque);
+        assert_eq!((position, torque), ([-0.3], [-3.0]));
+    }
+
+    #[test]
+    fn read_twice_is_as_one_after_the_other() {
+        let next = Misread {
+            joint: String::new(),
+            reversed: true,
+            torque_reversed: false,
+            zero: 3.0,
+            is_read_as: None,
+            torque_is_read_as: None,
+            error_before: 1.0,
+            error_after: 0.1,
+        };
+        let both = OWN.then(&next);
+        let (mut position, mut torque) = ([0.2], [3.0]);
+        OWN.apply(&mut position, &mut torque);
+        // As the misreading says: −q + 3, −τ.
+        let expected = (-position[0] + 3.0, -torque[0]);
+        let (mut position, mut torque) = ([0.2], [3.0]);
+        both.apply(&mut position, &mut torque);
+        assert!((position[0] - expected.0).abs() < 1e-12 && torque[0] == expected.1);
+    }
+}

@@ -1,0 +1,105 @@
+//! What is said of joints of an arm that are read otherwise than the model has them.
+
+use std::collections::BTreeMap;
+
+use ferntast_identification::arm::Misread;
+
+use crate::experiment::{ArmTable, JointReading};
+
+/// What is said of joints that are read otherwise than the model has them, and how to mend it; errors
+/// are in `unit`.
+#[must_use]
+pub fn tell_misread(arm: &ArmTable, misread: &[Misread], unit: &str) -> Vec<String> {
+    let mut told: Vec<String> = misread.iter().map(|own| in_words(own, unit)).collect();
+    let lines = lines(arm, misread);
+    if !lines.is_empty() {
+        told.push(format!(
+            "if that is so, write into [arm]:  {}",
+            lines.join("  ")
+        ));
+    }
+    if misread
+        .iter()
+        .any(|own| own.is_read_as.is_some() || own.torque_is_read_as.is_some())
+    {
+        told.push(
+            "if that is so, put the joints' paths or columns in the other order in [signals]"
+                .to_owned(),
+        );
+    }
+    told
+}
+
+fn in_words(own: &Misread, unit: &str) -> String {
+    let mut parts = Vec::new();
+    if let Some(other) = &own.is_read_as {
+        parts.push(format!("position and torque are those of {other}"));
+    }
+    if let Some(other) = &own.torque_is_read_as {
+        parts.push(format!("the torque is that of {other}"));
+    }
+    match (own.reversed, own.torque_reversed) {
+        (true, true) => parts.push("the position counts the other way round".to_owned()),
+        (true, false) => {
+            parts.push("position and torque count the other way round".to_owned());
+        }
+        (false, true) => parts.push("the torque counts the other way round".to_owned()),
+        (false, false) => {}
+    }
+    if own.zero != 0.0 {
+        let degrees = own.zero.to_degrees();
+        parts.push(format!("the position lacks {degrees:+.0} degrees"));
+    }
+    format!(
+        "{}: {}; read so, {:.3} {unit} of its torque are left in place of {:.3}",
+        own.joint,
+        parts.join(", and "),
+        own.error_after,
+        own.error_before
+    )
+}
+
+/// The keys of `[arm]` with which joints are read as the model has them.
+fn lines(arm: &ArmTable, misread: &[Misread]) -> Vec<String> {
+    let both = arm.joints().iter().zip(&arm.readings);
+    let mended: Vec<(&String, JointReading)> = both
+        .map(|(joint, reading)| {
+            let own = misread.iter().find(|own| own.joint == *joint);
+            (joint, own.map_or(*reading, |own| reading.then(own)))
+        })
+        .collect();
+    let names = |is: fn(&JointReading) -> bool| -> Vec<String> {
+        let those = mended.iter().filter(|(_, reading)| is(reading));
+        those.map(|(joint, _)| format!("{joint:?}")).collect()
+    };
+    let list = |key: &str, names: Vec<String>, was: bool| {
+        (was || !names.is_empty()).then(|| format!("{key} = [{}]", names.join(", ")))
+    };
+    let was = |is: fn(&JointReading) -> bool| arm.readings.iter().any(is);
+    let zeros: BTreeMap<&str, f64> = (mended.iter())
+        .filter(|(_, reading)| reading.zero.abs() > 1e-9)
+        .map(|(joint, reading)| (joint.as_str(), reading.zero))
+        .collect();
+    let zeros: Vec<String> = (zeros.iter())
+        .map(|(joint, zero)| format!("{joint} = {zero:.6}"))
+        .collect();
+    let had_zeros = was(|own| own.zero != 0.0);
+    let turned = [
+        list(
+            "reversed",
+            names(|own| own.reversed),
+            was(|own| own.reversed),
+        ),
+        list(
+            "torque_reversed",
+            names(|own| own.torque_reversed),
+            was(|own| own.torque_reversed),
+        ),
+        (had_zeros || !zeros.is_empty()).then(|| format!("zero = {{ {} }}", zeros.join(", "))),
+    ];
+    let is_of_readings = |own: &Misread| own.reversed || own.torque_reversed || own.zero != 0.0;
+    match misread.iter().any(is_of_readings) {
+        true => turned.into_iter().flatten().collect(),
+        false => Vec::new(),
+    }
+}
