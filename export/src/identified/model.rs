@@ -177,6 +177,12 @@ impl Model {
                 "{name}: least squares alone finds a body that cannot exist; the nearest that can is written"
             ));
         }
+        let of_zeros = |effect: &&String| effect.starts_with("joint_zero");
+        for effect in arm.body.effects.keys().filter(of_zeros) {
+            notes.push(format!(
+                "{effect}: positions of what is written are those of the links; calibrate the joints, or add their zeros to what they say"
+            ));
+        }
         for (link, name) in arm.body.links.iter().zip(&arm.table.arm.links) {
             if !link.is_physical() {
                 notes.push(format!(

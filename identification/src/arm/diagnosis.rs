@@ -157,7 +157,16 @@ pub fn diagnose(
     if !misread.is_empty() {
         progress(1.0);
         let weights = weights_of(&before.held_out());
-        let told = told_of(dataset, &arm, &each, (&before, &weights));
+        let mut told = told_of(dataset, &arm, &each, (&before, &weights));
+        // What looks as if it were missing, or depended on something, is of the wrong reading.
+        for own in told
+            .joints
+            .values_mut()
+            .filter(|own| own.verdict == Verdict::Missing)
+        {
+            own.verdict = Verdict::Unexplained;
+        }
+        told.residual_depends_on.clear();
         return Ok(ArmDiagnosis { misread, ..told });
     }
     let tried = try_all(&arm, &before, &mut |done| progress(FIRST_LOOK + 0.2 * done));
