@@ -19,12 +19,15 @@ use super::rigid_body::RigidBody;
 use crate::data::Inertia;
 
 /// Samples that are looked at.
-const SAMPLES: usize = 1200;
+const SAMPLES: usize = 400;
 /// A joint of whose torque less than this share is left is read rightly.
 const SUSPECT: f64 = 0.15;
 /// By how much the logarithms of the joints' errors fall, together, for another reading to be the right
 /// one: one error to a third, or several by less.
 const MIN_FALL: f64 = 1.1;
+/// A joint that was read wrongly has at most this share of its error left: else it is the model that is
+/// wrong, of which another reading makes up for something.
+const LEFT: f64 = 1.0 / 3.0;
 /// By how much they rise if one part of it is taken back, for that to stay.
 const MIN_PART: f64 = 0.2;
 /// What a part has to explain for a reading with it to be better than one without.
@@ -86,6 +89,15 @@ pub(super) fn find(arm: &PreparedArm<'_>) -> Vec<Misread> {
     let after = looked.errors(&best);
     let name = |at: usize| arm.joint_named(at).0;
     let changed = (best.iter().zip(&as_read).enumerate()).filter(|(_, (now, then))| now != then);
+    let is_mended = |at: usize| {
+        // Of a joint that was explained before, too, as of one that the others are turned with, little
+        // has to become less.
+        let was_explained = before[at] <= SUSPECT * looked.sizes[at];
+        after[at] < LEFT * before[at] || (was_explained && after[at] < 1.1 * before[at])
+    };
+    if !changed.clone().all(|(at, _)| is_mended(at)) {
+        return Vec::new();
+    }
     let told = changed.map(|(at, (now, _))| Misread {
         joint: name(at),
         reversed: now.direction < 0.0,

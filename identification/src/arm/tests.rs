@@ -379,9 +379,11 @@ fn the_other_order_of_two_joints_is_told() {
     assert_eq!(whose, [Some("elbow"), Some("shoulder")], "{told:?}");
 }
 
-/// What is missing, however much it is, is no other way to read a joint.
+/// What is missing, however much it is, is no other way to read a joint; nor is a model that is wrong.
 #[test]
-fn a_heavy_payload_is_no_misreading() {
+fn a_heavy_payload_and_offsets_are_no_misreading() {
+    let offsets = recording(13, |_| [6.0, -4.0]);
+    assert_eq!(compare(&offsets, &model(&PLAIN)).unwrap().misread, []);
     let dataset = recording(12, |s| links_of(s, (2.0, [0.35, 0.1])));
     let told = ask(&dataset, &PLAIN);
     assert_eq!(told.misread, []);

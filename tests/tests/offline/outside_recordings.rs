@@ -378,11 +378,14 @@ fn hidden_effects_of_arms_are_found_in_their_joints() {
         let told = run(&session, &["lab", "diagnose", &experiment, "--json"])
             .success()
             .json();
-        // Motions of the other joints are there, temperatures and a torque sensor are not.
+        // Motions of the other joints are there, temperatures, a minute to warm up in, and a torque
+        // sensor are not.
         let of_an_arm = [
             "temperature_coulomb",
             "temperature_viscous",
             "wear_drift",
+            "warm_up_coulomb",
+            "warm_up_viscous",
             "elasticity",
         ];
         assert_eq!(told["not_tested"], json!(of_an_arm), "{case}");
