@@ -70,7 +70,7 @@ export function figures({ results: found, before, diagnosis, view }, actions) {
 export function diagnosis(parent, { diagnosis: found, results, view }, actions) {
   fill(parent,
     make("h2", { textContent: "Diagnosis of the arm" }),
-    make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict }, make("b", { textContent: VERDICTS[found.verdict] })),
+    make("div", { className: `verdict ${found.verdict}`, role: "status", id: "verdict", "data-verdict": found.verdict }, make("b", { textContent: found.told_misread.length ? "Joints are read otherwise than the model has them. Mend that first." : VERDICTS[found.verdict] })),
     make("p", { className: "quiet small", textContent: `${found.tried} variants tried in ${view.joints.length} joints and in the arm.` }),
     found.told_misread.map((text) => make("p", { className: "note warning misread", textContent: text })),
     found.candidates.length ? ranking(found.candidates, {
