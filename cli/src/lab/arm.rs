@@ -204,9 +204,7 @@ fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
 fn tell_misread_joints(told: &[String]) {
     if !told.is_empty() {
         println!();
-        println!(
-            "warning: joints are read otherwise than the model has them, so that nothing else is named:"
-        );
+        println!("warning: joints are read otherwise than the model has them; mend that first:");
     }
     for line in told {
         println!("  {line}");

@@ -157,17 +157,23 @@ pub fn diagnose(
     if !misread.is_empty() {
         progress(1.0);
         let weights = weights_of(&before.held_out());
-        let mut told = told_of(dataset, &arm, &each, (&before, &weights));
+        let mut told = told_of(
+            dataset,
+            (&arm, &each),
+            &vec![false; all.len()],
+            (&before, &weights),
+        );
         // What looks as if it were missing, or depended on something, is of the wrong reading.
-        for own in told
-            .joints
-            .values_mut()
-            .filter(|own| own.verdict == Verdict::Missing)
-        {
+        let joints = told.joints.values_mut();
+        for own in joints.filter(|own| own.verdict == Verdict::Missing) {
             own.verdict = Verdict::Unexplained;
         }
         told.residual_depends_on.clear();
-        return Ok(ArmDiagnosis { misread, ..told });
+        return Ok(ArmDiagnosis {
+            misread,
+            verdict: Verdict::Unexplained,
+            ..told
+        });
     }
     let tried = try_all(&arm, &before, &mut |done| progress(FIRST_LOOK + 0.2 * done));
     let contest = Contest::new(&arm, &each, &tried);
@@ -220,57 +226,53 @@ pub fn diagnose(
             candidates.extend(all.iter().flat_map(|at| told.of_joint(*at, &each[*at])));
         }
     }
-    let joints = joints(&arm, &each, &helped);
-    let verdict = match candidates.is_empty() {
-        false => Verdict::Missing,
-        true if joints
-            .values()
-            .any(|own| own.verdict == Verdict::Unexplained) =>
-        {
-            Verdict::Unexplained
-        }
-        true => Verdict::Complete,
-    };
     progress(1.0);
-    let all = told_of(dataset, &arm, &each, (&before, &weights));
-    Ok(ArmDiagnosis {
-        verdict,
-        suspected: match candidates.is_empty() {
-            true => all.suspected,
-            false => Vec::new(),
+    let told = told_of(dataset, (&arm, &each), &helped, (&before, &weights));
+    let mut verdicts = told.joints.values().map(|own| own.verdict);
+    Ok(match candidates.is_empty() {
+        false => ArmDiagnosis {
+            verdict: Verdict::Missing,
+            candidates,
+            tried: told.tried + tried.len(),
+            ..told
         },
-        candidates,
-        joints,
-        tried: all.tried + tried.len(),
-        ..all
+        true => ArmDiagnosis {
+            verdict: match verdicts.any(|own| own == Verdict::Unexplained) {
+                true => Verdict::Unexplained,
+                false => Verdict::Complete,
+            },
+            suspected: suspected(&arm, &each),
+            tried: told.tried + tried.len(),
+            ..told
+        },
     })
 }
 
-/// What is told of the joints as each is by itself, before anything is named; `before` is the fit
-/// of the model, with the weights of the joints.
+/// What is told of the joints, with nothing named or suspected: as `each` is by itself, and those
+/// that what is named `helped`; `before` is the fit of the model, with the weights of the joints.
 fn told_of(
     dataset: &ArmDataset,
-    arm: &PreparedArm<'_>,
-    each: &[Diagnosis],
+    (arm, each): (&PreparedArm<'_>, &[Diagnosis]),
+    helped: &[bool],
     (before, weights): (&SharedFit, &[f64]),
 ) -> ArmDiagnosis {
     ArmDiagnosis {
         samples: samples(dataset),
         used: used(&arm.joints),
-        verdict: Verdict::Unexplained,
+        verdict: Verdict::Complete,
         rms: Rms {
             train: weighted(&before.train, weights),
             held_out: weighted(&before.held_out(), weights),
         },
         misread: Vec::new(),
-        suspected: suspected(arm, each),
+        suspected: Vec::new(),
         candidates: Vec::new(),
         residual_depends_on: depends_on(arm, each),
         varies_together: varies_together(&arm.joints),
-        joints: joints(arm, each, &vec![false; each.len()]),
+        joints: joints(arm, each, helped),
         // Every joint has the same sessions, and the links' torque for a load.
         not_tested: (each.first()).map_or_else(NotTested::default, |own| own.not_tested.clone()),
-        tried: each.iter().map(|own| own.tried).sum::<usize>(),
+        tried: each.iter().map(|own| own.tried).sum(),
     }
 }
 
@@ -454,7 +456,7 @@ impl Told<'_> {
     /// An effect of the arm, and those that explain as much.
     fn of_arm(&self, tried: &Tried, alike: Vec<&Tried>) -> ArmCandidate {
         let decrease = weighted_decrease(&tried.decreases, self.weights);
-        let square = decrease.before.powi(2).max(1e-300);
+        let [share, share_std_error] = decrease.share();
         let term = self.arm.term(tried.effect);
         ArmCandidate {
             joint: term.joint,
@@ -464,8 +466,8 @@ impl Told<'_> {
                 held_out_before: decrease.before,
                 held_out_after: decrease.after,
                 p_value: tried.p_value(),
-                share: decrease.mean_square / square,
-                share_std_error: decrease.std_error / square,
+                share,
+                share_std_error,
                 parameters: tried.parameters(self.arm),
                 indistinguishable_from: (alike.iter())
                     .map(|own| self.arm.term(own.effect).to_string())

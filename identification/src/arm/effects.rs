@@ -12,8 +12,8 @@ use super::rigid_body::RigidBody;
 use super::term::ArmTerm;
 use crate::data::Term;
 
-/// An effect of the arm. Its coefficients enter τ nonlinearly only to second order: it is
-/// linearised around the coefficients reached.
+/// An effect of the arm. Its coefficients enter τ nonlinearly, of payload, tilt and links only to
+/// second order: it is linearised around the coefficients reached.
 ///
 /// A joint's zero is what its position has to be raised by to be that of the links.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -227,7 +227,7 @@ impl ArmEffect {
         for at in 0..states.len() {
             let link = self.joint().unwrap_or(body.joints().saturating_sub(1));
             let first = RigidBody::first_of(link);
-            let rows = body.regressor(states, at, &body.gravity);
+            let rows = body.regressor(states, at);
             for (joint, own) in all.iter_mut().enumerate() {
                 for (column, values) in own.iter_mut().enumerate() {
                     let each = (0..LINK_PARAMETERS)

@@ -34,19 +34,11 @@ impl<'a> RigidBody<'a> {
         self.chain.count().get()
     }
 
-    /// Regressor rows of each joint at one sample, in the gravity given.
-    pub(super) fn regressor(
-        &self,
-        states: &States,
-        at: usize,
-        gravity: &Vector3<f64>,
-    ) -> Regressor {
-        let (q, qd, qdd) = (
-            farther(&states.q[at], &self.zeros),
-            &states.qd[at],
-            &states.qdd[at],
-        );
-        self.chain.torque_regressor(&q, qd, qdd, gravity)
+    /// Regressor rows of each joint at one sample.
+    pub(super) fn regressor(&self, states: &States, at: usize) -> Regressor {
+        let q = farther(&states.q[at], &self.zeros);
+        let (qd, qdd) = (&states.qd[at], &states.qdd[at]);
+        self.chain.torque_regressor(&q, qd, qdd, &self.gravity)
     }
 
     /// What `gravity` alone takes of each joint, at rest at every sample \[Nm\].

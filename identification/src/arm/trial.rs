@@ -73,7 +73,8 @@ pub(super) fn try_one(
     let mut fit = shared::fit(&arm.joints, &columns, &weights);
     let own = |fit: &SharedFit| fit.shared.rows(known, effect.columns()).into_owned();
     for _ in 1..rounds {
-        if explained_share(&fit, before, &weights) < MIN_PROMISE {
+        let [share, _] = weighted_decrease(&fit.decreases_from(before), &weights).share();
+        if share < MIN_PROMISE {
             break;
         }
         // The derivatives half-way make the chord right to second order.
@@ -106,12 +107,6 @@ pub(super) fn try_one(
     }
 }
 
-/// Share of the weighted mean square that `before` leaves which it explains.
-fn explained_share(fit: &SharedFit, before: &SharedFit, weights: &[f64]) -> f64 {
-    let all = weighted_decrease(&fit.decreases_from(before), weights);
-    all.mean_square / all.before.powi(2).max(1e-300)
-}
-
 /// One over mean squares.
 pub(super) fn weights_of(errors: &[f64]) -> Vec<f64> {
     errors.iter().map(|e| e.max(1e-12).powi(-2)).collect()
@@ -133,7 +128,7 @@ impl Tried {
     /// joint that it helps most, too: else it is no more than an effect of that joint.
     pub(super) fn passes(&self, weights: &[f64]) -> bool {
         let all = weighted_decrease(&self.decreases, weights);
-        let share = all.mean_square / all.before.powi(2).max(1e-300);
+        let [share, _] = all.share();
         let is_seen = self.score.certainty > MIN_CERTAINTY && self.p_value() < SIGNIFICANCE;
         all.is_certain() && share > MIN_SHARE && is_seen && self.is_of_several(weights)
     }

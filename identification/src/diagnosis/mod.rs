@@ -185,14 +185,14 @@ fn describe(
 ) -> NamedCandidate {
     let id = candidate.id();
     let equivalents = equivalents::find(design, candidate, passing, &trial.candidates);
-    let decrease = &addition.decrease;
+    let [share, share_std_error] = addition.decrease.share();
     NamedCandidate {
         effect: id.to_owned(),
         held_out_before: addition.held_out_before,
         held_out_after: addition.held_out_after,
         p_value: trial.corrected(candidate),
-        share: decrease.mean_square / decrease.before.powi(2).max(1e-300),
-        share_std_error: decrease.std_error / decrease.before.powi(2).max(1e-300),
+        share,
+        share_std_error,
         parameters: parameters(prepared, addition, candidate),
         separate_by: equivalents::separate_by(prepared, candidate, &equivalents),
         next_experiment: equivalents::proposal(candidate, &equivalents),

@@ -131,7 +131,7 @@ impl<'a> Judge<'a> {
         };
         let (addition, left_out) = self.fitted.with(&Term::Custom(effect.clone()))?;
         let decrease = addition.decrease;
-        let share = decrease.mean_square / decrease.before.powi(2).max(1e-300);
+        let [share, _] = decrease.share();
         let mut parameters = BTreeMap::new();
         let mut holds = true;
         let mut freedom = 1.0;

@@ -32,8 +32,6 @@ mod torque_sensor_calibration;
 mod torque_sensor_gain;
 mod torque_sensor_offset;
 mod warm_up;
-mod warm_up_coulomb;
-mod warm_up_viscous;
 
 use std::sync::Arc;
 
@@ -248,8 +246,8 @@ pub fn all() -> Vec<EffectHandle> {
         Arc::new(channel_delay::ChannelDelay::default()),
         Arc::new(clock_drift::ClockDrift::default()),
         Arc::new(current_saturation::CurrentSaturation::default()),
-        Arc::new(warm_up_coulomb::WarmUpCoulomb::default()),
-        Arc::new(warm_up_viscous::WarmUpViscous::default()),
+        Arc::new(warm_up::WarmUp::coulomb()),
+        Arc::new(warm_up::WarmUp::viscous()),
         Arc::new(contact_compliance::ContactCompliance::default()),
     ]);
     effects

@@ -7,15 +7,55 @@
 //! begins cold. Simoni, Beschi, Legnani and Visioli 2015, "Friction modeling with temperature effects for
 //! industrial robot manipulators", IROS (abstract), for the power of friction.
 
-use ferntast_model::friction::{EffectParameter, Facts, Unit, Unmeasured, logarithmic};
+use ferntast_model::friction::{
+    EffectParameter, Proposal, Row, TORQUE, Unit, Unmeasured, logarithmic, sign,
+};
 
-use super::{Effect, Memory, Point, combinations, free};
+use super::{Effect, EffectDescription, Facts, Memory, Point, combinations, free};
 
-/// Their shape: tw, and P0 or [`EVENLY`].
-pub(super) const SHAPE: &[EffectParameter] = &[
+/// tw, and P0 or [`EVENLY`].
+const SHAPE: &[EffectParameter] = &[
     free("tw", Unit::new("s", "s")),
     free("P0", Unit::new("W", "W")),
 ];
+
+/// What both are.
+const BOTH: Row = Row {
+    source: "Simoni et al. 2015, or heated evenly",
+    shape: SHAPE,
+    shown_by: Proposal::TemperatureSweep,
+    // The scale of the power is not chosen.
+    freedom: Some(2),
+    of_unmeasured: Some(Unmeasured::Temperature),
+    ..Row::NONE
+};
+
+static COULOMB: Row = Row {
+    id: "warm_up_coulomb",
+    equation: "τ_F = −bw · θ · sign(q̇), tw dθ/dt = P/P0 − θ, P = (τ_m − τ) · q̇; P0 = 0: heated evenly, P/P0 = 1",
+    coefficients: &[free("bw", TORQUE)],
+    shows_as: "step that shrinks with time, no temperature recorded",
+    excited_by: "slow motion from a cold start, for as long as friction changes",
+    confusable_with: &["warm_up_viscous", "temperature_coulomb", "wear_drift"],
+    ..BOTH
+};
+
+static VISCOUS: Row = Row {
+    id: "warm_up_viscous",
+    equation: "τ_F = −bwv · θ · q̇, tw dθ/dt = P/P0 − θ, P = (τ_m − τ) · q̇; P0 = 0: heated evenly, P/P0 = 1",
+    coefficients: &[free("bwv", Unit::new("Nm s/rad", "N s/m"))],
+    shows_as: "slope that shrinks with time, no temperature recorded",
+    excited_by: "slow and fast motion from a cold start, for as long as friction changes",
+    confusable_with: &["warm_up_coulomb", "temperature_viscous", "clock_drift"],
+    ..BOTH
+};
+
+/// Friction that falls by what it is of the velocity, times how warm the joint is.
+pub struct WarmUp {
+    row: &'static Row,
+    description: EffectDescription,
+    of_velocity: fn(f64) -> f64,
+}
 
 /// In place of P0.
 const EVENLY: f64 = 0.0;
@@ -24,70 +64,94 @@ const FASTEST: f64 = 15.0;
 /// Time constants that are told by a recording, in its lengths: beyond, it shows a straight line.
 const SLOWEST_OF_LENGTH: f64 = 2.0;
 
-/// θ \[-\] at a sample; the memory is θ before it.
-pub(super) fn warmth(shape: &[f64], point: &Point, memory: &mut Memory) -> f64 {
-    let [warmth, ..] = memory;
-    if let [time_constant, power] = *shape {
-        *warmth += (heating(power, point) - *warmth) * point.period / time_constant;
+impl WarmUp {
+    /// Coulomb friction.
+    pub fn coulomb() -> Self {
+        Self::new(&COULOMB, sign)
     }
-    *warmth
+
+    /// Viscous friction.
+    pub fn viscous() -> Self {
+        Self::new(&VISCOUS, |velocity| velocity)
+    }
+
+    fn new(row: &'static Row, of_velocity: fn(f64) -> f64) -> Self {
+        Self {
+            row,
+            description: EffectDescription::from_row(row),
+            of_velocity,
+        }
+    }
+
+    /// Its column at a sample; `warmth` is θ before it.
+    fn column(&self, shape: &[f64], point: &Point, warmth: &mut f64) -> f64 {
+        if let [time_constant, power] = *shape {
+            *warmth += (heating(power, point) - *warmth) * point.period / time_constant;
+        }
+        -*warmth * (self.of_velocity)(point.velocity)
+    }
 }
 
 /// P/P0.
 fn heating(power: f64, point: &Point) -> f64 {
     match power == EVENLY {
         true => 1.0,
-        false => (point.motor_torque - point.load) * point.velocity / power,
+        false => point.friction_power() / power,
     }
 }
 
-/// The column of `effect` over a piece that begins within its recording, as warm as a joint that did
-/// the same before; `None` of one that begins with it, cold.
-pub(super) fn within_a_recording(
-    effect: &dyn Effect,
-    shape: &[f64],
-    points: &[Point],
-) -> Option<Vec<Vec<f64>>> {
-    let ([time_constant, power], [first, ..]) = (shape, points) else {
-        return None;
-    };
-    if first.time <= first.period {
-        return None;
+impl Effect for WarmUp {
+    fn description(&self) -> &EffectDescription {
+        &self.description
     }
-    let heating = points.iter().map(|point| heating(*power, point));
-    let mean = heating.sum::<f64>() / points.len() as f64;
-    let warm = mean * (1.0 - (-first.time / time_constant).exp());
-    let mut memory = [warm, 0.0, 0.0, 0.0];
-    let each = points.iter().map(|point| {
-        let mut column = [0.0];
-        effect.evaluate(shape, point, &mut memory, &mut column);
-        column[0]
-    });
-    Some(vec![each.collect()])
-}
 
-// P0 is not refined: it is a scale.
-pub(super) fn bounds(facts: &Facts) -> Vec<[f64; 2]> {
-    let slowest = SLOWEST_OF_LENGTH * facts.recording_length;
-    vec![[FASTEST, slowest.max(FASTEST)], [0.0, 0.0]]
-}
+    fn row(&self) -> &'static Row {
+        self.row
+    }
 
-pub(super) fn shapes(facts: &Facts) -> Vec<Vec<f64>> {
-    let [low, high] = bounds(facts)[0];
-    let powers = [EVENLY, facts.friction_power].into_iter();
-    let powers = powers.filter(|own| *own >= EVENLY).collect();
-    combinations(&[logarithmic(low, high, 8), powers])
-}
+    fn evaluate(&self, shape: &[f64], point: &Point, memory: &mut Memory, columns: &mut [f64]) {
+        let [warmth, ..] = memory;
+        columns.fill(self.column(shape, point, warmth));
+    }
 
-/// Why nothing can be said of warming up, if nothing can.
-pub(super) fn unavailable(facts: &Facts) -> Option<String> {
-    let measured = Unmeasured::Temperature.measured(facts);
-    measured.or(facts.no_warm_up())
-}
+    // A piece that begins within its recording is as warm as a joint that did the same before.
+    fn whole(&self, shape: &[f64], points: &[Point]) -> Option<Vec<Vec<f64>>> {
+        let ([time_constant, power], [first, ..]) = (shape, points) else {
+            return None;
+        };
+        if first.time <= first.period {
+            return None;
+        }
+        let heating = points.iter().map(|point| heating(*power, point));
+        let mean = heating.sum::<f64>() / points.len() as f64;
+        let mut warmth = mean * (1.0 - (-first.time / time_constant).exp());
+        let each = points.iter();
+        let each = each.map(|point| self.column(shape, point, &mut warmth));
+        Some(vec![each.collect()])
+    }
 
-/// Friction falls as a joint warms up.
-pub(super) fn plausible(coefficients: &[f64]) -> bool {
-    coefficients.iter().all(|own| *own > 0.0)
+    fn unavailable(&self, facts: &Facts) -> Option<String> {
+        let measured = Unmeasured::Temperature.measured(facts);
+        measured.or(facts.no_warm_up())
+    }
+
+    fn shapes(&self, facts: &Facts) -> Vec<Vec<f64>> {
+        let [low, high] = self.bounds(facts)[0];
+        let powers = [EVENLY, facts.friction_power].into_iter();
+        let powers = powers.filter(|own| *own >= EVENLY).collect();
+        combinations(&[logarithmic(low, high, 8), powers])
+    }
+
+    // P0 is not refined: it is a scale.
+    fn bounds(&self, facts: &Facts) -> Vec<[f64; 2]> {
+        let slowest = SLOWEST_OF_LENGTH * facts.recording_length;
+        vec![[FASTEST, slowest.max(FASTEST)], [0.0, 0.0]]
+    }
+
+    // Friction falls as a joint warms up.
+    fn plausible(&self, _shape: &[f64], coefficients: &[f64]) -> bool {
+        coefficients.iter().all(|own| *own > 0.0)
+    }
 }
 
 #[cfg(test)]

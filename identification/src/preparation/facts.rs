@@ -58,7 +58,7 @@ impl Ranges {
                 positions.push(point.position);
                 speeds.push(point.velocity.abs());
                 torques.push(point.motor_torque.abs());
-                power += (point.motor_torque - point.load) * point.velocity;
+                power += point.friction_power();
             }
         }
         let temperatures: Vec<f64> = dataset

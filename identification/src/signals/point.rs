@@ -61,6 +61,13 @@ impl Point {
         self.friction_predicted - self.weight_and_springs()
     }
 
+    /// Power that the motor gives and the load does not take: of friction, and of what gives back what
+    /// it takes \[W\].
+    #[must_use]
+    pub fn friction_power(&self) -> f64 {
+        (self.motor_torque - self.load) * self.velocity
+    }
+
     /// The modelled load without what drives its inertia \[Nm\].
     #[must_use]
     pub fn weight_and_springs(&self) -> f64 {

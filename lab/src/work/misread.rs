@@ -1,7 +1,5 @@
 //! What is said of joints of an arm that are read otherwise than the model has them.
 
-use std::collections::BTreeMap;
-
 use ferntast_identification::arm::Misread;
 
 use crate::experiment::{ArmTable, JointReading};
@@ -68,33 +66,21 @@ fn lines(arm: &ArmTable, misread: &[Misread]) -> Vec<String> {
             (joint, own.map_or(*reading, |own| reading.then(own)))
         })
         .collect();
-    let names = |is: fn(&JointReading) -> bool| -> Vec<String> {
+    // A key that was there is said again, also where it has nothing left.
+    let list = |key: &str, is: fn(&JointReading) -> bool| {
         let those = mended.iter().filter(|(_, reading)| is(reading));
-        those.map(|(joint, _)| format!("{joint:?}")).collect()
-    };
-    let list = |key: &str, names: Vec<String>, was: bool| {
+        let names: Vec<String> = those.map(|(joint, _)| format!("{joint:?}")).collect();
+        let was = arm.readings.iter().any(is);
         (was || !names.is_empty()).then(|| format!("{key} = [{}]", names.join(", ")))
     };
-    let was = |is: fn(&JointReading) -> bool| arm.readings.iter().any(is);
-    let zeros: BTreeMap<&str, f64> = (mended.iter())
+    let zeros: Vec<String> = (mended.iter())
         .filter(|(_, reading)| reading.zero.abs() > 1e-9)
-        .map(|(joint, reading)| (joint.as_str(), reading.zero))
+        .map(|(joint, reading)| format!("{joint} = {:.6}", reading.zero))
         .collect();
-    let zeros: Vec<String> = (zeros.iter())
-        .map(|(joint, zero)| format!("{joint} = {zero:.6}"))
-        .collect();
-    let had_zeros = was(|own| own.zero != 0.0);
+    let had_zeros = arm.readings.iter().any(|own| own.zero != 0.0);
     let turned = [
-        list(
-            "reversed",
-            names(|own| own.reversed),
-            was(|own| own.reversed),
-        ),
-        list(
-            "torque_reversed",
-            names(|own| own.torque_reversed),
-            was(|own| own.torque_reversed),
-        ),
+        list("reversed", |own| own.reversed),
+        list("torque_reversed", |own| own.torque_reversed),
         (had_zeros || !zeros.is_empty()).then(|| format!("zero = {{ {} }}", zeros.join(", "))),
     ];
     let is_of_readings = |own: &Misread| own.reversed || own.torque_reversed || own.zero != 0.0;

@@ -145,6 +145,13 @@ impl Decrease {
     pub fn is_certain(&self) -> bool {
         self.mean_square > 0.0 && self.mean_square > MIN_DECREASE_IN_STD_ERRORS * self.std_error
     }
+
+    /// Share of the mean square before, and its standard error.
+    #[must_use]
+    pub fn share(&self) -> [f64; 2] {
+        let square = self.before.powi(2).max(1e-300);
+        [self.mean_square / square, self.std_error / square]
+    }
 }
 
 /// Smallest decrease that is accepted, in standard errors.
