@@ -2,6 +2,8 @@
 //! tuned on seeds below 1000; these are others.
 
 mod generator;
+#[path = "../../tests/shared/thorough.rs"]
+mod thorough;
 
 use std::thread;
 
@@ -12,14 +14,11 @@ const YEAR: usize = 365;
 /// The first seed that nothing was tuned on.
 const JUDGING: u64 = 770_000;
 
-/// How many fleet-years are watched: `FERNTAST_FLEET_YEARS`, else ten in a thorough run, and four.
+/// How many fleet-years are watched: `FERNTAST_FLEET_YEARS`, else ten in a thorough run, and two.
 fn years() -> u64 {
     let told = std::env::var("FERNTAST_FLEET_YEARS").ok();
     let told = told.and_then(|text| text.parse().ok());
-    told.unwrap_or(match std::env::var_os("FERNTAST_THOROUGH") {
-        Some(_) => 10,
-        None => 4,
-    })
+    told.unwrap_or(if thorough::is_thorough() { 10 } else { 2 })
 }
 
 /// What is found of a fleet in so many days.

@@ -26,6 +26,8 @@ mod python;
 mod room;
 mod session;
 mod stranger;
+#[path = "../shared/thorough.rs"]
+mod thorough;
 
 pub use browser::Browser;
 pub use busy::BusyLoops;
@@ -43,9 +45,10 @@ pub use live::{
 pub use machine::{Machine, Window, now};
 pub use memory::{MemoryLog, own_memory};
 pub use pair::{Member, Pair, PairOptions, Word};
-pub use places::{data, ferntast, is_thorough, peer, python, root};
+pub use places::{data, ferntast, peer, python, root};
 pub use ports::free_tcp_port;
 pub use process::{Ended, Process, limit_files};
 pub use python::ask_python;
 pub use session::Session;
 pub use stranger::{Stranger, certificate_of};
+pub use thorough::is_thorough;

@@ -33,12 +33,6 @@ pub fn ferntast() -> PathBuf {
     path
 }
 
-/// Whether each figure is to be judged on as many cases as it is stated for (`./tests/run
-/// --thorough`), not on the few that show that it has not changed.
-pub fn is_thorough() -> bool {
-    env::var_os("FERNTAST_THOROUGH").is_some()
-}
-
 /// The recordings to test with: `FERNTAST_DATA`, else `../shared/data` beside the project.
 ///
 /// # Panics

@@ -15,3 +15,5 @@ mod sensor_errors;
 mod serial_arm;
 mod serial_whole;
 mod servo;
+#[path = "../../../tests/shared/thorough.rs"]
+mod thorough;

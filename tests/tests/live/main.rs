@@ -3,8 +3,6 @@
 //! No bound here hangs on milliseconds: a hold that a busy machine causes is
 //! left again. Bounds in time are in `timing`.
 
-mod arm_export;
-mod arm_lab;
 #[path = "../../shared/arm_of_three.rs"]
 mod arm_of_three;
 mod bad_frames;
@@ -12,9 +10,7 @@ mod console;
 mod console_gamepad;
 mod console_space;
 mod console_trouble;
-mod contact_force;
 mod crashes;
-mod dynamics;
 mod ends_on_two_hosts;
 mod fleet;
 mod foreign_bags;
@@ -27,14 +23,11 @@ mod layout;
 mod leader;
 mod link_tls;
 mod masters;
-mod numbers;
 mod own_tools;
 mod refusals;
-mod rigid_body;
 mod ros;
 mod ros_arm;
 mod router_config;
-mod serial_arm;
 mod session;
 mod soak;
 mod tool;

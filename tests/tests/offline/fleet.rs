@@ -21,7 +21,7 @@ use toml::Table;
 
 /// Arms of the fleet; a hundred in a thorough run.
 fn arms() -> usize {
-    if is_thorough() { 100 } else { 30 }
+    if is_thorough() { 100 } else { 20 }
 }
 
 /// Days of the fleet; the ageing one ages from the first on.

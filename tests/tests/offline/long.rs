@@ -3,4 +3,3 @@
 mod blind;
 mod discover;
 mod paper;
-mod reference_laws;

@@ -1,4 +1,4 @@
-//! The program in virtual time and on recordings: no peers, no real time.
+//! The program in virtual time and on recordings: no real time, and no peers but in `independent`.
 
 mod delay;
 mod estimator;
@@ -6,6 +6,7 @@ mod experiments;
 mod faults;
 mod felt_stiffness;
 mod fleet;
+mod independent;
 mod installed;
 mod lab;
 mod lab_contact;

@@ -4,6 +4,7 @@
 
 use crate::common::{stiffest, stopping, under_trial};
 use crate::random_cases::{failures, report};
+use crate::thorough::is_thorough;
 use ferntast_control::delay::{InnerLaw, Law, TwoLayer};
 use ferntast_control::haptics::MasterConfig;
 use ferntast_sim::teleoperation::{ArmUnderTrial, Draw, FollowerModel, Trial};
@@ -78,7 +79,7 @@ fn around_the_other_laws_the_layer_leaves_a_tenth_of_a_joule_of_it() {
             let trial = trial(&arm, seed, make);
             trial.run().expect("a valid trial").energy_margin
         };
-        let cases = 0..60;
+        let cases = 0..if is_thorough() { 60 } else { 30 };
         let with = cases.clone().map(|seed| energy(seed, false));
         let with = with.fold(0.0, f64::min);
         let told = format!("{}: {with:.3} J", inside.name());

@@ -36,7 +36,11 @@ fn hidden(session: &Session, subject: &str) -> f64 {
 #[test]
 fn blind_on_recordings_that_nobody_has_seen() {
     let session = Session::new();
-    let nothing = if is_thorough() { "60" } else { "30" };
+    let (nothing, two) = if is_thorough() {
+        ("60", "6")
+    } else {
+        ("10", "3")
+    };
     let told = blind(
         &session,
         &[
@@ -47,7 +51,7 @@ fn blind_on_recordings_that_nobody_has_seen() {
             "--nothing",
             nothing,
             "--two",
-            "6",
+            two,
             "--real-like",
             "0",
         ],
@@ -99,7 +103,11 @@ fn blind_on_recordings_that_nobody_has_seen() {
 #[test]
 fn blind_on_contacts_that_nobody_has_seen() {
     let session = Session::new();
-    let nothing = if is_thorough() { "40" } else { "20" };
+    let (nothing, two) = if is_thorough() {
+        ("40", "6")
+    } else {
+        ("8", "3")
+    };
     let told = blind(
         &session,
         &[
@@ -111,7 +119,7 @@ fn blind_on_contacts_that_nobody_has_seen() {
             "--nothing",
             nothing,
             "--two",
-            "6",
+            two,
         ],
     );
     let share = |value: &Value| number(value, "found") / number(value, "tried");
@@ -132,11 +140,11 @@ fn blind_on_contacts_that_nobody_has_seen() {
 
 /// Recordings like real ones, one lack of the bench's at a time. What is named beyond what is
 /// there, or told to be indistinguishable from it: measured on 40 of each kind at another seed
-/// 0 to 2 of 40. 8 or 20 of each kind are few: the bounds leave room for chance.
+/// 0 to 2 of 40. 4 or 20 of each kind are few: the bounds leave room for chance.
 #[test]
 fn blind_on_recordings_like_real_ones() {
     let session = Session::new();
-    let of_each = if is_thorough() { 20.0 } else { 8.0 };
+    let of_each = if is_thorough() { 20.0 } else { 4.0 };
     let told = blind(
         &session,
         &[
@@ -165,7 +173,7 @@ fn blind_on_recordings_like_real_ones() {
                 let right = number(row, "right_first.found");
                 assert!((0.9 * of_each..=of_each).contains(&right), "{row:#}");
             }
-            _ => assert!(own <= 0.1 * of_each + 0.5, "{kind}: {row:#}"),
+            _ => assert!(own <= 0.1 * of_each + 0.7, "{kind}: {row:#}"),
         }
         beyond_family += own;
         let least = match kind.as_str() {

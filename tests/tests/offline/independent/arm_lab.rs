@@ -1,33 +1,28 @@
 //! The lab on recordings of whole arms that MuJoCo made, with an effect hidden.
 
-use ferntast_tests::{Session, ask_python, peer, run};
-use serde_json::{Value, json};
+use ferntast_tests::{Session, is_thorough, run};
+use serde_json::Value;
 
-/// Robot, effect, seed, strength. More of them: `tests/python/peers/arm_recordings.py`.
-const CASES: [(&str, &str, &str, &str); 7] = [
-    ("ur5_robot", "none", "1", "1"),
-    ("panda", "stribeck", "1", "1"),
-    ("ur5_robot", "payload", "1", "1"),
-    ("panda", "joint_coupling", "1", "1"),
-    ("ur5_robot", "load_elasticity", "1", "1"),
-    ("ur5_robot", "warm_up_viscous", "1", "1"),
-    ("panda", "joint_zeros", "1", "1"),
+use super::recorded;
+
+/// Robot and effect: nothing, one of a joint, of two, of the arm. A thorough run has
+/// all, others the first four; more of them: `tests/python/peers/arm_recordings.py`.
+const CASES: [(&str, &str); 7] = [
+    ("ur5_robot", "none"),
+    ("ur5_robot", "warm_up_viscous"),
+    ("panda", "joint_coupling"),
+    ("ur5_robot", "payload"),
+    ("panda", "stribeck"),
+    ("ur5_robot", "load_elasticity"),
+    ("panda", "joint_zeros"),
 ];
 
 #[test]
 fn what_is_hidden_in_an_arm_is_named_with_its_joint() {
     let session = Session::new();
-    let listed = ask_python(&peer("rigid_body.py"), &json!({}));
-    let files = listed["files"].as_array().expect("files");
-    for (robot, effect, seed, strength) in CASES {
-        let ending = format!("/{robot}.urdf");
-        let mut paths = files.iter().filter_map(Value::as_str);
-        let urdf = paths.find(|path| path.ends_with(&ending)).expect("a URDF");
-        let arguments = [urdf, ".", effect, seed, strength];
-        let mut made = session.peer("arm_recordings.py", &arguments);
-        assert!(made.status().expect("python starts").success());
-        let arm = robot.split('_').next().unwrap_or(robot);
-        let name = format!("{arm}-{effect}-{seed}-100");
+    let cases = if is_thorough() { CASES.len() } else { 4 };
+    for (robot, effect) in CASES[..cases].iter().copied() {
+        let name = recorded(&session, robot, effect);
         let hidden = std::fs::read_to_string(session.folder().join(format!("{name}.json")));
         let hidden: Value = serde_json::from_str(&hidden.expect("a file")).expect("JSON");
         let experiment = format!("{name}.toml");

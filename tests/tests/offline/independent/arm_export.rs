@@ -2,21 +2,10 @@
 
 use std::fs;
 
-use ferntast_tests::{Session, ask_python, number, peer, root, run};
+use ferntast_tests::{Session, ask_python, number, root, run};
 use serde_json::{Value, json};
 
-/// A recording by MuJoCo with an effect hidden: the experiment's name without `.toml`.
-fn recorded(session: &Session, robot: &str, effect: &str) -> String {
-    let listed = ask_python(&peer("rigid_body.py"), &json!({}));
-    let files = listed["files"].as_array().expect("files");
-    let ending = format!("/{robot}.urdf");
-    let mut paths = files.iter().filter_map(Value::as_str);
-    let urdf = paths.find(|path| path.ends_with(&ending)).expect("a URDF");
-    let mut made = session.peer("arm_recordings.py", &[urdf, ".", effect, "1", "1"]);
-    assert!(made.status().expect("python starts").success());
-    let arm = robot.split('_').next().unwrap_or(robot);
-    format!("{arm}-{effect}-1-100")
-}
+use super::recorded;
 
 /// The experiment with these effects more.
 fn with(session: &Session, name: &str, effects: &[&str]) -> String {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::numbers::Numbers;
 
-const ARM: &str = include_str!("../../../config/arms/rokviss.toml");
+const ARM: &str = include_str!("../../../../config/arms/rokviss.toml");
 
 /// The shipped arm with nothing to touch and no friction.
 fn free(gravity: [f64; 2]) -> ArmConfig {
