@@ -8,8 +8,9 @@ use ferntast_msgs::{
     topics,
 };
 use ferntast_tests::{
-    PATIENCE, Process, Session, arm_state, await_enabled, hand_of_strokes, human_hand, messages,
-    node, number, operated, recording, run, set_parameter, signal, start, state_of_follower,
+    PATIENCE, Process, Session, Window, arm_state, await_enabled, hand_of_strokes, human_hand,
+    is_thorough, messages, node, now, number, operated, rearmed, recording, run, set_parameter,
+    signal, start, state_of_follower,
 };
 
 #[test]
@@ -352,97 +353,71 @@ fn rclpy_drives_the_arm() {
     drives_the_arm("15", hand_of_strokes);
 }
 
+/// Hands that were recorded: one, all three in a thorough run.
 #[test]
 #[ignore = "needs outside recordings: hand"]
-fn rclpy_drives_the_arm_with_hand_1() {
-    drives_the_arm("30", |_| human_hand("hand_1.csv"));
+fn rclpy_drives_the_arm_with_recorded_hands() {
+    let hands = ["hand_1.csv", "hand_2.csv", "hand_3.csv"];
+    for name in &hands[..if is_thorough() { 3 } else { 1 }] {
+        drives_the_arm("30", |_| human_hand(name));
+    }
 }
 
-#[test]
-#[ignore = "needs outside recordings: hand"]
-fn rclpy_drives_the_arm_with_hand_2() {
-    drives_the_arm("30", |_| human_hand("hand_2.csv"));
-}
+/// Bad commands, what is told of them, and in which words.
+const BAD: [(&str, Fault, &str); 4] = [
+    (
+        "nan",
+        Fault::CommandInvalid,
+        "/leader/measured_cp refused: ",
+    ),
+    (
+        "infinite",
+        Fault::CommandInvalid,
+        "/leader/measured_cp refused: ",
+    ),
+    ("far", Fault::CommandOutOfRange, "1000"),
+    ("zero_stamp", Fault::CommandInvalid, "stamp"),
+];
 
-#[test]
-#[ignore = "needs outside recordings: hand"]
-fn rclpy_drives_the_arm_with_hand_3() {
-    drives_the_arm("30", |_| human_hand("hand_3.csv"));
-}
-
-/// Bad commands are refused and named; the arm does not follow them.
-fn spoiled(spoil: &str, fault: Fault, words: &str) {
-    let session = Session::new();
-    let mut process = start(&session, &["--hand", "crtk"]);
-    await_enabled(&session, &mut process);
-    let file = &hand_of_strokes(&session);
-    let arguments = [
-        "--hand",
-        file,
-        "--duration",
-        "4",
-        "--spoil",
-        spoil,
-        "--spoil-after",
-        "2",
-    ];
+/// An operator whose commands become bad while the arm is enabled; when.
+fn spoiled(session: &Session, spoil: &str) -> Window {
+    rearmed(session);
+    let file = &hand_of_strokes(session);
+    let arguments = ["--hand", file, "--duration", "3", "--spoil", spoil];
+    let arguments = [&arguments[..], &["--spoil-after", "1.5"]].concat();
+    let from = now();
     let sent = Process::spawn(session.peer("ros_operator.py", &arguments))
         .wait(PATIENCE)
         .success()
         .json();
     assert!(number(&sent, "sent_bad") > 100.0, "{sent:#}");
+    // It holds where the last good command had brought it.
+    assert_eq!(state_of_follower(session), "PAUSED", "{spoil}");
+    Window { from, to: now() }
+}
+
+#[test]
+fn bad_commands_are_refused_and_named_and_the_arm_does_not_follow_them() {
+    let session = Session::new();
+    let mut process = start(&session, &["--hand", "crtk"]);
+    await_enabled(&session, &mut process);
+    let windows = BAD.map(|(spoil, ..)| spoiled(&session, spoil));
     process.interrupt();
     process.wait(PATIENCE).success();
     let path = recording(&session);
     let told = messages(&path, topics::DIAGNOSTICS);
-    // A peer that was held up is told of by the same fault.
-    let told = told.iter().filter(|own| own.message.faults.has(fault));
-    let told: Vec<String> = told.map(|own| own.message.message.to_string()).collect();
-    assert!(
-        told.iter().any(|own| own.contains(words)),
-        "{spoil}: {told:?}"
-    );
-    for own in messages(&path, topics::LEADER_SETPOINT_CP) {
-        let position = own.message.position;
+    for ((spoil, fault, words), window) in BAD.into_iter().zip(windows) {
+        // A peer that was held up is told of by the same fault.
+        let told = told.iter().map(|own| own.message);
+        let told = told.filter(|own| own.faults.has(fault) && window.contains(own.stamp));
+        let told: Vec<String> = told.map(|own| own.message.to_string()).collect();
         assert!(
-            position
-                .iter()
-                .all(|value| value.is_finite() && value.abs() < 0.1)
+            told.iter().any(|own| own.contains(words)),
+            "{spoil}: {told:?}"
         );
     }
-    // The arm held where the last good command had brought it.
-    let states = messages(&path, topics::FOLLOWER_OPERATING_STATE);
-    assert_eq!(
-        states.last().map(|own| own.message.state),
-        Some(OperatingState::PAUSED),
-        "{spoil}"
-    );
-}
-
-#[test]
-fn commands_that_are_no_numbers_are_refused() {
-    spoiled(
-        "nan",
-        Fault::CommandInvalid,
-        "/leader/measured_cp refused: ",
-    );
-}
-
-#[test]
-fn infinite_commands_are_refused() {
-    spoiled(
-        "infinite",
-        Fault::CommandInvalid,
-        "/leader/measured_cp refused: ",
-    );
-}
-
-#[test]
-fn commands_out_of_range_are_refused() {
-    spoiled("far", Fault::CommandOutOfRange, "1000");
-}
-
-#[test]
-fn commands_without_a_stamp_are_refused() {
-    spoiled("zero_stamp", Fault::CommandInvalid, "stamp");
+    for own in messages(&path, topics::LEADER_SETPOINT_CP) {
+        let mut position = own.message.position.iter();
+        assert!(position.all(|value| value.is_finite() && value.abs() < 0.1));
+    }
 }

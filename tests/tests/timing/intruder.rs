@@ -18,7 +18,7 @@ const FLOOD: f64 = 100_000.0;
 /// Frames a second that make a flood: ten times the operator's.
 const LEAST: f64 = 5_000.0;
 /// For how long \[s\].
-const SECONDS: f64 = 5.0;
+const SECONDS: f64 = 3.0;
 
 /// Where the ends of the link meet.
 fn address() -> String {

@@ -27,7 +27,7 @@ fn is(session: &Session, wanted: &str) -> bool {
 /// come back when `device` is told to resume.
 fn silence(session: &Session, silent: &str, device: &str) {
     rearmed(session);
-    thread::sleep(Duration::from_secs(1));
+    thread::sleep(Duration::from_millis(500));
     assert!(is(session, "ENABLED"), "before it was silent");
     let victim = node(session, silent);
     signal(victim, libc::SIGSTOP);
@@ -35,7 +35,7 @@ fn silence(session: &Session, silent: &str, device: &str) {
     // Commands come again, but the hold is latched.
     signal(victim, libc::SIGCONT);
     assert!(held && is(session, "PAUSED"), "{silent}");
-    thread::sleep(Duration::from_secs(1));
+    thread::sleep(Duration::from_millis(700));
     assert_eq!(state_of_follower(session), "PAUSED", "{silent}");
     // Re-armed.
     state(session, device, "resume");
