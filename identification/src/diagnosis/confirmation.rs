@@ -58,15 +58,27 @@ impl Confirmation {
         own
     }
 
+    /// Leaves of `passing`, best first, those that count. Where the best may be noise, so may what
+    /// would take its place: the others, too, have to be found with the slower filter then.
+    pub(super) fn keep(&self, passing: &mut Vec<Candidate>) {
+        match passing.first().is_none_or(|best| self.has(best)) {
+            true => passing.retain(|own| self.has(own)),
+            false => passing.retain(|own| self.finds(own)),
+        }
+    }
+
     /// Whether a candidate counts.
     pub(super) fn has(&self, candidate: &Candidate) -> bool {
+        !is_doubtful(candidate) || self.finds(candidate)
+    }
+
+    /// Whether a candidate is found with the slower filter, too, or that tells nothing.
+    fn finds(&self, candidate: &Candidate) -> bool {
         let Some(slower) = &self.slower else {
             return true;
         };
-        let same = |other: &&Candidate| other.id() == candidate.id();
-        let again = slower.trial.candidates.iter().find(same);
-        !is_doubtful(candidate)
-            || again.is_some_and(|again| confirms(&slower.trial, again, candidate))
+        let mut tried = slower.trial.candidates.iter();
+        tried.any(|again| again.id() == candidate.id() && confirms(again, candidate))
     }
 
     /// Whether a dependence counts.
@@ -112,8 +124,9 @@ fn is_doubtful(candidate: &Candidate) -> bool {
 }
 
 /// Whether what is found `again` is the same, of about the same size. How much it helps is told
-/// with the filter that is used.
-fn confirms(trial: &Trial, again: &Candidate, found: &Candidate) -> bool {
+/// with the filter that is used; it is the only one that is asked for here, at the shape that is
+/// known, so that its p-value is that of one test.
+fn confirms(again: &Candidate, found: &Candidate) -> bool {
     let mut sizes = again
         .score
         .coefficients
@@ -121,6 +134,6 @@ fn confirms(trial: &Trial, again: &Candidate, found: &Candidate) -> bool {
         .zip(&found.score.coefficients);
     again.plausible
         && again.score.share() > MIN_SHARE
-        && trial.corrected(again) < SIGNIFICANCE
+        && again.score.p_value < SIGNIFICANCE
         && sizes.all(|(again, found)| SAME_SIZE.contains(&(again / found)))
 }

@@ -81,7 +81,7 @@ pub(super) fn examine(
         true => Confirmation::NONE,
         false => Confirmation::of(filtered, spec, &prepared, &trial, &passing, &maps),
     };
-    passing.retain(|own| confirmation.has(own));
+    confirmation.keep(&mut passing);
     maps.retain(|own| confirmation.has_map(own));
     if passing.is_empty() {
         passing.extend(named_by_map(&trial, &maps));
