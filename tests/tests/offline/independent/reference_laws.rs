@@ -32,6 +32,7 @@ fn round_trips() -> &'static [f64] {
         &[20.0, 300.0]
     }
 }
+
 /// Spring of the tip's servo and of the two surfaces [N/m].
 const SERVO: f64 = 6750.0;
 const SOFT: f64 = 100.0;
