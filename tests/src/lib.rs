@@ -48,7 +48,7 @@ pub use pair::{Member, Pair, PairOptions, Word};
 pub use places::{data, ferntast, peer, python, root};
 pub use ports::free_tcp_port;
 pub use process::{Ended, Process, limit_files};
-pub use python::ask_python;
+pub use python::{ask_python, process_driver};
 pub use session::Session;
 pub use stranger::{Stranger, certificate_of};
 pub use thorough::is_thorough;

@@ -1,4 +1,4 @@
-//! Programs in Python that are asked in JSON.
+//! Programs in Python that are asked in JSON, or are a driver.
 
 use std::{
     io::Write,
@@ -8,13 +8,25 @@ use std::{
 
 use serde_json::Value;
 
+use crate::places::{peer, python};
+
+/// The driver `process` with the peer `script` and its options: an arm in a program of its own.
+pub fn process_driver(script: &str, options: &str) -> String {
+    let (python, script) = (python(), peer(script));
+    format!(
+        "process:'{}' '{}' {options}",
+        python.display(),
+        script.display()
+    )
+}
+
 /// What the Python program `script` answers to `input`: JSON in, JSON out.
 ///
 /// # Panics
 ///
 /// It does not start, fails, or answers with something else.
 pub fn ask_python(script: &Path, input: &Value) -> Value {
-    let mut child = Command::new(crate::python())
+    let mut child = Command::new(python())
         .arg(script)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

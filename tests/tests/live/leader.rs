@@ -4,7 +4,7 @@ use std::fs;
 
 use ferntast_msgs::{Time, topics};
 use ferntast_tests::{
-    PATIENCE, Session, await_armed, messages, number, peer, python, recording, run, start,
+    PATIENCE, Session, await_armed, messages, number, process_driver, recording, run, start,
 };
 
 /// When virtual time begins, in the scenario that runs: 2005-03-24 10:00 UTC.
@@ -17,11 +17,7 @@ const PRESSES: std::ops::Range<f64> = 3.5..5.0;
 #[test]
 fn the_force_on_a_leader_arms_tip_is_the_one_that_is_asked_for() {
     let session = Session::new();
-    let driver = format!(
-        "process:'{}' '{}' --truth hand.csv",
-        python().display(),
-        peer("mujoco_leader.py").display()
-    );
+    let driver = process_driver("mujoco_leader.py", "--truth hand.csv");
     let arguments = [
         "lockstep",
         "--arm",

@@ -6,7 +6,7 @@ use ferntast_model::rigid_body::Vector3;
 use ferntast_msgs::{sample::WrenchSample, topics};
 use ferntast_tests::{
     PATIENCE, Process, Session, arm_state, ask_python, await_enabled, messages, number, operated,
-    peer, python, recording, root, run, start,
+    peer, process_driver, recording, root, run, start,
 };
 use serde_json::{Value, json};
 
@@ -46,11 +46,7 @@ fn scenario(session: &Session, script: &str, more: &str) {
 
 /// Runs it with MuJoCo as the arm; `run` is the recording.
 fn lockstep(session: &Session, options: &str) -> Value {
-    let plant = format!(
-        "process:'{}' '{}' {options}",
-        python().display(),
-        peer("mujoco_plant.py").display()
-    );
+    let plant = process_driver("mujoco_plant.py", options);
     let arguments = [
         "lockstep",
         "tool.toml",

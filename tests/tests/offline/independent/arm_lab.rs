@@ -21,7 +21,7 @@ const CASES: [(&str, &str); 7] = [
 fn what_is_hidden_in_an_arm_is_named_with_its_joint() {
     let session = Session::new();
     let cases = if is_thorough() { CASES.len() } else { 4 };
-    for (robot, effect) in CASES[..cases].iter().copied() {
+    for &(robot, effect) in &CASES[..cases] {
         let name = recorded(&session, robot, effect);
         let hidden = std::fs::read_to_string(session.folder().join(format!("{name}.json")));
         let hidden: Value = serde_json::from_str(&hidden.expect("a file")).expect("JSON");

@@ -3,7 +3,7 @@
 use std::fs;
 
 use ferntast_msgs::{Time, topics};
-use ferntast_tests::{Session, messages, peer, python, run};
+use ferntast_tests::{Session, messages, process_driver, run};
 use serde_json::Value;
 
 /// Virtual time of a run that touches the table \[s\].
@@ -29,11 +29,8 @@ struct Compared {
 
 /// Runs `arm` in virtual time with MuJoCo in its place, recorded as `name`.
 fn lockstep(session: &Session, arm: &str, options: &str, name: &str, duration: &str) -> Value {
-    let driver = format!(
-        "process:'{}' '{}' --truth {name}.csv {options}",
-        python().display(),
-        peer("mujoco_plant.py").display()
-    );
+    let options = format!("--truth {name}.csv {options}");
+    let driver = process_driver("mujoco_plant.py", &options);
     let arguments = [
         "lockstep",
         "--arm",
