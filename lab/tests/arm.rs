@@ -146,6 +146,105 @@ fn joints_that_count_otherwise_are_told_with_the_lines_that_mend_them() {
     );
 }
 
+/// Each torque of the recording times what `factors` says of its joint.
+fn with_torques(folder: &TempDir, factors: [f64; 2]) {
+    let run = folder.path().join("run.csv");
+    let text = fs::read_to_string(&run).unwrap();
+    let mut lines = text.lines();
+    let mut changed = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let own: Vec<f64> = line.split(',').map(|own| own.parse().unwrap()).collect();
+        let [t, shoulder, elbow, torque, of_elbow] = own[..] else {
+            panic!("{line}");
+        };
+        let [torque, of_elbow] = [torque * factors[0], of_elbow * factors[1]];
+        writeln!(changed, "{t},{shoulder},{elbow},{torque},{of_elbow}").unwrap();
+    }
+    fs::write(&run, changed).unwrap();
+}
+
+/// Drives of 12.5 and 8 Nm/A, of which the elbow's counts its current the other way round.
+#[test]
+fn currents_are_told_by_the_weight_of_the_links_and_drive_gains_make_torques_of_them() {
+    let folder = folder(false);
+    let plain = format!("{ARM}{SIGNALS}{MODEL}");
+    let torques = open(&folder, &plain).compare().unwrap();
+    with_torques(&folder, [1.0 / 12.5, -1.0 / 8.0]);
+    let opened = open(&folder, &plain);
+    let found = opened.diagnose(&mut |_| ()).unwrap();
+    assert_eq!(
+        (found.verdict, found.candidates.len()),
+        (Verdict::Unexplained, 0)
+    );
+    let gains: Vec<f64> = (found.misread.iter().filter_map(|own| own.torque_of_one)).collect();
+    assert!((gains[0] / 12.5 - 1.0).abs() < 0.02 && (gains[1] / 8.0 - 1.0).abs() < 0.02);
+    let told = opened.tell_misread(&found.misread).join("\n");
+    for part in [
+        "shoulder: the torque is not in Nm: by the weight of its links 1 of it is some 12.",
+        "elbow: the torque counts the other way round, and the torque is not in Nm",
+        "drive_gain = [12.",
+        "torque_reversed = [\"elbow\"]",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+
+    // As the makers say, the same comes out as of torques.
+    let turned = "drive_gain = [12.5, 8]\ntorque_reversed = [\"elbow\"]\n";
+    let amperes = SIGNALS.replace(
+        "\"tau_{joint}\"",
+        "{ column = \"tau_{joint}\", unit = \"A\" }",
+    );
+    for signals in [SIGNALS, &amperes] {
+        let opened = open(&folder, &format!("{ARM}{turned}{signals}{MODEL}"));
+        let found = opened.compare().unwrap();
+        assert!(found.misread.is_empty());
+        for (joint, own) in &torques.joints {
+            let [now, then] = [&found.joints[joint], own].map(|own| own.parameters["b0"].value);
+            assert!((now - then).abs() < 1e-6, "{joint}: {now} {then}");
+            assert_eq!(found.joints[joint].parameters["b0"].unit, "Nm");
+        }
+    }
+    with_torques(&folder, [1e3, 1e3]);
+    let milliamperes = amperes.replace("\"A\"", "\"mA\"");
+    let opened = open(&folder, &format!("{ARM}{turned}{milliamperes}{MODEL}"));
+    let found = opened.compare().unwrap();
+    assert!((found.joints["elbow"].parameters["b0"].value - 0.8).abs() < 0.01);
+
+    let unknown = refused(&folder, &format!("{ARM}{amperes}{MODEL}"));
+    assert!(
+        unknown.contains("write [arm] drive_gain = [Nm/A, one for each joint]"),
+        "{unknown}"
+    );
+    let twice = amperes.replace("\"A\"", "\"Nm\"");
+    let twice = refused(&folder, &format!("{ARM}{turned}{twice}{MODEL}"));
+    assert!(
+        twice.contains("\"Nm\" of shoulder is one of torques"),
+        "{twice}"
+    );
+    let count = refused(
+        &folder,
+        &format!("{ARM}drive_gain = [12.5]\n{SIGNALS}{MODEL}"),
+    );
+    assert!(
+        count.contains("arm.drive_gain: 1 values for 2 joints"),
+        "{count}"
+    );
+}
+
+/// Links half as heavy as the file says, and a load on top of them: those are no other units.
+#[test]
+fn a_wrong_weight_is_not_another_unit() {
+    let light = URDF.replace("mass value=\"1\"", "mass value=\"0.5\"");
+    for folder in [
+        folder_of(&light.replace("mass value=\"2\"", "mass value=\"1\"")),
+        folder(true),
+    ] {
+        let opened = open(&folder, &format!("{ARM}{SIGNALS}{MODEL}"));
+        let found = opened.compare().unwrap();
+        assert_eq!(found.misread, Vec::new());
+    }
+}
+
 #[test]
 fn armatures_that_are_not_given_are_fitted_with_friction_joint_by_joint() {
     let folder = folder(false);

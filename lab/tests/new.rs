@@ -429,7 +429,7 @@ fn a_whole_arm_is_made_by_its_urdf_and_names_or_numbers_of_columns() {
     );
     let arm = Some(OfArm {
         urdf,
-        joints: Vec::new(),
+        ..OfArm::default()
     });
     let with = |file: &str, said: &[(Role, &str)]| {
         let request = bench.request(&[file], said);
@@ -490,6 +490,19 @@ fn a_whole_arm_is_made_by_its_urdf_and_names_or_numbers_of_columns() {
     assert!(told.contains("is one column for 3 joints"), "{told}");
     let torque = (Role::MotorTorque, "b0y,b1y,b2y");
     holds(&with("strange.csv", &[position, torque]).unwrap());
+    // Currents, of which 1 A is 1 Nm: what torque they make has to be said.
+    let amperes = (Role::MotorTorque, "b0y,b1y,b2y:A");
+    let told = with("strange.csv", &[position, amperes]).unwrap_err();
+    assert!(told.to_string().contains("--drive-gain"), "{told}");
+    let driven = Request {
+        arm: Some(OfArm {
+            drive_gain: Some(vec![1.0; 3]),
+            ..arm.clone().unwrap()
+        }),
+        force: true,
+        ..bench.request(&["strange.csv"], &[position, amperes])
+    };
+    holds(&make(&driven).unwrap());
     // A pattern, and one joint said by itself.
     let request = bench.request(&["strange.csv"], &[torque]);
     let mut request = Request {
@@ -521,7 +534,7 @@ fn a_whole_arm_is_made_by_its_urdf_and_names_or_numbers_of_columns() {
     );
     let none = Some(OfArm {
         urdf: bench.write("no.urdf", "<x/>"),
-        joints: Vec::new(),
+        ..OfArm::default()
     });
     let told = make(&Request {
         arm: none,

@@ -17,6 +17,9 @@ use super::{
     table::{self, significant},
 };
 
+/// Signals that a joint's residual depends on of which the terminal tells.
+const DEPENDENCES: usize = 3;
+
 /// Opens an experiment file that is about an arm; `None` where it is about something else.
 pub fn open(path: &Path) -> Result<Option<OpenedArm>, Failure> {
     let opened = work::open_arm(path).map_err(Failure::refused)?;
@@ -51,7 +54,7 @@ pub fn diagnose(opened: &OpenedArm, json: bool) -> Result<ExitCode, Failure> {
     } else {
         println!("{}", opened.experiment.title);
         let misread = opened.tell_misread(&result.misread);
-        print_diagnosis(&result, &misread, unit);
+        print_diagnosis(&result, &misread, &|joint| opened.unit_of(joint));
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -78,7 +81,7 @@ pub fn discover(opened: &OpenedArm, seed: u64, json: bool) -> Result<ExitCode, F
     for (own, number) in result.formulas.iter().zip(1..) {
         println!();
         println!("{}", own.joint);
-        table::formula(&own.formula, number, unit);
+        table::formula(&own.formula, number, opened.unit_of(Some(&own.joint)));
     }
     if let (Some(own), Some(path)) = (result.formulas.first(), &opened.experiment.path) {
         let name = format!("{}@{}", own.formula.name, own.joint);
@@ -108,7 +111,7 @@ pub fn add(
         print_json(&added)?;
         return Ok(ExitCode::SUCCESS);
     }
-    print_added(&added, opened.torque_unit());
+    print_added(&added, opened.unit_of(added.joint.as_deref()));
     table::parameters(&added.parameters, &added.not_excited);
     tell_held(&added.held_possible);
     Ok(ExitCode::SUCCESS)
@@ -117,18 +120,18 @@ pub fn add(
 /// `ferntast lab auto`; `None` where the file is about something else.
 pub fn auto(path: &Path, options: &AutoOptions, json: bool) -> Result<Option<ExitCode>, Failure> {
     let mut bar = ProgressBar::hidden();
-    let mut unit = "";
     let mut table = None;
     let mut tell = |event: ArmAutoEvent<'_>| match event {
         ArmAutoEvent::Opened(opened) => {
             tell_notes(opened);
-            unit = opened.torque_unit();
             table.clone_from(&opened.experiment.arm);
             bar = open::bar("diagnose");
         }
         ArmAutoEvent::Share(share) => bar.set_position((share * 1000.0) as u64),
         ArmAutoEvent::Diagnosed => bar.finish_and_clear(),
-        ArmAutoEvent::Added(opened, added) if !json => print_added(added, opened.torque_unit()),
+        ArmAutoEvent::Added(opened, added) if !json => {
+            print_added(added, opened.unit_of(added.joint.as_deref()));
+        }
         ArmAutoEvent::Added(..) => {}
     };
     let found = work::auto_arm(path, options, &mut tell).map_err(Failure::refused)?;
@@ -139,8 +142,13 @@ pub fn auto(path: &Path, options: &AutoOptions, json: bool) -> Result<Option<Exi
         true => print_json(&found)?,
         false => {
             let misread = &found.last.misread;
-            let told = table.map(|arm| tell_misread(&arm, misread, unit));
-            print_diagnosis(&found.last, &told.unwrap_or_default(), unit);
+            let told = table.as_ref().map(|arm| tell_misread(arm, misread));
+            let unit = |joint: Option<&str>| match (&table, joint) {
+                (Some(arm), Some(joint)) => arm.torque_unit(joint),
+                (Some(arm), None) => arm.torque_units(),
+                (None, _) => "Nm",
+            };
+            print_diagnosis(&found.last, &told.unwrap_or_default(), &unit);
         }
     }
     Ok(Some(ExitCode::SUCCESS))
@@ -159,7 +167,6 @@ fn print_added(added: &AddedToArm, unit: &str) {
 }
 
 fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
-    let unit = opened.torque_unit();
     println!("{}", opened.experiment.title);
     println!(
         "{} samples of {} joints, {} rows used",
@@ -176,8 +183,9 @@ fn print_comparison(opened: &OpenedArm, comparison: &ArmComparison) {
         let Some(own) = comparison.joints.get(name) else {
             continue;
         };
+        let unit = opened.unit_of(Some(name));
         println!(
-            "{name:<26} {:>9} {unit} {:>9} {unit} {:>8.1} %",
+            "{name:<26} {:>9} {unit:<2} {:>9} {unit:<2} {:>8.1} %",
             significant(own.rms.train),
             significant(own.rms.held_out),
             own.relative_error_held_out * 100.0
@@ -219,7 +227,12 @@ fn tell_held(names: &[String]) {
 }
 
 /// `misread`: what is said of joints that are read otherwise than the model has them.
-fn print_diagnosis(diagnosis: &ArmDiagnosis, misread: &[String], unit: &str) {
+/// `unit`: of a joint's torque.
+fn print_diagnosis(
+    diagnosis: &ArmDiagnosis,
+    misread: &[String],
+    unit: &dyn Fn(Option<&str>) -> &'static str,
+) {
     println!("{}", diagnosis.verdict.name());
     tell_misread_joints(misread);
     println!("{} variants tried", diagnosis.tried);
@@ -231,9 +244,10 @@ fn print_diagnosis(diagnosis: &ArmDiagnosis, misread: &[String], unit: &str) {
     );
     for (name, own) in &diagnosis.joints {
         println!(
-            "{name:<26} {:<12} {:>9} {unit} {:>6.1} % {:>9} Hz",
+            "{name:<26} {:<12} {:>9} {:<2} {:>6.1} % {:>9} Hz",
             own.verdict.name(),
             significant(own.rms.held_out),
+            unit(Some(name)),
             own.used.share * 100.0,
             significant(own.used.cutoff_hz)
         );
@@ -252,17 +266,28 @@ fn print_diagnosis(diagnosis: &ArmDiagnosis, misread: &[String], unit: &str) {
         }
         table::candidate(&name, &candidate.named, 40);
     }
+    print_dependences(diagnosis);
+    table::not_tested(&diagnosis.not_tested);
+}
+
+/// Of each joint the strongest.
+fn print_dependences(diagnosis: &ArmDiagnosis) {
     if !diagnosis.residual_depends_on.is_empty() {
         println!();
-        println!("residuals depend on");
+        println!("residuals depend on (parts overlap: signals go together)");
     }
-    for own in &diagnosis.residual_depends_on {
-        println!(
-            "  {:<22} {:<44} {:.1} % of its mean square",
-            own.joint,
-            own.dependence.on(),
-            own.dependence.strength * 100.0
-        );
+    for joint in diagnosis.joints.keys() {
+        let all = diagnosis.residual_depends_on.iter();
+        let all: Vec<_> = all.filter(|own| own.joint == *joint).collect();
+        for own in all.iter().take(DEPENDENCES) {
+            println!(
+                "  {joint:<22} {:<44} {:.1} % of its mean square",
+                own.dependence.on(),
+                own.dependence.strength * 100.0
+            );
+        }
+        if let Some(more) = all.len().checked_sub(DEPENDENCES).filter(|own| *own > 0) {
+            println!("  {joint:<22} and {more} more, weaker ones (--json)");
+        }
     }
-    table::not_tested(&diagnosis.not_tested);
 }

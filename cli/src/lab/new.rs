@@ -35,11 +35,12 @@ use super::{
     ferntast lab new edge.csv --joint contact                  # place, tangential and normal force\n  \
     ferntast lab new edge.csv --tip x:mm,y:mm --contour '0.2 -0.03, 0.4 -0.03'\n  \
     ferntast lab new run.csv --urdf arm.urdf                   # every joint: q_elbow, tau_elbow, … or q1, tau1, …\n  \
-    ferntast lab new run.csv --urdf arm.urdf --joints shoulder,elbow --position 'q_{joint}:deg' --motor-torque tau_a,tau_b\n\n\
+    ferntast lab new run.csv --urdf arm.urdf --joints shoulder,elbow --position 'q_{joint}:deg' --motor-torque tau_a,tau_b\n  \
+    ferntast lab new run.csv --urdf arm.urdf --motor-torque 'i_{joint}:A' --drive-gain 14.9,13.3   # currents\n\n\
     Read are text with , ; tab or blanks, decimal comma, comments (# or %), with or without names; arrays of NumPy and MATLAB (up to v7). Files \
     with the same columns are runs of one joint; files with others are parts of one run.\n\
     Units: s ms us ns · rad deg rev · m mm · rad/s deg/s rpm · Nm mNm · N kN · degC K; A mA V % counts stay as \
-    they are: no torque is made of them, and results are in them."
+    they are: no torque is made of them, and results are in them; of an arm --drive-gain says what torque they make."
 )]
 pub struct Arguments {
     /// Tables (.csv, .tsv, .txt, .dat, .npz, .npy, .mat), .mcap files, or folders.
@@ -82,6 +83,16 @@ pub struct Arguments {
     /// The arm's joints from the base on (else all).
     #[arg(long, value_name = "JOINT,…", value_delimiter = ',', requires = "urdf")]
     joints: Vec<String>,
+
+    /// Torque at each joint of the arm for 1 A (V, %, …) of its motor, gear included: the drive
+    /// gains, in Nm/A, where currents are recorded.
+    #[arg(
+        long,
+        value_name = "NM_PER_A,…",
+        value_delimiter = ',',
+        requires = "urdf"
+    )]
+    drive_gain: Vec<f64>,
 
     /// One more signal, by a name of yours; may be said again.
     #[arg(long, value_name = "NAME=COLUMN[:UNIT]", value_parser = extra)]
@@ -209,6 +220,7 @@ impl Arguments {
             arm: self.urdf.map(|urdf| OfArm {
                 urdf,
                 joints: self.joints,
+                drive_gain: Some(self.drive_gain).filter(|own| !own.is_empty()),
             }),
             by_tip,
             contour: self.contour.map(|own| own.0),

@@ -66,6 +66,23 @@ export function figures({ results: found, before, diagnosis, view }, actions) {
       right(own.std_error === null ? "–" : significant(own.std_error, 2)), make("td", { className: "quiet", textContent: own.unit }))))) : null);
 }
 
+/** What residuals depend on: of each joint the strongest, the rest on request. */
+function dependences(all) {
+  if (!all.length) return null;
+  const seen = new Map();
+  const [first, rest] = [[], []];
+  for (const own of all) {
+    const count = seen.get(own.joint) ?? 0;
+    seen.set(own.joint, count + 1);
+    (count < 3 ? first : rest).push(own);
+  }
+  const table = (rows) => make("table", {}, make("tbody", {}, rows.map((own) => make("tr", {},
+    make("td", { textContent: words(own.joint) }), make("td", { textContent: dependsOn(own) }), make("td", { className: "right number", textContent: percent(own.strength) })))));
+  return [
+    make("h2", { textContent: "Residuals depend on", style: "margin-top:14px" }), table(first),
+    rest.length ? make("details", {}, make("summary", { textContent: `${rest.length} more, weaker ones of the same joints` }), table(rest)) : null];
+}
+
 /** What is missing in the arm: the verdict with its ranking and evidence. */
 export function diagnosis(parent, { diagnosis: found, results, view }, actions) {
   fill(parent,
@@ -80,9 +97,6 @@ export function diagnosis(parent, { diagnosis: found, results, view }, actions) 
       add: (name) => actions.add(name),
     }) : null,
     found.suspected.map((own) => make("p", { className: "note", textContent: `suspected, not proven: ${words(own.effect)} of ${words(own.joint)} (p ${own.p_value.toFixed(2)}); next experiment: ${words(own.next_experiment)}` })),
-    found.residual_depends_on.length ? [
-      make("h2", { textContent: "Residuals depend on", style: "margin-top:14px" }),
-      make("table", {}, make("tbody", {}, found.residual_depends_on.map((own) => make("tr", {},
-        make("td", { textContent: words(own.joint) }), make("td", { textContent: dependsOn(own) }), make("td", { className: "right number", textContent: percent(own.strength) })))))] : null,
+    dependences(found.residual_depends_on),
     notTested(found));
 }

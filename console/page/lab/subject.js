@@ -52,16 +52,16 @@ export function beginning(mapping) {
   const arm = mapping?.arm;
   return {
     byTip: Boolean(mapping && (mapping.contour || "tip[0]" in mapping.signals)), contour: typed(mapping?.contour),
-    arm: { urdf: arm?.urdf ?? "", joints: arm?.joints ?? [], there: arm?.joints ?? [], said: Boolean(arm), armature: typed(arm?.armature), gear: typed(arm?.gear_ratio) },
+    arm: { urdf: arm?.urdf ?? "", joints: arm?.joints ?? [], there: arm?.joints ?? [], said: Boolean(arm), armature: typed(arm?.armature), gear: typed(arm?.gear_ratio), gain: typed(arm?.drive_gain) },
   };
 }
 
 /** The part of a mapping that only a contact or an arm has. */
 export function part(own) {
-  const { urdf, joints, armature, gear } = own.arm;
+  const { urdf, joints, armature, gear, gain } = own.arm;
   return {
     contour: own.joint === "contact" && own.byTip ? corners(own.contour) ?? null : null,
-    arm: own.joint === "arm" ? { urdf, joints, armature: numbers(armature) ?? null, gear_ratio: numbers(gear) ?? null } : null,
+    arm: own.joint === "arm" ? { urdf, joints, armature: numbers(armature) ?? null, gear_ratio: numbers(gear) ?? null, drive_gain: numbers(gain) ?? null } : null,
   };
 }
 
@@ -75,7 +75,7 @@ export function found(own, chain) {
 /** A line of numbers that is told of where it is something else. */
 function typing(id, value, placeholder, read, set) {
   const input = make("input", { id, type: "text", value, placeholder });
-  const check = () => input.setCustomValidity(read(input.value) === undefined ? `as in ${placeholder.replace("fitted, or ", "").replace("not known, or ", "")}` : "");
+  const check = () => input.setCustomValidity(read(input.value) === undefined ? `as in ${placeholder.replace(/^[a-z ]+, or /, "")}` : "");
   input.oninput = () => { set(input.value); check(); };
   check();
   return input;
@@ -107,5 +107,6 @@ export function rows(own, look, tried) {
     label("urdf", "arm"), urdf,
     arm.there.length ? make("fieldset", { id: "joints" }, make("legend", { className: "small quiet", textContent: "joints, from the base on" }), arm.there.map(check)) : [],
     line("armature", "armatures", "[kg m² or kg], one a joint", "armature", "fitted"), line("gears", "gear ratios", "[1], one a joint", "gear", "not known"),
+    line("gains", "drive gains", "[Nm/A, …], one a joint", "gain", "torques are recorded"),
   ];
 }

@@ -190,7 +190,11 @@ pub async fn look(State(lab): State<Arc<Lab>>, Json(asked): Json<Files>) -> Resp
             None => None,
             Some(Arm { urdf, joints }) => {
                 let urdf = found(&urdf)?;
-                Some(OfArm { urdf, joints })
+                Some(OfArm {
+                    urdf,
+                    joints,
+                    drive_gain: None,
+                })
             }
         };
         let request = Request {

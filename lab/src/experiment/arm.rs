@@ -8,6 +8,7 @@
 //! armature = [0.6, 0.6]                       # kg m², motor and gear of each joint; else fitted
 //! gravity = [0.0, 0.0, -9.81]                 # m/s², in the base's frame; this is the default
 //! gear_ratio = [100, 100]                     # optional
+//! drive_gain = [14.9, 13.3]                   # Nm/A, gear included, where motor_torque is a current; Nm/V, …
 //! reversed = ["panda_joint2"]                 # optional: whose position and torque count the other way round
 //! torque_reversed = []                        # optional: whose torque does
 //! zero = { panda_joint2 = 1.5708 }            # optional, rad: what is added to positions
@@ -67,6 +68,24 @@ impl ArmTable {
         &self.arm.joints
     }
 
+    /// Unit of the torque or force of the joint of that name: Nm or N.
+    #[must_use]
+    pub fn torque_unit(&self, joint: &str) -> &'static str {
+        self.kind(joint).unwrap_or_default().force_unit()
+    }
+
+    /// Unit of torques and forces, where all joints have the same.
+    #[must_use]
+    pub fn torque_units(&self) -> &'static str {
+        let is = |unit: &str| {
+            self.joints()
+                .iter()
+                .all(|own| self.torque_unit(own) == unit)
+        };
+        let both = ["Nm", "N"].into_iter().find(|unit| is(unit));
+        both.unwrap_or("Nm or N")
+    }
+
     /// Kind of the joint of that name.
     fn kind(&self, joint: &str) -> Option<JointType> {
         let at = self.arm.joints.iter().position(|own| own == joint)?;
@@ -74,15 +93,19 @@ impl ArmTable {
     }
 }
 
-/// The units that a joint of an arm may have its `position` or `motor_torque` in: the torques of
-/// the links are known, so that what goes into a drive is not among them.
+/// The units that a joint of an arm may have its `position` or `motor_torque` in. The torques of
+/// the links are known, so that of what goes into a drive it has to be known what torque it makes.
 #[must_use]
 pub fn units_of_joint(key: &str, joint: JointType) -> Vec<&'static str> {
     match (key, joint) {
         ("position", JointType::Revolute) => Quantity::Angle.units(),
         ("position", _) => Quantity::Length.units(),
-        (_, JointType::Revolute) => Quantity::Torque.units(),
-        _ => Quantity::Force.units(),
+        (_, JointType::Revolute) => [Quantity::Torque, Quantity::Drive]
+            .map(Quantity::units)
+            .concat(),
+        _ => [Quantity::Force, Quantity::Drive]
+            .map(Quantity::units)
+            .concat(),
     }
 }
 
@@ -129,6 +152,7 @@ pub(super) fn table(
     };
     each("arm.armature", &table.armature, 0.0)?;
     each("arm.gear_ratio", &table.gear_ratio, 1e-3)?;
+    each("arm.drive_gain", &table.drive_gain, 1e-6)?;
     let gravity = table.gravity.unwrap_or(UPRIGHT);
     if !gravity.iter().all(|own| own.abs() <= 100.0) {
         let reason = format!("{gravity:?} is no acceleration within 100 m/s²");
@@ -176,6 +200,10 @@ pub(super) fn signals(
         })?;
         let places = places(arm, key, source, refuse)?;
         for (at, ((path, unit), joint)) in places.into_iter().zip(arm.joints()).enumerate() {
+            let reading = arm.readings.get(at).filter(|_| key == "motor_torque");
+            if let Some(wrong) = reading.and_then(|own| own.wrong_unit(unit, joint)) {
+                return Err(refuse("signals.motor_torque", wrong));
+            }
             let name = match at {
                 0 => key.to_owned(),
                 _ => format!("extra.{prefix}{joint}"),
@@ -246,13 +274,18 @@ fn places(
         let unit = text.and_then(Unit::parse);
         let allowed: &[Quantity] = match key {
             "position" => &[Quantity::Angle, Quantity::Length],
-            _ => &[Quantity::Torque, Quantity::Force],
+            _ => &[Quantity::Torque, Quantity::Force, Quantity::Drive],
         };
         let fits = unit.is_none_or(|unit| allowed.contains(&unit.quantity()));
         match text {
-            Some(text) if unit.is_none() || !fits => Err(wrong(format!(
-                "unit {text:?} is none of it: the torques of an arm's links are in Nm, so that the motors' have to be, too"
-            ))),
+            Some(text) if unit.is_none() || !fits => {
+                let names = allowed.iter().flat_map(|own| own.units());
+                let names: Vec<&str> = names.collect();
+                Err(wrong(format!(
+                    "unit {text:?} is none of it; it can be one of {}",
+                    names.join(", ")
+                )))
+            }
             _ => Ok(unit),
         }
     };
@@ -316,11 +349,16 @@ impl Experiment {
         }
     }
 
-    /// The unit, after conversion, of a joint's signal of an arm.
+    /// The unit, after conversion, of a joint's signal of an arm as it is recorded.
     pub(super) fn unit_in_arm(&self, signal: &str) -> Option<&'static str> {
         let arm = self.arm.as_ref()?;
         let (key, joint) = signal.split_once('@')?;
-        units_of_joint(key, arm.kind(joint)?).first().copied()
+        let is_first = arm.joints().first().is_some_and(|first| first == joint);
+        let drive = match is_first {
+            true => self.recorded_drive_unit(key),
+            false => self.recorded_drive_unit(&format!("extra.{signal}")),
+        };
+        drive.or_else(|| units_of_joint(key, arm.kind(joint)?).first().copied())
     }
 
     /// Where positions and torques of an arm's joints are, by `position@elbow`, with units as they

@@ -242,7 +242,7 @@ impl Editor {
         };
         let was = |of: Part| present.as_ref().and_then(of);
         if wanted.arm.is_some() {
-            let parts: [(&str, Part); 4] = [
+            let parts: [(&str, Part); 5] = [
                 ("urdf", |own| Some(own.arm.as_ref()?.urdf.as_str().into())),
                 ("joints", |own| {
                     let joints = own.arm.as_ref()?.joints.iter();
@@ -251,6 +251,9 @@ impl Editor {
                 ("armature", |own| numbers(own, |arm| arm.armature.as_ref())),
                 ("gear_ratio", |own| {
                     numbers(own, |arm| arm.gear_ratio.as_ref())
+                }),
+                ("drive_gain", |own| {
+                    numbers(own, |arm| arm.drive_gain.as_ref())
                 }),
             ];
             for (key, of) in parts {

@@ -200,6 +200,8 @@ pub(super) struct Arm {
     pub(super) armature: Option<Vec<f64>>,
     pub(super) gravity: Option<[f64; 3]>,
     pub(super) gear_ratio: Option<Vec<f64>>,
+    /// What torque a unit of `motor_torque` is, gear included.
+    pub(super) drive_gain: Option<Vec<f64>>,
     /// Joints that count the other way round, …
     pub(super) reversed: Option<Vec<String>>,
     /// … whose torque does, …

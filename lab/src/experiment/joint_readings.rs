@@ -1,15 +1,18 @@
-//! Joints of an arm that count otherwise than their URDF: the other way round, from another zero.
+//! Joints of an arm that count otherwise than their URDF: the other way round, from another zero, in
+//! what goes into their drives.
 //!
 //! ```toml
 //! [arm]
 //! reversed = ["elbow"]          # position and torque count the other way round
 //! torque_reversed = ["wrist"]   # the torque does, or does not where the joint is reversed
 //! zero = { elbow = 1.5708 }     # rad or m, added to the position
+//! drive_gain = [14.9, 13.3]     # Nm/A: torque at the joint for a unit of motor_torque, gear included
 //! ```
 
 use ferntast_identification::arm::Misread;
 
 use super::{ExperimentError, file};
+use crate::unit::{Quantity, Unit};
 
 /// How position and torque of a joint are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,9 @@ pub struct JointReading {
     pub torque_reversed: bool,
     /// What is added to the position \[rad\] or \[m\].
     pub zero: f64,
+    /// The drive gain (Gautier and Briot, 2014): torque at the joint \[Nm\] or force \[N\] for a unit
+    /// of what is recorded as the motor's torque; `None`: that is a torque.
+    pub drive_gain: Option<f64>,
 }
 
 impl JointReading {
@@ -27,7 +33,29 @@ impl JointReading {
         reversed: false,
         torque_reversed: false,
         zero: 0.0,
+        drive_gain: None,
     };
+
+    /// Why `unit`, as it is stated, cannot be that of the motor torque of `joint`; `None`: it can.
+    pub(super) fn wrong_unit(&self, unit: Option<Unit>, joint: &str) -> Option<String> {
+        let unit = unit?;
+        let is_drive = unit.quantity() == Quantity::Drive;
+        let name = unit.name();
+        match self.drive_gain {
+            None if is_drive => Some(format!(
+                "unit {name:?} of {joint}: the torques of an arm's links are in Nm, so that it has to be known what \
+                 torque of each joint 1 {} makes, gear included: write [arm] drive_gain = [Nm/{}, one for each joint] \
+                 (--drive-gain of `lab new`)",
+                unit.base(),
+                unit.base()
+            )),
+            Some(gain) if !is_drive && gain != 1.0 => Some(format!(
+                "unit {name:?} of {joint} is one of torques or forces, and [arm] drive_gain makes {gain} of 1: give \
+                 the unit of what goes into the drive (A, V, …), or the gain 1 for this joint"
+            )),
+            _ => None,
+        }
+    }
 
     /// Changes position and torque as recorded into those of the URDF's joint.
     pub(crate) fn apply(&self, position: &mut [f64], torque: &mut [f64]) {
@@ -39,8 +67,9 @@ impl JointReading {
         for own in position {
             *own = direction * *own + self.zero;
         }
-        let direction = turned(self.reversed != self.torque_reversed);
-        torque.iter_mut().for_each(|own| *own *= direction);
+        let torque_of_one =
+            turned(self.reversed != self.torque_reversed) * self.drive_gain.unwrap_or(1.0);
+        torque.iter_mut().for_each(|own| *own *= torque_of_one);
     }
 
     /// What was read so, read once more.
@@ -53,6 +82,7 @@ impl JointReading {
             torque_reversed: self.torque_reversed != next.torque_reversed,
             // The nearest of those that are the same place.
             zero: zero - turns * (zero / turns).round(),
+            drive_gain: self.drive_gain,
         }
     }
 }
@@ -90,7 +120,9 @@ pub(super) fn readings(
             return Err(refuse("arm.zero", reason));
         }
     }
-    let each = joints.iter().map(|joint| JointReading {
+    let gain = |at: usize| table.drive_gain.as_ref()?.get(at).copied();
+    let each = joints.iter().enumerate().map(|(at, joint)| JointReading {
+        drive_gain: gain(at),
         reversed: reversed.contains(joint),
         torque_reversed: torque_reversed.contains(joint),
         zero: zeros.and_then(|own| own.get(joint)).copied().unwrap_or(0.0),
@@ -106,20 +138,22 @@ mod tests {
         reversed: true,
         torque_reversed: true,
         zero: 0.5,
+        drive_gain: Some(10.0),
     };
 
     #[test]
     fn positions_and_torques_are_turned_as_it_says() {
         let (mut position, mut torque) = ([0.2], [3.0]);
         OWN.apply(&mut position, &mut torque);
-        assert_eq!((position, torque), ([0.3], [3.0]));
+        assert_eq!((position, torque), ([0.3], [30.0]));
         let plain = JointReading {
             torque_reversed: false,
             zero: 0.0,
+            drive_gain: None,
             ..OWN
         };
         plain.apply(&mut position, &mut torque);
-        assert_eq!((position, torque), ([-0.3], [-3.0]));
+        assert_eq!((position, torque), ([-0.3], [-30.0]));
     }
 
     #[test]
@@ -131,6 +165,7 @@ mod tests {
             zero: 3.0,
             is_read_as: None,
             torque_is_read_as: None,
+            torque_of_one: None,
             error_before: 1.0,
             error_after: 0.1,
         };

@@ -39,6 +39,10 @@ pub struct ArmPart {
     /// Motor turns in one turn of each joint \[1\].
     #[serde(default)]
     pub gear_ratio: Option<Vec<f64>>,
+    /// Torque at each joint for a unit of what is recorded as its motor's, gear included: \[Nm/A\]
+    /// and the like; nothing: torques are recorded.
+    #[serde(default)]
+    pub drive_gain: Option<Vec<f64>>,
 }
 
 /// Files, signals and a model.
@@ -159,6 +163,7 @@ impl Mapping {
                     joints: arm.joints().to_vec(),
                     armature: own.armature,
                     gear_ratio: own.gear_ratio,
+                    drive_gain: own.drive_gain,
                 }),
             contour: file.contact.and_then(|own| own.contour),
             inertia: experiment.model.inertia,

@@ -82,10 +82,20 @@ impl Experiment {
         }
     }
 
-    /// The unit of what goes into the drive, where that stands for the torque.
+    /// The unit of what goes into the drive, where that stands for the torque; in an arm it is
+    /// turned into one.
     #[must_use]
     pub fn drive_unit(&self) -> Option<&'static str> {
-        let unit = self.signals.unit("motor_torque")?;
+        let unit = self
+            .arm
+            .is_none()
+            .then(|| self.recorded_drive_unit("motor_torque"));
+        unit.flatten()
+    }
+
+    /// The unit of the signal with this key, where it is of what goes into a drive.
+    pub(super) fn recorded_drive_unit(&self, key: &str) -> Option<&'static str> {
+        let unit = self.signals.unit(key)?;
         (unit.quantity() == Quantity::Drive).then_some(unit.base())
     }
 
@@ -98,7 +108,8 @@ impl Experiment {
             "position" | "place" if revolute => "rad",
             "position" | "place" | "tip[0]" | "tip[1]" => "m",
             "motor_torque" | "joint_torque" | "normal_force" | "tangential_force" => {
-                self.force_unit()
+                let recorded = self.recorded_drive_unit("motor_torque");
+                recorded.unwrap_or_else(|| self.force_unit())
             }
             "temperature" => "degC",
             "time" => "s",

@@ -128,19 +128,27 @@ impl OpenedArm {
         })
     }
 
-    /// Unit of torques.
+    /// Unit of torques; of joints that turn and joints that slide both.
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
-        self.experiment.force_unit()
+        let arm = self.experiment.arm.as_ref();
+        arm.map_or("Nm", ArmTable::torque_units)
+    }
+
+    /// Unit of the torque of a joint; of none, as of an effect of the arm, that of all.
+    #[must_use]
+    pub fn unit_of(&self, joint: Option<&str>) -> &'static str {
+        match (&self.experiment.arm, joint) {
+            (Some(arm), Some(joint)) => arm.torque_unit(joint),
+            _ => self.torque_unit(),
+        }
     }
 
     /// What is said of joints that are read otherwise than the model has them, and how to mend it.
     #[must_use]
     pub fn tell_misread(&self, misread: &[Misread]) -> Vec<String> {
         let arm = self.experiment.arm.as_ref();
-        arm.map_or_else(Vec::new, |arm| {
-            tell_misread(arm, misread, self.torque_unit())
-        })
+        arm.map_or_else(Vec::new, |arm| tell_misread(arm, misread))
     }
 
     /// The model against the recordings, joint by joint.
@@ -199,7 +207,7 @@ impl OpenedArm {
             twin_recording: None,
             held_out_before: addition.held_out_before,
             held_out_after: addition.held_out_after,
-            unit: self.torque_unit().to_owned(),
+            unit: self.unit_of(addition.joint.as_deref()).to_owned(),
             parameters: fitted(&addition.parameters),
         };
         write_child(&self.experiment, &step, output)?;

@@ -34,10 +34,12 @@ impl ArmChain {
     pub(super) fn read(of: &OfArm) -> Result<ArmChain, NewError> {
         let robot = robot(&of.urdf)?;
         let arm = match of.joints.is_empty() {
-            true => robot.whole_arm(),
-            false => robot.of_joints(&of.joints),
+            true => robot.whole_arm().map_err(|error| {
+                format!("{error}; or list its joints, from the base on (--joints)")
+            }),
+            false => (robot.of_joints(&of.joints)).map_err(|error| error.to_string()),
         };
-        let arm = arm.map_err(|error| wrong(&of.urdf, error.to_string()))?;
+        let arm = arm.map_err(|reason| wrong(&of.urdf, reason))?;
         let kinds = arm.chain.kinds();
         let joints = arm
             .joints

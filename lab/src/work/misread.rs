@@ -2,13 +2,17 @@
 
 use ferntast_identification::arm::Misread;
 
-use crate::experiment::{ArmTable, JointReading};
+use crate::{
+    experiment::{ArmTable, JointReading},
+    report::significant,
+};
 
-/// What is said of joints that are read otherwise than the model has them, and how to mend it; errors
-/// are in `unit`.
+/// What is said of joints that are read otherwise than the model has them, and how to mend it.
 #[must_use]
-pub fn tell_misread(arm: &ArmTable, misread: &[Misread], unit: &str) -> Vec<String> {
-    let mut told: Vec<String> = misread.iter().map(|own| in_words(own, unit)).collect();
+pub fn tell_misread(arm: &ArmTable, misread: &[Misread]) -> Vec<String> {
+    let words = |own: &Misread| in_words(own, arm.torque_unit(&own.joint));
+    let mut told: Vec<String> = misread.iter().map(words).collect();
+    told.extend(gains(arm, misread));
     let lines = lines(arm, misread);
     if !lines.is_empty() {
         told.push(format!(
@@ -48,6 +52,12 @@ fn in_words(own: &Misread, unit: &str) -> String {
         let degrees = own.zero.to_degrees();
         parts.push(format!("the position lacks {degrees:+.0} degrees"));
     }
+    if let Some(gain) = own.torque_of_one {
+        parts.push(format!(
+            "the torque is not in {unit}: by the weight of its links 1 of it is some {} {unit}",
+            significant(gain)
+        ));
+    }
     format!(
         "{}: {}; read so, {:.3} {unit} of its torque are left in place of {:.3}",
         own.joint,
@@ -55,6 +65,32 @@ fn in_words(own: &Misread, unit: &str) -> String {
         own.error_after,
         own.error_before
     )
+}
+
+/// How torques in another unit are mended: those of the other joints may be, too.
+fn gains(arm: &ArmTable, misread: &[Misread]) -> Option<String> {
+    let mut is_known = false;
+    let each = arm
+        .joints()
+        .iter()
+        .zip(&arm.readings)
+        .map(|(joint, reading)| {
+            let own = misread.iter().find(|own| own.joint == *joint);
+            let gain = own.and_then(|own| own.torque_of_one)?;
+            is_known = true;
+            Some(gain * reading.drive_gain.unwrap_or(1.0))
+        });
+    let each: Vec<String> = each
+        .map(|gain| gain.map_or_else(|| "?".to_owned(), significant))
+        .collect();
+    is_known.then(|| {
+        format!(
+            "if that is so, say the torques' unit in [signals]; of currents, or torques before a gear, write into [arm] \
+             what torque at each joint 1 of them makes, best from the makers' torque constants and gear ratios:  \
+             drive_gain = [{}]",
+            each.join(", ")
+        )
+    })
 }
 
 /// The keys of `[arm]` with which joints are read as the model has them.

@@ -144,6 +144,7 @@ fn mapping(
         arm: request.arm.as_ref().map(|own| ArmPart {
             urdf: name_from(folder, &own.urdf),
             joints: joints.to_vec(),
+            drive_gain: own.drive_gain.clone(),
             ..ArmPart::default()
         }),
         contour: request.contour.clone(),

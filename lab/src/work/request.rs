@@ -34,12 +34,15 @@ impl Said {
 }
 
 /// The arm that recordings are of.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct OfArm {
     /// Its URDF.
     pub urdf: PathBuf,
     /// Its joints from the base on; none: all of the URDF's arm.
     pub joints: Vec<String>,
+    /// Torque at each joint for a unit of what is recorded as its motor's, gear included
+    /// \[Nm/A\] and the like; none: torques are recorded.
+    pub drive_gain: Option<Vec<f64>>,
 }
 
 /// What is to become of which files.
