@@ -17,6 +17,8 @@ const POSSIBLE: RangeInclusive<f64> = 1.0 / 3.0..=30.0;
 const LEFT: f64 = 1.0 / 3.0;
 /// … and they are at least this share of it, not friction.
 const CARRIED: f64 = 0.5;
+/// What the links need varies by this share of itself: else it may as well be an offset of the torque.
+const VARIES: f64 = 0.1;
 /// Of the joints that carry weight at least this share has to be in another unit: else a link is wrong.
 const SHARE: f64 = 0.5;
 
@@ -49,8 +51,7 @@ struct Fit {
     columns: Matrix4<f64>,
     with: Vector4<f64>,
     square: f64,
-    /// Sums of what the links need, and of the torque.
-    sums: [f64; 2],
+    known: f64,
     count: f64,
 }
 
@@ -60,8 +61,7 @@ impl Fit {
         self.columns += own * own.transpose();
         self.with += own * seen.torque;
         self.square += seen.torque * seen.torque;
-        self.sums[0] += seen.known;
-        self.sums[1] += seen.torque;
+        self.known += seen.known;
         self.count += 1.0;
     }
 
@@ -79,10 +79,10 @@ impl Fit {
         let share = fitted[0].abs();
         let count = self.count.max(1.0);
         let root_mean = |sum: f64| (sum.max(0.0) / count).sqrt();
-        // What does not vary may as well be an offset of the torque.
-        let [links, torque] = [(self.columns[(0, 0)], 0), (self.square, 1)]
-            .map(|(square, of)| root_mean(square - self.sums[of] * self.sums[of] / count));
+        let (links, torque) = (root_mean(self.columns[(0, 0)]), root_mean(self.square));
+        let varies = root_mean(self.columns[(0, 0)] - self.known * self.known / count);
         let left = root_mean(self.square - fitted.dot(&self.with));
-        (left <= LEFT * torque && share * links >= CARRIED * torque).then_some(share)
+        let is_told = left <= LEFT * torque && share * links >= CARRIED * torque;
+        (is_told && varies >= VARIES * links).then_some(share)
     }
 }
