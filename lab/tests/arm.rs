@@ -6,7 +6,7 @@ use std::{f64::consts::TAU, fmt::Write as _, fs, path::Path};
 use ferntast_identification::{Verdict, arm::ArmTerm};
 use ferntast_lab::{
     experiment::Experiment,
-    work::{self, OpenedArm, open_arm},
+    work::{self, OpenedArm, Trend, open_arm, trends_of_arm},
 };
 use ferntast_model::{Joints, rigid_body::Vector3};
 use tempfile::TempDir;
@@ -243,6 +243,67 @@ fn a_wrong_weight_is_not_another_unit() {
         let found = opened.compare().unwrap();
         assert_eq!(found.misread, Vec::new());
     }
+}
+
+/// The same arm empty and with 0.4 kg at its end: the load came, and no joint changed.
+#[test]
+fn what_came_on_an_arm_is_told_of_the_arm_and_not_of_its_joints() {
+    let (empty, loaded) = (folder(false), folder(true));
+    let run = loaded.path().join("run.csv");
+    fs::copy(run, empty.path().join("loaded.csv")).unwrap();
+    let text = format!("{ARM}armature = [0.3, 0.1]\n{SIGNALS}{MODEL}");
+    let files = ["run.csv", "loaded.csv"].map(|recording| {
+        let path = empty.path().join(recording).with_extension("toml");
+        fs::write(&path, text.replace("run.csv", recording)).unwrap();
+        open_arm(&path).unwrap().unwrap()
+    });
+    let trends = trends_of_arm(&files, true, &mut |_| ()).unwrap();
+    let titles: Vec<&str> = trends
+        .iter()
+        .skip(1)
+        .map(|own| own.title.as_str())
+        .collect();
+    assert_eq!(titles, ["shoulder", "elbow"]);
+    let [arm, joints @ ..] = trends.as_slice() else {
+        panic!("{trends:#?}")
+    };
+    let [turn] = arm.came_or_went.as_slice() else {
+        panic!("{arm:#?}")
+    };
+    assert!(turn.effect == "payload" && turn.came && turn.by_diagnosis);
+    let named = |own: &Trend| own.points.iter().any(|point| point.missing.is_some());
+    assert!(!joints.iter().any(named), "{joints:#?}");
+
+    // Where the model has it, its mass is beside that of nothing.
+    let payload = text.replace("\"viscous\"]", "\"viscous\", \"payload\"]");
+    let path = empty.path().join("loaded.toml");
+    fs::write(&path, payload.replace("run.csv", "loaded.csv")).unwrap();
+    let files = [files[0].clone(), open_arm(&path).unwrap().unwrap()];
+    let trends = trends_of_arm(&files, false, &mut |_| ()).unwrap();
+    assert_eq!(trends[0].effects, ["payload"]);
+    let mut parameters = trends[0].parameters.iter();
+    let mass = parameters.find(|own| own.name == "payload.mass").unwrap();
+    let change = mass.change.as_ref().unwrap();
+    assert!(
+        (change.change - 0.4).abs() < 0.02 && change.exceeds_errors,
+        "{mass:#?}"
+    );
+    let b0 = trends[2].parameters.iter().find(|own| own.name == "b0");
+    assert!(!b0.unwrap().changes);
+
+    // Of one file, its sessions; with another arm, nothing.
+    let sessions = trends_of_arm(&files[..1], false, &mut |_| ()).unwrap();
+    assert_eq!(sessions[1].points.len(), 2);
+    let turned = text.replace("[\"shoulder\", \"elbow\"]", "[\"shoulder\"]");
+    fs::write(&path, turned.replace("[0.3, 0.1]", "[0.3]")).unwrap();
+    let files = [files[0].clone(), open_arm(&path).unwrap().unwrap()];
+    let refused = trends_of_arm(&files, false, &mut |_| ())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        refused.contains("joints shoulder, elbow, another one shoulder"),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -58,6 +58,7 @@ pub use auto::tell_folder;
     urdf = \"arm.urdf\"\n  \
     joints = [\"joint_1\", \"joint_2\"]         # from the base on\n  \
     armature = [0.6, 0.4]                    # kg m2, motor and gear; left out: fitted\n  \
+    drive_gain = [14.9, 13.3]                # Nm/A at the joint, where motor_torque is a current\n  \
     [signals]\n  \
     position = \"/joint_states.position\"     # arrays by joint name; in tables \"q_{joint}\" or a list\n  \
     motor_torque = \"/joint_states.effort\"\n  \

@@ -11,7 +11,7 @@ use ferntast_identification::JointType;
 use ferntast_lab::{
     experiment::Join,
     guess::Role,
-    work::{Made, NewError, OfArm, Request, Said, make},
+    work::{Made, NewError, OfArm, Request, Said, in_runs, make},
 };
 use ferntast_msgs::counted;
 
@@ -276,7 +276,7 @@ fn ask(
     if role == Role::Time {
         eprintln!("  where there is none, end this and say --rate HZ");
     }
-    eprintln!("  columns: {}", columns.join(", "));
+    eprintln!("  columns: {}", in_runs(columns).join(", "));
     let default = choices.first().map(String::as_str).unwrap_or_default();
     loop {
         eprint!("  COLUMN or COLUMN:UNIT [{default}]: ");

@@ -4,12 +4,12 @@ use std::{path::PathBuf, process::ExitCode};
 
 use ferntast_lab::{
     report::{render_trend, significant},
-    work::{Trend, trends},
+    work::{Opened, OpenedArm, Trend, TrendError, trends, trends_of_arm},
 };
 
 use super::{
     super::{Failure, output::print_json},
-    open,
+    arm, open,
     table::chance,
 };
 
@@ -18,7 +18,8 @@ use super::{
 #[command(after_help = "Examples:\n  \
     ferntast lab trend spring.toml autumn.toml\n  \
     ferntast lab trend recordings/mission/day_*/spring_joint_2   # of a campaign, in the order given\n  \
-    ferntast lab trend E.toml -o trend.html        # over its dates, or sessions; with charts\n\n\
+    ferntast lab trend E.toml -o trend.html        # over its dates, or sessions; with charts\n  \
+    ferntast lab trend empty.toml gripper.toml     # of whole arms, and what came on them\n\n\
     The same model is fitted to each: all effects that any of them has. A change counts where it exceeds the \
     standard errors of both ends; with many parameters and dates one in twenty does so by chance.")]
 pub struct Arguments {
@@ -35,12 +36,49 @@ pub struct Arguments {
     quick: bool,
 }
 
+/// What is held beside each other.
+enum Files {
+    /// Of each file one experiment a joint.
+    Joints(Vec<Vec<Opened>>),
+    /// Of whole arms.
+    Arms(Vec<OpenedArm>),
+}
+
+impl Files {
+    fn open(paths: &[PathBuf]) -> Result<Files, Failure> {
+        let (mut joints, mut arms) = (Vec::new(), Vec::new());
+        for path in paths {
+            match arm::open(path)? {
+                Some(own) => arms.push(own),
+                None => joints.push(open::open(path)?),
+            }
+        }
+        match (joints.is_empty(), arms.is_empty()) {
+            (true, _) => Ok(Files::Arms(arms)),
+            (_, true) => Ok(Files::Joints(joints)),
+            _ => Err(Failure::refused(
+                "some of the files are of a whole arm and some are not: give such as are of the same",
+            )),
+        }
+    }
+
+    fn trends(
+        &self,
+        diagnoses: bool,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Vec<Trend>, TrendError> {
+        match self {
+            Files::Joints(files) => trends(files, diagnoses, progress),
+            Files::Arms(files) => trends_of_arm(files, diagnoses, progress),
+        }
+    }
+}
+
 /// Runs it.
 pub fn run(arguments: &Arguments, json: bool) -> Result<ExitCode, Failure> {
-    let files = arguments.experiments.iter().map(|path| open::open(path));
-    let files = files.collect::<Result<Vec<_>, Failure>>()?;
+    let files = Files::open(&arguments.experiments)?;
     let bar = open::bar("trend");
-    let found = trends(&files, !arguments.quick, &mut |share| {
+    let found = files.trends(!arguments.quick, &mut |share| {
         bar.set_position((share * 1000.0) as u64);
     });
     bar.finish_and_clear();
@@ -91,10 +129,14 @@ fn print(trend: &Trend) {
         );
     }
     println!();
-    println!(
-        "{:<16} {:>12} {:>12} {:>12} {:>10} {:>9}  unit",
-        "parameter", "first", "last", "change", "± error", "p of all"
-    );
+    let names = (trend.parameters.iter()).map(|own| own.name.chars().count());
+    let width = names.max().unwrap_or(0).max(16);
+    if !trend.parameters.is_empty() {
+        println!(
+            "{:<width$} {:>12} {:>12} {:>12} {:>10} {:>9}  unit",
+            "parameter", "first", "last", "change", "± error", "p of all"
+        );
+    }
     for course in &trend.parameters {
         let value = |of: Option<&ferntast_lab::work::Point>| {
             let own = of.and_then(|point| point.parameters.get(&course.name));
@@ -112,7 +154,7 @@ fn print(trend: &Trend) {
             },
         );
         println!(
-            "{:<16} {:>12} {:>12} {change:>12} {error:>10} {:>9}  {}{mark}",
+            "{:<width$} {:>12} {:>12} {change:>12} {error:>10} {:>9}  {}{mark}",
             course.name,
             value(trend.points.first()),
             value(trend.points.last()),

@@ -102,13 +102,22 @@ pub enum PrepareError {
     },
     /// The joint moved, yet hardly ever away from rest and reversals.
     #[error(
-        "only {rows} moments of steady motion for {parameters} parameters; record longer strokes"
+        "only {rows} moments of steady motion for {parameters} parameters: at {rate_hz:.0} Hz the filter that leaves \
+         the acceleration quiet (cut-off {cut_off_hz:.1} Hz) looks {reach_s:.2} s to either side, and so long no stroke \
+         begins, turns or ends; record longer strokes, or oftener, or with a finer encoder; or state another filter in \
+         [filter] (butterworth_hz, decimation)"
     )]
     NothingExcited {
         /// Number of rows of the regression.
         rows: usize,
         /// Number of parameters of the model.
         parameters: usize,
+        /// Samples in a second that are worked with \[Hz\].
+        rate_hz: f64,
+        /// Cut-off of the filter \[Hz\].
+        cut_off_hz: f64,
+        /// How far it looks to either side \[s\].
+        reach_s: f64,
     },
     /// A given inertia that is not a positive number.
     #[error("inertia {0} kg m²; it must be zero or more, or fitted")]

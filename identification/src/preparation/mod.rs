@@ -168,7 +168,17 @@ fn check_excited(prepared: &PreparedModel) -> Result<(), PrepareError> {
     let parameters = prepared.terms.iter().map(|t| t.effect.columns()).sum();
     let rows = prepared.sessions.iter().map(|s| s.rows.len()).sum();
     match rows < 20 + 5 * parameters {
-        true => Err(PrepareError::NothingExcited { rows, parameters }),
+        true => {
+            let filters = &prepared.filters;
+            let period = filters.working_period;
+            Err(PrepareError::NothingExcited {
+                rows,
+                parameters,
+                rate_hz: period.recip(),
+                cut_off_hz: filters.cut_off(period),
+                reach_s: filters.reach(period),
+            })
+        }
         false => Ok(()),
     }
 }

@@ -122,6 +122,20 @@ impl Filters {
         }
     }
 
+    /// How far the filters of states and columns, one after the other, look to either side \[s\],
+    /// for working samples `period` \[s\] apart.
+    #[must_use]
+    pub fn reach(&self, period: f64) -> f64 {
+        let samples = match &self.stated {
+            Some(filter) => {
+                let [.., acceleration] = filter.states(period);
+                StatedFilter::reach(&acceleration, &filter.column())
+            }
+            None => Kernel::reach(self.state) + Kernel::reach(self.column),
+        };
+        samples as f64 * period
+    }
+
     /// Why it is as it is, in words.
     #[must_use]
     pub fn why(&self) -> String {

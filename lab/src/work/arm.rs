@@ -36,6 +36,8 @@ pub struct OpenedArm {
     pub notes: Vec<String>,
     /// What of each recording is used.
     pub tallies: Vec<Tally>,
+    /// When the first session began \[s since 1970\], where recordings carry a date.
+    pub date: Option<f64>,
 }
 
 /// What one addition to an arm's model did.
@@ -125,6 +127,7 @@ impl OpenedArm {
             spec,
             notes,
             tallies: loaded.tallies,
+            date: loaded.date,
         })
     }
 
@@ -251,12 +254,12 @@ impl OpenedArm {
             dataset: joint.dataset,
             notes: self.notes.clone(),
             tallies: self.tallies.clone(),
-            date: None,
+            date: self.date,
         });
         Ok(each.collect())
     }
 
-    fn refuse(&self, source: arm::ArmError) -> WorkError {
+    pub(super) fn refuse(&self, source: arm::ArmError) -> WorkError {
         WorkError::Arm {
             title: self.experiment.title.clone(),
             source: Box::new(source),

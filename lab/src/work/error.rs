@@ -141,7 +141,7 @@ pub enum NewError {
         reason: String,
     },
     /// The user has to say which column is a signal.
-    #[error("which column is the {}? {why}; say {} {}{}; columns: {}", called(*role, joint.as_deref()), option(*role), form(joint.is_some()), suggested(choices), columns.join(", "))]
+    #[error("which column is the {}? {why}; say {} {}{}; columns: {}", called(*role, joint.as_deref()), option(*role), form(joint.is_some()), suggested(choices), in_runs(columns).join(", "))]
     Unsure {
         /// The signal.
         role: Role,
@@ -188,6 +188,30 @@ fn option(role: Role) -> String {
 fn suggested(choices: &[String]) -> String {
     match choices {
         [] => String::new(),
+        [first, _, _, _, ..] => format!(" (as {first})"),
         choices => format!(" ({})", choices.join(" or ")),
+    }
+}
+
+/// Names, of arrays (`q[0]`, `q[1]`, `q[2]`) the first and the last: `q[0] … q[2]`.
+pub fn in_runs(names: &[String]) -> Vec<String> {
+    let stem = |name: &str| Some(name.rsplit_once('[')?.0.to_owned());
+    let runs = names.chunk_by(|a, b| stem(a).is_some_and(|own| stem(b) == Some(own)));
+    let told = runs.flat_map(|run| match run {
+        [first, _, .., last] => vec![format!("{first} … {last}")],
+        few => few.to_vec(),
+    });
+    told.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_of_an_array_are_told_as_a_run() {
+        let names = ["t", "q[0]", "q[1]", "q[2]", "tau[0]", "tau[1]", "i"].map(str::to_owned);
+        let told = ["t", "q[0] … q[2]", "tau[0]", "tau[1]", "i"];
+        assert_eq!(in_runs(&names), told);
     }
 }

@@ -51,7 +51,7 @@ pub use auto::{AutoEvent, AutoOptions, Automatic, Step, auto};
 pub use chain::{ArmChain, ArmJoint};
 pub use doubt::Doubt;
 pub use equation::Formula;
-pub use error::{NewError, WorkError};
+pub use error::{NewError, WorkError, in_runs};
 pub use look::{Look, Question, look};
 pub use misread::tell_misread;
 pub use new::{Made, make};
@@ -60,7 +60,7 @@ pub use paths::{Offered, offered};
 pub use read::WhatIsRead;
 pub use request::{OfArm, Request, Said};
 pub use start::{Again, Present, Started, mapping_of, start};
-pub use trend::{Point, Trend, TrendError, UnitIn, trends};
+pub use trend::{Point, Trend, TrendError, UnitIn, trends, trends_of_arm};
 pub use trial::{Trial, trial};
 pub use twin::{FromTwin, from_twin};
 

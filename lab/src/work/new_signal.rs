@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{
     NewError,
+    error::in_runs,
     request::{Request, Said},
     sources::Sources,
 };
@@ -123,7 +124,7 @@ pub(super) fn find(
         // More than one of what need not be there: none is taken.
         several if !matches!(role, Role::JointTorque | Role::Temperature) => {
             let names: Vec<String> = several.iter().map(|(name, _)| (*name).to_owned()).collect();
-            let why = format!("it can be {}", names.join(" or "));
+            let why = format!("it can be {}", in_runs(&names).join(" or "));
             Err(unsure(role, why, names, sources))
         }
         _ => Ok(None),

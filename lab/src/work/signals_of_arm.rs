@@ -5,6 +5,7 @@ use ferntast_identification::JointType;
 use super::{
     NewError,
     chain::{ArmChain, ArmJoint},
+    error::in_runs,
     new_signal::{Guessed, NewSignal, TakenFor, signal_of, signal_said, unsure},
     request::{Request, Said},
     sources::Sources,
@@ -132,7 +133,10 @@ fn one(
         }
         several => {
             let names: Vec<String> = several.iter().map(|(name, _)| (*name).to_owned()).collect();
-            Err(ask(format!("it can be {}", names.join(" or ")), names))
+            Err(ask(
+                format!("it can be {}", in_runs(&names).join(" or ")),
+                names,
+            ))
         }
     }
 }

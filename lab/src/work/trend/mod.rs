@@ -4,6 +4,7 @@
 //! that parameters can be held beside each other. A change counts where it exceeds what
 //! both ends are uncertain by.
 
+mod arm;
 mod changes;
 mod joints;
 mod parts;
@@ -17,8 +18,9 @@ use ferntast_identification::{
 use serde::Serialize;
 
 use super::{Opened, WorkError, units};
+pub use arm::trends_of_arm;
 use changes::{courses, turns};
-use parts::{Part, dates, whole};
+use parts::{Part, days, parts};
 pub use same_units::UnitIn;
 
 /// How a joint, or a contact, changed.
@@ -114,6 +116,10 @@ pub struct Turn {
     pub by_diagnosis: bool,
 }
 
+/// What is said where a point has few sessions.
+const BY_BLOCKS: &str = "of fewer than three sessions the standard errors are by blocks of time: how parameters vary \
+                         from session to session is not in them";
+
 /// Why there is no trend.
 #[derive(Debug, thiserror::Error)]
 pub enum TrendError {
@@ -125,6 +131,9 @@ pub enum TrendError {
     /// Files have different numbers of joints.
     #[error("the files have {0} and {1} joints: give such as have the same")]
     Joints(usize, usize),
+    /// Arms have other joints.
+    #[error("the files are of other arms: one has the joints {0}, another one {1}")]
+    Arms(String, String),
     /// Numbers of one file are no numbers of another's unit.
     #[error(
         "{what}: {} in {}, and {} in {}: only what has the same unit can be held beside each other; \
@@ -180,23 +189,16 @@ fn trend(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Trend, TrendError> {
     same_units::of_experiments(all)?;
-    let parts = match all {
-        [one] => dates(one)?,
-        several => whole(several),
-    };
+    let parts = parts(all)?;
     let Some(first) = all.first() else {
         return Err(TrendError::One(String::new()));
     };
     let model = model_of_all(all);
     let mut notes = Vec::new();
     let mut points = Vec::new();
-    let begin = parts.iter().find_map(|part| part.start);
     for (number, part) in parts.iter().enumerate() {
         let mut point = fitted(part, &model, &mut notes)?;
-        point.days = part
-            .start
-            .zip(begin)
-            .map(|(own, begin)| (own - begin) / 86_400.0);
+        point.days = days(&parts, part);
         if diagnoses {
             let found = diagnose(&part.data, &model, &mut |_| ());
             if let Ok(found) = found {
@@ -209,9 +211,7 @@ fn trend(
     }
     same_units::of_parameters(&parts, &points)?;
     if points.iter().any(|point| point.sessions < 3) {
-        notes.push(
-            "of fewer than three sessions the standard errors are by blocks of time: how parameters vary from session to session is not in them".to_owned(),
-        );
+        notes.push(BY_BLOCKS.to_owned());
     }
     Ok(Trend {
         title: first.experiment.title.clone(),
@@ -249,7 +249,11 @@ fn model_of_all(all: &[&Opened]) -> ModelSpec {
 }
 
 /// The model fitted to a part; where that cannot be, the experiment's own.
-fn fitted(part: &Part<'_>, model: &ModelSpec, notes: &mut Vec<String>) -> Result<Point, WorkError> {
+fn fitted(
+    part: &Part<'_, Opened>,
+    model: &ModelSpec,
+    notes: &mut Vec<String>,
+) -> Result<Point, WorkError> {
     let of_all = compare(&part.data, model);
     let mut found: Comparison = match of_all {
         Ok(found) => found,

@@ -5,33 +5,151 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use ferntast_identification::Dataset;
+use ferntast_identification::{
+    Dataset,
+    arm::{ArmDataset, ArmSession},
+};
 
-use super::{super::Opened, TrendError};
+use super::{
+    super::{Opened, OpenedArm},
+    TrendError,
+};
 use crate::experiment::Experiment;
 
 /// A pause \[s\] between sessions after which another date begins.
 const ANOTHER_DATE: f64 = 12.0 * 3600.0;
 
 /// One part of the data, and the experiment that it is of.
-pub(super) struct Part<'a> {
+pub(super) struct Part<'a, T: Parted> {
     pub(super) name: String,
     pub(super) start: Option<f64>,
-    pub(super) opened: &'a Opened,
-    pub(super) data: Dataset,
+    pub(super) opened: &'a T,
+    pub(super) data: T::Data,
+}
+
+/// An experiment whose recordings are read, of a joint or of an arm.
+pub(super) trait Parted {
+    /// Its sessions.
+    type Data: Clone;
+
+    fn experiment(&self) -> &Experiment;
+    /// When the first session began \[s since 1970\], where recordings carry a date.
+    fn date(&self) -> Option<f64>;
+    fn data(&self) -> &Self::Data;
+    fn spans(&self) -> Vec<Span>;
+    /// Only the sessions with these numbers, the first of which begins at `start`.
+    fn only(&self, sessions: &[usize], start: f64) -> Self::Data;
+}
+
+/// A session in time \[s\].
+pub(super) struct Span {
+    name: String,
+    start: f64,
+    end: f64,
+}
+
+impl Parted for Opened {
+    type Data = Dataset;
+
+    fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    fn date(&self) -> Option<f64> {
+        self.date
+    }
+
+    fn data(&self) -> &Dataset {
+        &self.dataset
+    }
+
+    fn spans(&self) -> Vec<Span> {
+        let each = self.dataset.sessions.iter().map(|own| Span {
+            name: own.name.clone(),
+            start: own.start,
+            end: own.start + own.period * own.len() as f64,
+        });
+        each.collect()
+    }
+
+    fn only(&self, sessions: &[usize], start: f64) -> Dataset {
+        let own = sessions.iter().filter_map(|at| {
+            let mut session = self.dataset.sessions.get(*at).cloned()?;
+            session.start -= start;
+            Some(session)
+        });
+        Dataset {
+            sessions: own.collect(),
+            held_out: Vec::new(),
+            ..self.dataset.clone()
+        }
+    }
+}
+
+impl Parted for OpenedArm {
+    type Data = ArmDataset;
+
+    fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    fn date(&self) -> Option<f64> {
+        self.date
+    }
+
+    fn data(&self) -> &ArmDataset {
+        &self.dataset
+    }
+
+    fn spans(&self) -> Vec<Span> {
+        let samples = |own: &ArmSession| own.position.first().map_or(0, Vec::len);
+        let each = self.dataset.sessions.iter().map(|own| Span {
+            name: own.name.clone(),
+            start: own.start,
+            end: own.start + own.period * samples(own) as f64,
+        });
+        each.collect()
+    }
+
+    fn only(&self, sessions: &[usize], start: f64) -> ArmDataset {
+        let own = sessions.iter().filter_map(|at| {
+            let mut session = self.dataset.sessions.get(*at).cloned()?;
+            session.start -= start;
+            Some(session)
+        });
+        ArmDataset {
+            sessions: own.collect(),
+            held_out: Vec::new(),
+            ..self.dataset.clone()
+        }
+    }
+}
+
+/// What is held beside each other: whole experiments, or of one its dates.
+pub(super) fn parts<'a, T: Parted>(all: &[&'a T]) -> Result<Vec<Part<'a, T>>, TrendError> {
+    match all {
+        [one] => dates(*one),
+        several => Ok(whole(several)),
+    }
 }
 
 /// Whole experiments as parts.
-pub(super) fn whole<'a>(all: &[&'a Opened]) -> Vec<Part<'a>> {
-    let paths: Vec<&Path> = all.iter().map(|own| path_of(&own.experiment)).collect();
+fn whole<'a, T: Parted>(all: &[&'a T]) -> Vec<Part<'a, T>> {
+    let paths: Vec<&Path> = all.iter().map(|own| path_of(own.experiment())).collect();
     let parts = all.iter().zip(told_apart(&paths));
     let part = parts.map(|(opened, name)| Part {
         name,
-        start: opened.date,
-        opened,
-        data: opened.dataset.clone(),
+        start: opened.date(),
+        opened: *opened,
+        data: opened.data().clone(),
     });
     part.collect()
+}
+
+/// Days from the first part that has a date to this one.
+pub(super) fn days<T: Parted>(parts: &[Part<'_, T>], part: &Part<'_, T>) -> Option<f64> {
+    let begin = parts.iter().find_map(|own| own.start)?;
+    part.start.map(|own| (own - begin) / 86_400.0)
 }
 
 /// The experiment file, else the recording; of neither its title.
@@ -59,47 +177,31 @@ fn told_apart(paths: &[&Path]) -> Vec<String> {
 }
 
 /// The dates of one experiment; of one date its sessions.
-pub(super) fn dates(opened: &Opened) -> Result<Vec<Part<'_>>, TrendError> {
-    let sessions = &opened.dataset.sessions;
+fn dates<T: Parted>(opened: &T) -> Result<Vec<Part<'_, T>>, TrendError> {
+    let spans = opened.spans();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut end = f64::NEG_INFINITY;
-    for (at, session) in sessions.iter().enumerate() {
+    for (at, session) in spans.iter().enumerate() {
         match groups.last_mut() {
             Some(last) if session.start - end < ANOTHER_DATE => last.push(at),
             _ => groups.push(vec![at]),
         }
-        end = session.start + session.period * session.len() as f64;
+        end = session.end;
     }
     if groups.len() < 2 {
-        groups = (0..sessions.len()).map(|at| vec![at]).collect();
+        groups = (0..spans.len()).map(|at| vec![at]).collect();
     }
     if groups.len() < 2 {
-        return Err(TrendError::One(opened.experiment.title.clone()));
+        return Err(TrendError::One(opened.experiment().title.clone()));
     }
     let part = |group: &Vec<usize>| {
-        let own: Vec<_> = group
-            .iter()
-            .filter_map(|at| sessions.get(*at).cloned())
-            .collect();
-        let start = own.first().map_or(0.0, |session| session.start);
-        let name = own
-            .first()
-            .map_or_else(String::new, |session| session.name.clone());
+        let first = group.first().and_then(|at| spans.get(*at));
+        let start = first.map_or(0.0, |session| session.start);
         Part {
-            name,
-            start: Some(opened.date.unwrap_or(0.0) + start),
+            name: first.map_or_else(String::new, |session| session.name.clone()),
+            start: Some(opened.date().unwrap_or(0.0) + start),
             opened,
-            data: Dataset {
-                sessions: own
-                    .into_iter()
-                    .map(|mut session| {
-                        session.start -= start;
-                        session
-                    })
-                    .collect(),
-                held_out: Vec::new(),
-                ..opened.dataset.clone()
-            },
+            data: opened.only(group, start),
         }
     };
     Ok(groups.iter().map(part).collect())

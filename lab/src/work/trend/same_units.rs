@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use ferntast_identification::JointType;
 
-use super::{super::Opened, Part, Point, TrendError, parts::path_of};
+use super::{
+    Point, TrendError,
+    parts::{Part, Parted, path_of},
+};
 use crate::experiment::Experiment;
 
 /// What a file's numbers are in.
@@ -21,8 +24,8 @@ pub struct UnitIn {
 /// # Errors
 ///
 /// [`TrendError::Units`]: the first file, and one that differs from it.
-pub(super) fn of_experiments(all: &[&Opened]) -> Result<(), TrendError> {
-    let mut experiments = all.iter().map(|own| &own.experiment);
+pub(super) fn of_experiments<T: Parted>(all: &[&T]) -> Result<(), TrendError> {
+    let mut experiments = all.iter().map(|own| own.experiment());
     let Some(first) = experiments.next() else {
         return Ok(());
     };
@@ -48,11 +51,14 @@ pub(super) fn of_experiments(all: &[&Opened]) -> Result<(), TrendError> {
 /// # Errors
 ///
 /// [`TrendError::Units`].
-pub(super) fn of_parameters(parts: &[Part<'_>], points: &[Point]) -> Result<(), TrendError> {
+pub(super) fn of_parameters<T: Parted>(
+    parts: &[Part<'_, T>],
+    points: &[Point],
+) -> Result<(), TrendError> {
     let mut known: BTreeMap<&str, UnitIn> = BTreeMap::new();
     for (part, point) in parts.iter().zip(points) {
         for (name, parameter) in &point.parameters {
-            let own = UnitIn::of(&part.opened.experiment, parameter.unit.clone());
+            let own = UnitIn::of(part.opened.experiment(), parameter.unit.clone());
             let first = known.entry(name).or_insert_with(|| own.clone());
             same(&format!("parameter {name}"), first, &own)?;
         }
