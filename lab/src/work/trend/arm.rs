@@ -1,5 +1,7 @@
 //! What changed of a whole arm: of the arm, and of each of its joints.
 
+use std::collections::BTreeMap;
+
 use ferntast_identification::{
     Verdict,
     arm::{self, ArmComparison, ArmDiagnosis, ArmSpec},
@@ -50,10 +52,16 @@ pub fn trends_of_arm(
     for (number, part) in parts.iter().enumerate() {
         let comparison = fitted(part, &spec, &mut notes)?;
         let mut step = |done: f64| progress(share * (number as f64 + done));
-        let diagnosis = diagnoses.then(|| arm::diagnose(&part.data, &spec, &mut step));
+        let diagnosis = match diagnoses.then(|| arm::diagnose(&part.data, &spec, &mut step)) {
+            Some(Err(why)) => {
+                notes.push(format!("{}: not diagnosed: {why}", part.name));
+                None
+            }
+            told => told.and_then(Result::ok),
+        };
         found.push(Found {
             comparison,
-            diagnosis: diagnosis.and_then(Result::ok),
+            diagnosis,
         });
         step(1.0);
     }
@@ -93,14 +101,12 @@ pub fn trends_of_arm(
 impl Found {
     /// Error on rows left out, of a joint or of all.
     fn held_out(&self, joint: Option<&str>) -> f64 {
-        let of_joint = joint.map(|joint| self.comparison.joints.get(joint));
-        of_joint.map_or(self.comparison.rms.held_out, |own| {
-            own.map_or(f64::NAN, |own| own.rms.held_out)
-        })
+        let own = joint.and_then(|joint| self.comparison.joints.get(joint));
+        own.map_or(self.comparison.rms.held_out, |own| own.rms.held_out)
     }
 
     /// Parameters of a joint, or of the effects of the arm: `payload.mass`.
-    fn parameters(&self, joint: Option<&str>) -> std::collections::BTreeMap<String, Parameter> {
+    fn parameters(&self, joint: Option<&str>) -> BTreeMap<String, Parameter> {
         let Some(joint) = joint else {
             let each = self.comparison.arm.iter().flat_map(|(effect, own)| {
                 own.iter()
