@@ -98,24 +98,28 @@ fn refused(folder: &TempDir, text: &str) -> String {
         .to_string()
 }
 
+/// Each row of the recording (time, positions, torques) as `change` has it.
+fn rewrite(folder: &TempDir, change: impl Fn([f64; 5]) -> [f64; 5]) {
+    let run = folder.path().join("run.csv");
+    let text = fs::read_to_string(&run).unwrap();
+    let mut lines = text.lines();
+    let mut changed = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let own: Vec<f64> = line.split(',').map(|own| own.parse().unwrap()).collect();
+        let [t, shoulder, elbow, torque, of_elbow] = change(own.try_into().unwrap());
+        writeln!(changed, "{t},{shoulder},{elbow},{torque},{of_elbow}").unwrap();
+    }
+    fs::write(&run, changed).unwrap();
+}
+
 /// A recording whose elbow counts the other way round, from a quarter of a turn, and whose shoulder has its
 /// torque the other way round: what is told of it is what mends it.
 #[test]
 fn joints_that_count_otherwise_are_told_with_the_lines_that_mend_them() {
     let folder = folder(false);
-    let run = folder.path().join("run.csv");
-    let text = fs::read_to_string(&run).unwrap();
-    let mut lines = text.lines();
-    let mut turned = format!("{}\n", lines.next().unwrap());
-    for line in lines {
-        let own: Vec<f64> = line.split(',').map(|own| own.parse().unwrap()).collect();
-        let [t, shoulder, elbow, torque, of_elbow] = own[..] else {
-            panic!("{line}");
-        };
-        let elbow = 0.25 * TAU - elbow;
-        writeln!(turned, "{t},{shoulder},{elbow},{},{}", -torque, -of_elbow).unwrap();
-    }
-    fs::write(&run, turned).unwrap();
+    rewrite(&folder, |[t, shoulder, elbow, torque, of_elbow]| {
+        [t, shoulder, 0.25 * TAU - elbow, -torque, -of_elbow]
+    });
     let opened = open(&folder, &format!("{ARM}{SIGNALS}{MODEL}"));
     let told = opened.diagnose(&mut |_| ()).unwrap();
     assert_eq!(told.verdict, Verdict::Unexplained);
@@ -148,19 +152,15 @@ fn joints_that_count_otherwise_are_told_with_the_lines_that_mend_them() {
 
 /// Each torque of the recording times what `factors` says of its joint.
 fn with_torques(folder: &TempDir, factors: [f64; 2]) {
-    let run = folder.path().join("run.csv");
-    let text = fs::read_to_string(&run).unwrap();
-    let mut lines = text.lines();
-    let mut changed = format!("{}\n", lines.next().unwrap());
-    for line in lines {
-        let own: Vec<f64> = line.split(',').map(|own| own.parse().unwrap()).collect();
-        let [t, shoulder, elbow, torque, of_elbow] = own[..] else {
-            panic!("{line}");
-        };
-        let [torque, of_elbow] = [torque * factors[0], of_elbow * factors[1]];
-        writeln!(changed, "{t},{shoulder},{elbow},{torque},{of_elbow}").unwrap();
-    }
-    fs::write(&run, changed).unwrap();
+    rewrite(folder, |[t, shoulder, elbow, torque, of_elbow]| {
+        [
+            t,
+            shoulder,
+            elbow,
+            torque * factors[0],
+            of_elbow * factors[1],
+        ]
+    });
 }
 
 /// Drives of 12.5 and 8 Nm/A, of which the elbow's counts its current the other way round.

@@ -143,10 +143,9 @@ pub fn auto(path: &Path, options: &AutoOptions, json: bool) -> Result<Option<Exi
         false => {
             let misread = &found.last.misread;
             let told = table.as_ref().map(|arm| tell_misread(arm, misread));
-            let unit = |joint: Option<&str>| match (&table, joint) {
-                (Some(arm), Some(joint)) => arm.torque_unit(joint),
-                (Some(arm), None) => arm.torque_units(),
-                (None, _) => "Nm",
+            let unit = |joint: Option<&str>| {
+                let arm = table.as_ref();
+                arm.map_or("Nm", |arm| arm.torque_unit(joint))
             };
             print_diagnosis(&found.last, &told.unwrap_or_default(), &unit);
         }

@@ -68,22 +68,17 @@ impl ArmTable {
         &self.arm.joints
     }
 
-    /// Unit of the torque or force of the joint of that name: Nm or N.
+    /// Unit of the torque or force of the joint of that name; of none, as of an effect of the arm,
+    /// that of all: of joints that turn and joints that slide both.
     #[must_use]
-    pub fn torque_unit(&self, joint: &str) -> &'static str {
-        self.kind(joint).unwrap_or_default().force_unit()
-    }
-
-    /// Unit of torques and forces, where all joints have the same.
-    #[must_use]
-    pub fn torque_units(&self) -> &'static str {
-        let is = |unit: &str| {
-            self.joints()
-                .iter()
-                .all(|own| self.torque_unit(own) == unit)
-        };
-        let both = ["Nm", "N"].into_iter().find(|unit| is(unit));
-        both.unwrap_or("Nm or N")
+    pub fn torque_unit(&self, joint: Option<&str>) -> &'static str {
+        let unit = |joint: &str| self.kind(joint).unwrap_or_default().force_unit();
+        if let Some(joint) = joint {
+            return unit(joint);
+        }
+        let all = |of: &str| self.joints().iter().all(|own| unit(own) == of);
+        let same = ["Nm", "N"].into_iter().find(|of| all(of));
+        same.unwrap_or("Nm or N")
     }
 
     /// Kind of the joint of that name.

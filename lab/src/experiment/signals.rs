@@ -86,11 +86,10 @@ impl Experiment {
     /// turned into one.
     #[must_use]
     pub fn drive_unit(&self) -> Option<&'static str> {
-        let unit = self
-            .arm
-            .is_none()
-            .then(|| self.recorded_drive_unit("motor_torque"));
-        unit.flatten()
+        match self.arm {
+            Some(_) => None,
+            None => self.recorded_drive_unit("motor_torque"),
+        }
     }
 
     /// The unit of the signal with this key, where it is of what goes into a drive.

@@ -134,17 +134,14 @@ impl OpenedArm {
     /// Unit of torques; of joints that turn and joints that slide both.
     #[must_use]
     pub fn torque_unit(&self) -> &'static str {
-        let arm = self.experiment.arm.as_ref();
-        arm.map_or("Nm", ArmTable::torque_units)
+        self.unit_of(None)
     }
 
     /// Unit of the torque of a joint; of none, as of an effect of the arm, that of all.
     #[must_use]
     pub fn unit_of(&self, joint: Option<&str>) -> &'static str {
-        match (&self.experiment.arm, joint) {
-            (Some(arm), Some(joint)) => arm.torque_unit(joint),
-            _ => self.torque_unit(),
-        }
+        let arm = self.experiment.arm.as_ref();
+        arm.map_or("Nm", |arm| arm.torque_unit(joint))
     }
 
     /// What is said of joints that are read otherwise than the model has them, and how to mend it.

@@ -10,7 +10,7 @@ use crate::{
 /// What is said of joints that are read otherwise than the model has them, and how to mend it.
 #[must_use]
 pub fn tell_misread(arm: &ArmTable, misread: &[Misread]) -> Vec<String> {
-    let words = |own: &Misread| in_words(own, arm.torque_unit(&own.joint));
+    let words = |own: &Misread| in_words(own, arm.torque_unit(Some(&own.joint)));
     let mut told: Vec<String> = misread.iter().map(words).collect();
     told.extend(gains(arm, misread));
     let lines = lines(arm, misread);

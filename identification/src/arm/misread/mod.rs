@@ -65,15 +65,17 @@ pub(super) fn find(arm: &PreparedArm<'_>) -> Vec<Misread> {
         return Vec::new();
     }
     let (gains, is_told) = scale::gains(&looked);
-    let is_scaled = gains.iter().any(Option::is_some);
-    let mut looked = looked.scaled(&gains);
-    if is_scaled {
+    let (mut looked, mut in_unit) = (looked, before.clone());
+    if gains.iter().any(Option::is_some) {
+        looked = looked.scaled(&gains);
         // Of the others the unit is not known, so that their errors say nothing.
         looked.counts = is_told;
+        in_unit = looked.errors(&as_read);
     }
-    let in_unit = looked.errors(&as_read);
-    let best = other_reading(&looked, &as_read, &in_unit).unwrap_or_else(|| as_read.clone());
-    let after = looked.errors(&best);
+    let (best, after) = match other_reading(&looked, &as_read, &in_unit) {
+        Some(other) => other,
+        None => (as_read.clone(), in_unit),
+    };
     let name = |at: usize| arm.joint_named(at).0;
     let each = best.iter().zip(&as_read).zip(&gains).enumerate();
     let changed = each.filter(|(_, ((now, then), gain))| now != then || gain.is_some());
@@ -92,12 +94,13 @@ pub(super) fn find(arm: &PreparedArm<'_>) -> Vec<Misread> {
     told.collect()
 }
 
-/// The way to read all joints that explains enough more than the one in which `before` is left.
+/// The way to read all joints that explains enough more than the one in which `before` is left, and
+/// what it leaves.
 fn other_reading(
     looked: &Samples<'_>,
     as_read: &[Reading],
     before: &[f64],
-) -> Option<Vec<Reading>> {
+) -> Option<(Vec<Reading>, Vec<f64>)> {
     let best = looked.search(as_read);
     if looked.score(&best) > looked.score(as_read) - MIN_FALL {
         return None;
@@ -110,7 +113,8 @@ fn other_reading(
         let was_explained = before[at] <= SUSPECT * looked.sizes[at];
         after[at] < LEFT * before[at] || (was_explained && after[at] < 1.1 * before[at])
     };
-    changed.all(|(at, _)| is_mended(at)).then_some(best)
+    let is_better = changed.all(|(at, _)| is_mended(at));
+    is_better.then_some((best, after))
 }
 
 /// Three quarters are one back.

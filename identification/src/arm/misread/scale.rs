@@ -35,10 +35,9 @@ pub fn gains(samples: &Samples<'_>) -> (Vec<Option<f64>>, Vec<bool>) {
         Some(share.recip())
     };
     let gains: Vec<Option<f64>> = shares.iter().map(gain).collect();
-    let count = |own: &mut dyn Iterator<Item = bool>| own.filter(|own| *own).count() as f64;
-    let in_another = count(&mut gains.iter().map(Option::is_some));
-    let told = count(&mut is_told.iter().copied());
-    match in_another > 0.0 && in_another >= SHARE * told {
+    let in_another = gains.iter().flatten().count();
+    let told = shares.iter().flatten().count();
+    match in_another > 0 && in_another as f64 >= SHARE * told as f64 {
         true => (gains, is_told),
         false => (vec![None; samples.joints], is_told),
     }

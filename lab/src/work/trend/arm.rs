@@ -12,6 +12,7 @@ use super::{
     super::{OpenedArm, WorkError},
     BY_BLOCKS, Point, Trend, TrendError,
     changes::{courses, turns},
+    or_by_its_own,
     parts::{Part, days, parts},
     same_units,
 };
@@ -171,18 +172,12 @@ fn fitted(
     spec: &ArmSpec,
     notes: &mut Vec<String>,
 ) -> Result<ArmComparison, WorkError> {
-    let found = match arm::compare(&part.data, spec) {
-        Ok(found) => found,
-        Err(why) => {
-            let own = arm::compare(&part.data, &part.opened.spec);
-            let own = own.map_err(|error| part.opened.refuse(error))?;
-            notes.push(format!(
-                "{}: fitted by its own model, since that of all cannot be: {why}",
-                part.name
-            ));
-            own
-        }
+    let own = || {
+        let own = arm::compare(&part.data, &part.opened.spec);
+        own.map_err(|error| part.opened.refuse(error))
     };
+    let of_all = arm::compare(&part.data, spec);
+    let found = or_by_its_own(&part.name, of_all, own, notes)?;
     let told = part.opened.tell_misread(&found.misread);
     notes.extend(
         told.into_iter()

@@ -10,7 +10,7 @@ mod joints;
 mod parts;
 mod same_units;
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt::Display};
 
 use ferntast_identification::{
     ModelSpec, Verdict, compare, comparison::Comparison, diagnose, fit::Parameter,
@@ -248,25 +248,34 @@ fn model_of_all(all: &[&Opened]) -> ModelSpec {
     model
 }
 
+/// What was found by the model of all; where that cannot be fitted, by the part's own, which is noted.
+fn or_by_its_own<T>(
+    name: &str,
+    of_all: Result<T, impl Display>,
+    own: impl FnOnce() -> Result<T, WorkError>,
+    notes: &mut Vec<String>,
+) -> Result<T, WorkError> {
+    of_all.or_else(|why| {
+        let own = own()?;
+        notes.push(format!(
+            "{name}: fitted by its own model, since that of all cannot be: {why}"
+        ));
+        Ok(own)
+    })
+}
+
 /// The model fitted to a part; where that cannot be, the experiment's own.
 fn fitted(
     part: &Part<'_, Opened>,
     model: &ModelSpec,
     notes: &mut Vec<String>,
 ) -> Result<Point, WorkError> {
-    let of_all = compare(&part.data, model);
-    let mut found: Comparison = match of_all {
-        Ok(found) => found,
-        Err(why) => {
-            let own = &part.opened.experiment.model;
-            let found = compare(&part.data, own).map_err(|error| part.opened.refuse(error))?;
-            notes.push(format!(
-                "{}: fitted by its own model, since that of all cannot be: {why}",
-                part.name
-            ));
-            found
-        }
+    let own = || {
+        let own = &part.opened.experiment.model;
+        compare(&part.data, own).map_err(|error| part.opened.refuse(error))
     };
+    let of_all = compare(&part.data, model);
+    let mut found: Comparison = or_by_its_own(&part.name, of_all, own, notes)?;
     units::in_units_of(&part.opened.experiment, &mut found.parameters);
     let temperatures = part
         .data
